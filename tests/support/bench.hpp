@@ -5,40 +5,56 @@
 #include <string>
 #include <vector>
 
+#include "support/data.hpp"
+
 namespace usher::bench {
 
 enum class Bound { kAtMost, kAtLeast };
 
-/// One performance figure program (`usher bench NAME`): measures with Google Benchmark, counts instructions with
-/// callgrind, prints one object {"name", "input", "metrics", "published", "targets", "pass"}.
+/// One performance figure program (`usher bench NAME`): measures with Google Benchmark, counts
+/// instructions with callgrind, prints one object {"name", "input", "metrics", "published",
+/// "targets", "pass"}.
 ///
 ///     int main(int argc, char** argv) {
 ///       usher::bench::Bench bench("amcl", "willow-trinary 1165x945, 60 beams, 2000 particles");
-///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });          // median, in units of 1e-3 s
-///       bench.instructions("sensor_update_instructions", [&] { model.update(...); });  // exactly this call
-///       bench.metric("cells", 1e6);
+///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });          // median, in
+///       units of 1e-3 s bench.instructions("sensor_update_instructions", [&] { model.update(...);
+///       });  // exactly this call bench.metric("cells", 1e6);
 ///       bench.published("likelihood_field_ms", 164, "ROS amcl");
 ///       bench.target("likelihood_field_ms", Bound::kAtMost, 16);
 ///       return bench.run(argc, argv);
 ///     }
 ///
-/// Options: --json (the object on standard output, everything else on standard error), --instructions (also count
-/// instructions: the program runs itself under valgrind, one run a counted call), --help. Exit code 0 when every
-/// target that was measured holds, 1 when one does not, 2 on a wrong option, 4 when the input data is absent.
+/// Options: --json (the object on standard output, everything else on standard error),
+/// --instructions (also count instructions: the program runs itself under valgrind, one run a
+/// counted call), --help, and Google Benchmark's own
+/// (--benchmark_min_time=0.01). Exit code 0 when every target that was measured holds, 1 when one
+/// does not or a measurement failed, 2 on a wrong option, 4 when the input data is absent.
+///
+/// Keys are identifiers (letters, digits, underscore). `published` becomes {"<key> (<who>)":
+/// value}, since one figure may have several peers. A figure that is not finite prints as null and
+/// misses its target.
 class Bench {
  public:
   Bench(std::string name, std::string input);
 
+  /// The path of an input below USHER_TEST_DATA, or empty; then run() says what is absent and
+  /// returns 4.
+  std::string data(const std::string& relative);
+
   /// Median wall time of `work` over Google Benchmark repetitions, in multiples of `unit` seconds.
   void time(std::string key, double unit, std::function<void()> work);
-  /// Instructions of one call of `work` after `warm_up` calls, by callgrind; only with --instructions.
+  /// Instructions of one call of `work` after `warm_up` calls, by callgrind; only with
+  /// --instructions.
   void instructions(std::string key, std::function<void()> work, int warm_up = 1);
-  /// A figure computed when the program runs (after the timings, which it may read from `metrics()`).
+  /// A figure computed when the program runs (after the timings, which it may read from
+  /// `metrics()`).
   void metric(std::string key, std::function<double()> compute);
   /// What others reach on the same input.
   void published(const std::string& key, double value, const std::string& who);
   void target(const std::string& key, Bound bound, double value);
-  /// Adds `reference_loop_ms` to the metrics: a fixed scalar loop, so that machines can be compared. On by default.
+  /// What has been measured so far; always has `reference_loop_ms`, a fixed scalar loop that
+  /// compares machines.
   const std::map<std::string, double>& metrics() const { return metrics_; }
 
   int run(int argc, char** argv);
@@ -59,8 +75,21 @@ class Bench {
     double value;
   };
 
+  bool parse(int argc, char** argv);
+  bool measure_times();
+  bool count_instructions();
+  int count_in_child(const std::string& key) const;
+  bool holds(const std::string& key) const;
+  bool pass() const;
+  std::string json() const;
+  std::string table() const;
+
   std::string name_;
   std::string input_;
+  std::vector<std::string> absent_;
+  bool print_json_ = false;
+  bool with_instructions_ = false;
+  std::string counted_key_;  // set in the child that runs under valgrind
   std::vector<Timing> timings_;
   std::vector<Counted> counted_;
   std::vector<std::pair<std::string, std::function<double()>>> computed_;
@@ -68,9 +97,5 @@ class Bench {
   std::map<std::string, double> published_;
   std::map<std::string, Target> targets_;
 };
-
-/// The folder with real data (environment variable USHER_TEST_DATA), joined with `relative`; empty when the variable
-/// is unset or the file is absent. A test then skips with `USHER_REQUIRE_DATA(path, relative)` of data.hpp.
-std::string test_data(const std::string& relative);
 
 }  // namespace usher::bench
