@@ -9,8 +9,8 @@ namespace usher::geometry {
 
 using Point2 = Eigen::Vector2d;  ///< [m]
 
-/// A planar pose, equally a planar rigid transform (SE(2)). Named by frames: `map_T_base * point_in_base` is in map,
-/// and a pose `goal_in_map` is the transform map_T_goal.
+/// A planar pose, equally a planar rigid transform (SE(2)). Named by frames: `map_T_base *
+/// point_in_base` is in map, and a pose `goal_in_map` is the transform map_T_goal.
 struct Pose2 {
   double x = 0.0;    ///< [m]
   double y = 0.0;    ///< [m]
@@ -45,8 +45,8 @@ inline Pose2 inverse(const Pose2& a_T_b) {
 
 inline double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// Position and yaw interpolated linearly, the yaw along the shortest turn; fraction 0 gives `a`, 1 gives `b`,
-/// values outside extrapolate.
+/// Position and yaw interpolated linearly, the yaw along the shortest turn; fraction 0 gives `a`, 1
+/// gives `b`, values outside extrapolate.
 inline Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction) {
   return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y),
           normalized(a.yaw + fraction * shortest_turn(a.yaw, b.yaw))};
@@ -67,7 +67,8 @@ inline Pose2 integrate(const Pose2& pose, const Twist2& twist, double seconds) {
   const double length = twist.v * seconds;
   // Chord of the arc: sinc keeps it exact through w = 0.
   const double half = 0.5 * turn;
-  const double chord = std::abs(half) < 1e-6 ? length * (1.0 - half * half / 6.0) : length * std::sin(half) / half;
+  const double chord =
+      std::abs(half) < 1e-6 ? length * (1.0 - half * half / 6.0) : length * std::sin(half) / half;
   return {pose.x + chord * std::cos(pose.yaw + half), pose.y + chord * std::sin(pose.yaw + half),
           normalized(pose.yaw + turn)};
 }

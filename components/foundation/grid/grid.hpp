@@ -17,7 +17,8 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 
-/// Where a grid lies in its frame: axis-aligned, cell (0,0) has its lower-left corner at the origin.
+/// Where a grid lies in its frame: axis-aligned, cell (0,0) has its lower-left corner at the
+/// origin.
 struct GridGeometry {
   int width = 0;            ///< [cells]
   int height = 0;           ///< [cells]
@@ -26,16 +27,19 @@ struct GridGeometry {
   double origin_y = 0.0;    ///< [m]
 
   bool contains(Cell c) const { return c.x >= 0 && c.y >= 0 && c.x < width && c.y < height; }
-  std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t size() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
   std::size_t index(Cell c) const {
-    return static_cast<std::size_t>(c.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c.x);
+    return static_cast<std::size_t>(c.y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(c.x);
   }
   Cell cell(std::size_t index) const {
     const auto w = static_cast<std::size_t>(width);
     return {static_cast<int>(index % w), static_cast<int>(index / w)};
   }
-  /// The cell that holds a point; it may lie outside the grid: ask contains(). The point must be finite and its
-  /// cell must fit an int.
+  /// The cell that holds a point; it may lie outside the grid: ask contains(). The point must be
+  /// finite and its cell must fit an int.
   Cell cell_at(double x, double y) const {
     return {static_cast<int>(std::floor((x - origin_x) / resolution)),
             static_cast<int>(std::floor((y - origin_y) / resolution))};
@@ -47,12 +51,14 @@ struct GridGeometry {
   bool operator==(const GridGeometry&) const = default;
 };
 
-/// Values on a grid, row-major from the lower-left cell, x fastest (the layout of nav_msgs/OccupancyGrid).
+/// Values on a grid, row-major from the lower-left cell, x fastest (the layout of
+/// nav_msgs/OccupancyGrid).
 template <class T>
 class Grid {
  public:
   Grid() = default;
-  explicit Grid(const GridGeometry& geometry, T value = T{}) : geometry_(geometry), values_(geometry.size(), value) {}
+  explicit Grid(const GridGeometry& geometry, T value = T{})
+      : geometry_(geometry), values_(geometry.size(), value) {}
 
   const GridGeometry& geometry() const { return geometry_; }
   /// Moves the grid in its frame; the values stay in their cells.
@@ -68,7 +74,9 @@ class Grid {
   T& at(Cell c) { return assert(geometry_.contains(c)), values_[geometry_.index(c)]; }
   const T& at(Cell c) const { return assert(geometry_.contains(c)), values_[geometry_.index(c)]; }
   /// The value of a cell, or `outside` for a cell beyond the border.
-  T value_or(Cell c, T outside) const { return geometry_.contains(c) ? values_[geometry_.index(c)] : outside; }
+  T value_or(Cell c, T outside) const {
+    return geometry_.contains(c) ? values_[geometry_.index(c)] : outside;
+  }
 
   T* data() { return values_.data(); }
   const T* data() const { return values_.data(); }

@@ -6,8 +6,9 @@
 
 namespace usher {
 
-/// A deterministic random number stream (splitmix64): the same seed gives the same numbers on every machine, which
-/// std::normal_distribution does not promise. Source: Steele, Lea, Flood 2014 [steele2014splitmix].
+/// A deterministic random number stream (splitmix64): the same seed gives the same numbers on every
+/// machine, which std::normal_distribution does not promise. Source: Steele, Lea, Flood 2014
+/// [steele2014splitmix].
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -35,10 +36,12 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A seed for a named stream, so that streams of one world do not depend on the order in which they are made.
+/// A seed for a named stream, so that streams of one world do not depend on the order in which they
+/// are made.
 constexpr std::uint64_t stream_seed(std::uint64_t seed, const char* name) {
   std::uint64_t hash = 0xcbf29ce484222325ULL ^ seed;  // FNV-1a
-  for (; *name != '\0'; ++name) hash = (hash ^ static_cast<unsigned char>(*name)) * 0x100000001b3ULL;
+  for (; *name != '\0'; ++name)
+    hash = (hash ^ static_cast<unsigned char>(*name)) * 0x100000001b3ULL;
   return hash;
 }
 

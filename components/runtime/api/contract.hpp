@@ -9,7 +9,8 @@
 
 namespace usher::runtime {
 
-/// What a component declares, as `usher-<component> --contract` prints it and `usher check` reads it.
+/// What a component declares, as `usher-<component> --contract` prints it and `usher check` reads
+/// it.
 struct Contract {
   struct InputPort {
     std::string topic, type, on_loss;

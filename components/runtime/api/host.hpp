@@ -32,10 +32,11 @@ class Health {
 
 /// Options of an input; the catalogue gives topic, type, rate and the writer's quality of service.
 struct InputOptions {
-  Duration max_age{};          ///< zero = never stale
-  const char* on_loss = "";    ///< what the component does when it is stale or was never there; required with max_age
-  int depth = 0;               ///< zero = the catalogue's; a topic with many writers needs depth per writer
-  bool optional = false;       ///< the component works without any writer
+  Duration max_age{};  ///< zero = never stale
+  const char* on_loss =
+      "";  ///< what the component does when it is stale or was never there; required with max_age
+  int depth = 0;  ///< zero = the catalogue's; a topic with many writers needs depth per writer
+  bool optional = false;  ///< the component works without any writer
 };
 
 /// A byte stream to a device (serial line, TCP). Owned by the host.
@@ -51,16 +52,19 @@ class Stream {
 struct StreamHandlers {
   std::function<void()> on_open;
   std::function<void(std::span<const std::uint8_t>)> on_bytes;
-  std::function<void(const std::string& reason)> on_close;  ///< also when opening failed; the host opens anew each second
+  std::function<void(const std::string& reason)>
+      on_close;  ///< also when opening failed; the host opens anew each second
 };
 
-/// Everything that a component may ask for. Called only from the component's constructor and handlers.
+/// Everything that a component may ask for. Called only from the component's constructor and
+/// handlers.
 ///
-/// Laws (tests/conformance proves them for every host): handlers of one component never overlap; now() is constant
-/// inside a handler and never goes back; each turn runs at most `depth` samples per input and writer, ordered by
-/// arrival and then by declaration, then what is due, ordered by time and then by declaration; a latched input gets the
-/// last value of a living writer however late it starts; timers do not drift and count what they skipped; outputs leave
-/// when the handler returns without a fault, all or none; after a fault no handler runs; randomness comes in named
+/// Laws (tests/conformance proves them for every host): handlers of one component never overlap;
+/// now() is constant inside a handler and never goes back; each turn runs at most `depth` samples
+/// per input and writer, ordered by arrival and then by declaration, then what is due, ordered by
+/// time and then by declaration; a latched input gets the last value of a living writer however
+/// late it starts; timers do not drift and count what they skipped; outputs leave when the handler
+/// returns without a fault, all or none; after a fault no handler runs; randomness comes in named
 /// streams seeded from (world seed, component, stream).
 class Host {
  public:
@@ -74,11 +78,13 @@ class Host {
   virtual Health& health() = 0;
   virtual Random random(std::string_view stream) = 0;
 
-  /// A topic that this component reads. `handler(message, info)` runs for every sample; leave it out to poll the newest.
+  /// A topic that this component reads. `handler(message, info)` runs for every sample; leave it
+  /// out to poll the newest.
   template <class Message>
-  Input<Message> input(const topics::Topic<Message>& topic, const InputOptions& options,
-                       std::type_identity_t<std::function<void(const Message&, const SampleInfo&)>> handler = {},
-                       std::function<void()> on_stale = {}) {
+  Input<Message> input(
+      const topics::Topic<Message>& topic, const InputOptions& options,
+      std::type_identity_t<std::function<void(const Message&, const SampleInfo&)>> handler = {},
+      std::function<void()> on_stale = {}) {
     InputDeclaration declaration;
     declaration.topic = topic.name;
     declaration.type = &message_type<Message>();
@@ -100,31 +106,37 @@ class Host {
   /// A topic that this component writes.
   template <class Message>
   Output<Message> output(const topics::Topic<Message>& topic) {
-    return Output<Message>(&declare(
-        OutputDeclaration{std::string(topic.name), &message_type<Message>(), topic.writer_qos(), topic.rate_hz}));
+    return Output<Message>(&declare(OutputDeclaration{
+        std::string(topic.name), &message_type<Message>(), topic.writer_qos(), topic.rate_hz}));
   }
 
-  /// A periodic timer, first due one period after the start; a period of zero makes a stopped timer.
-  Timer timer(const std::string& name, Duration period, std::function<void(std::uint64_t skipped)> on_due) {
+  /// A periodic timer, first due one period after the start; a period of zero makes a stopped
+  /// timer.
+  Timer timer(const std::string& name, Duration period,
+              std::function<void(std::uint64_t skipped)> on_due) {
     return Timer(&declare(TimerDeclaration{name, period, std::move(on_due)}));
   }
 
-  /// Blocking or long work: `job` runs beside the handlers and touches nothing of the component, `done` is a handler
-  /// that runs after it. `declared` is how long the job takes in simulation.
-  virtual void offload(Duration declared, std::function<void()> job, std::function<void()> done) = 0;
+  /// Blocking or long work: `job` runs beside the handlers and touches nothing of the component,
+  /// `done` is a handler that runs after it. `declared` is how long the job takes in simulation.
+  virtual void offload(Duration declared, std::function<void()> job,
+                       std::function<void()> done) = 0;
 
-  /// "tcp://192.168.1.2:2112" or "serial:///dev/ttyUSB0?baud=115200". In simulation there is none: the handlers get a
-  /// close with that reason.
+  /// "tcp://192.168.1.2:2112" or "serial:///dev/ttyUSB0?baud=115200". In simulation there is none:
+  /// the handlers get a close with that reason.
   virtual Stream& open_stream(const std::string& uri, StreamHandlers handlers) = 0;
 
   /// Memory over restarts: small values (at most 1 MB) in the run directory of the launcher.
   virtual Status keep(const std::string& key, std::span<const std::uint8_t> bytes) = 0;
   virtual Result<Bytes> kept(const std::string& key) = 0;
 
-  /// Every writer of the topic that discovery sees, of whatever type and quality, before its first sample; also its end.
-  virtual void watch_writers(const std::string& topic, std::function<void(const WriterInfo&)> handler) = 0;
+  /// Every writer of the topic that discovery sees, of whatever type and quality, before its first
+  /// sample; also its end.
+  virtual void watch_writers(const std::string& topic,
+                             std::function<void(const WriterInfo&)> handler) = 0;
 
-  /// Ends the component: no handler runs after this one, nothing that it published leaves, the last heartbeat says why.
+  /// Ends the component: no handler runs after this one, nothing that it published leaves, the last
+  /// heartbeat says why.
   [[noreturn]] virtual void fault(const std::string& reason) = 0;
 
  protected:
@@ -133,8 +145,9 @@ class Host {
   virtual TimerPort& declare(TimerDeclaration declaration) = 0;
 };
 
-/// A component: an ordinary object that declares ports, parameters and timers in its constructor and is entered only
-/// through their handlers. It owns no thread, never sleeps or blocks, reads no clock, no environment.
+/// A component: an ordinary object that declares ports, parameters and timers in its constructor
+/// and is entered only through their handlers. It owns no thread, never sleeps or blocks, reads no
+/// clock, no environment.
 class Component {
  public:
   virtual ~Component() = default;
@@ -148,7 +161,8 @@ struct ComponentFactory {
 
 template <class C>
 ComponentFactory component_factory(std::string type) {
-  return {std::move(type), [](Host& host) { return std::unique_ptr<Component>(std::make_unique<C>(host)); }};
+  return {std::move(type),
+          [](Host& host) { return std::unique_ptr<Component>(std::make_unique<C>(host)); }};
 }
 
 }  // namespace usher::runtime

@@ -22,15 +22,17 @@ struct MessageType {
   /// Replaces the content of `cdr`. Fails (false) only when memory runs out.
   bool (*serialize)(const void* message, Bytes& cdr);
 
-  /// Null for bytes that are not a message of this type: truncated, wrong encapsulation, absurd lengths.
+  /// Null for bytes that are not a message of this type: truncated, wrong encapsulation, absurd
+  /// lengths.
   std::shared_ptr<const void> (*deserialize)(std::span<const std::uint8_t> cdr);
 
-  /// The stamp that the message carries (its header's, or its own member `stamp`), where it carries one.
+  /// The stamp that the message carries (its header's, or its own member `stamp`), where it carries
+  /// one.
   std::optional<Time> (*stamp)(const void* message);
 };
 
-/// The type object of a generated message class. Defined for every type that a topic of the catalogue carries
-/// (runtime/dds/message_types.cpp lists them); a missing one is a link error.
+/// The type object of a generated message class. Defined for every type that a topic of the
+/// catalogue carries (runtime/dds/message_types.cpp lists them); a missing one is a link error.
 template <class Message>
 const MessageType& message_type();
 

@@ -20,11 +20,11 @@ using Guid = std::array<std::uint8_t, 16>;
 /// What is known of a sample besides its content.
 struct SampleInfo {
   Guid writer{};
-  Time arrival{};             ///< on the reader's clock
-  std::uint64_t number = 0;   ///< of the writer, from 1
-  bool same_host = false;     ///< the writer's stamps are on the reader's clock
-  /// When the content was true as far as this host can tell: the message's own stamp where it comes from the same
-  /// host and is not in the future, else the arrival. Ages count from here.
+  Time arrival{};            ///< on the reader's clock
+  std::uint64_t number = 0;  ///< of the writer, from 1
+  bool same_host = false;    ///< the writer's stamps are on the reader's clock
+  /// When the content was true as far as this host can tell: the message's own stamp where it comes
+  /// from the same host and is not in the future, else the arrival. Ages count from here.
   Time effective{};
 };
 
@@ -40,7 +40,8 @@ struct WriterInfo {
 
 using topics::Qos;
 
-// --- Type-erased ports: between Host and its implementations; components use the templates below. -----------------
+// --- Type-erased ports: between Host and its implementations; components use the templates below.
+// -----------------
 
 class InputPort {
  public:
@@ -50,9 +51,10 @@ class InputPort {
   };
   virtual ~InputPort() = default;
   virtual const Sample* latest() const = 0;  ///< null before the first
-  virtual const Sample* fresh() const = 0;   ///< null when there is none or it is older than declared
+  virtual const Sample* fresh()
+      const = 0;  ///< null when there is none or it is older than declared
   virtual std::vector<WriterInfo> writers() const = 0;
-  virtual std::uint64_t lost() const = 0;    ///< overwritten in the mailbox before a handler saw them
+  virtual std::uint64_t lost() const = 0;  ///< overwritten in the mailbox before a handler saw them
   virtual std::uint64_t rejected() const = 0;  ///< not a message of this type
 };
 
@@ -75,10 +77,10 @@ struct InputDeclaration {
   std::string topic;
   const MessageType* type = nullptr;
   Qos qos;
-  Duration max_age{};      ///< zero = never stale
-  std::string on_loss;     ///< what the component does then, for contract and documentation
-  double rate_hz = 0.0;    ///< nominal rate of the topic, 0 = on occasion
-  bool optional = false;   ///< `usher check` accepts a manifest without a writer
+  Duration max_age{};     ///< zero = never stale
+  std::string on_loss;    ///< what the component does then, for contract and documentation
+  double rate_hz = 0.0;   ///< nominal rate of the topic, 0 = on occasion
+  bool optional = false;  ///< `usher check` accepts a manifest without a writer
   std::function<void(const InputPort::Sample&)> on_sample;
   std::function<void()> on_stale;
 };
@@ -96,7 +98,8 @@ struct TimerDeclaration {
   std::function<void(std::uint64_t skipped)> on_due;
 };
 
-// --- What a component holds -------------------------------------------------------------------------------------------
+// --- What a component holds
+// -------------------------------------------------------------------------------------------
 
 /// The typed end of a topic that a component reads. Cheap to copy; lives as long as its host.
 template <class Message>
@@ -105,7 +108,8 @@ class Input {
   Input() = default;
   explicit Input(InputPort* port) : port_(port) {}
 
-  /// The newest sample that this component was given; null before the first. Valid until the handler returns.
+  /// The newest sample that this component was given; null before the first. Valid until the
+  /// handler returns.
   const Message* latest() const { return message(port_->latest()); }
   /// The same, but null when it is older than the age that the input declared.
   const Message* fresh() const { return message(port_->fresh()); }
@@ -142,7 +146,8 @@ class Output {
   OutputPort* port_ = nullptr;
 };
 
-/// A periodic timer. It does not drift; when the component was late it fires once and says how many it skipped.
+/// A periodic timer. It does not drift; when the component was late it fires once and says how many
+/// it skipped.
 class Timer {
  public:
   Timer() = default;

@@ -7,8 +7,9 @@ namespace usher::runtime {
 
 using Duration = std::chrono::nanoseconds;
 
-/// The clock of a host: monotonic, plus one anchor that the launcher fixed for all components of the host, so that
-/// stamps look like wall time and never jump. It has no now(): time is asked of the Host.
+/// The clock of a host: monotonic, plus one anchor that the launcher fixed for all components of
+/// the host, so that stamps look like wall time and never jump. It has no now(): time is asked of
+/// the Host.
 struct HostClock {
   using duration = Duration;
   using rep = duration::rep;
@@ -20,6 +21,8 @@ using Time = HostClock::time_point;
 
 constexpr double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
 /// The nearest nanosecond; |s| must stay below 292 years.
-constexpr Duration from_seconds(double s) { return Duration(static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))); }
+constexpr Duration from_seconds(double s) {
+  return Duration(static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5)));
+}
 
 }  // namespace usher::runtime

@@ -1,0 +1,79 @@
+#include "wire/transform_input.hpp"
+
+namespace usher::wire {
+
+namespace {
+constexpr std::size_t kMaxWaiting = 16;
+constexpr auto kPatience = std::chrono::milliseconds(100);
+constexpr int kWriters = 8;  // of tf and tf_static on one robot
+}  // namespace
+
+TransformInput::TransformInput(runtime::Host& host)
+    : host_(host),
+      dropped_(host.health().counter("tf: dropped")),
+      refused_(host.health().counter("tf: refused")),
+      moving_(host.input(topics::kTf, {.depth = 4 * kWriters, .optional = true},
+                         [this](const auto& message, const auto&) { take(message, false); })),
+      fixed_(host.input(topics::kTfStatic, {.depth = 4 * kWriters, .optional = true},
+                        [this](const auto& message, const auto&) { take(message, true); })) {}
+
+Result<geometry::Pose2> TransformInput::lookup_planar(const std::string& target,
+                                                      const std::string& source,
+                                                      runtime::Time stamp) const {
+  const auto pose = lookup(target, source, stamp);
+  if (!pose) return Error{pose.error()};
+  return geometry::to_plane(*pose);
+}
+
+void TransformInput::take(const tf2_msgs::msg::TFMessage& message, bool fixed) {
+  for (const auto& transform : message.transforms()) {
+    const auto pose = from_message(transform.transform());
+    if (!pose) {
+      ++refused_;
+      continue;
+    }
+    const auto& parent = transform.header().frame_id();
+    const auto& child = transform.child_frame_id();
+    const auto stamp = from_message(transform.header().stamp()).time_since_epoch();
+    const Status added =
+        fixed ? buffer_.add_static(parent, child, *pose) : buffer_.add(parent, child, stamp, *pose);
+    if (!added) ++refused_;
+  }
+  serve();
+}
+
+void TransformInput::when_known(const std::string& target, const std::string& source,
+                                runtime::Time stamp,
+                                std::function<void(const geometry::Pose3&)> work) {
+  if (waiting_.empty()) {
+    if (const auto pose = lookup(target, source, stamp)) {
+      work(*pose);
+      return;
+    }
+  }
+  if (waiting_.size() == kMaxWaiting) {
+    waiting_.pop_front();
+    ++dropped_;
+  }
+  waiting_.push_back({target, source, stamp, host_.now(), std::move(work)});
+  serve();
+}
+
+void TransformInput::serve() {
+  // In order of arrival: later work overtakes only what has been given up.
+  while (!waiting_.empty()) {
+    if (const auto pose =
+            lookup(waiting_.front().target, waiting_.front().source, waiting_.front().stamp)) {
+      const auto work = std::move(waiting_.front().work);
+      waiting_.pop_front();
+      work(*pose);
+    } else if (host_.now() - waiting_.front().since > kPatience) {
+      waiting_.pop_front();
+      ++dropped_;
+    } else {
+      return;
+    }
+  }
+}
+
+}  // namespace usher::wire

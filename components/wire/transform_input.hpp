@@ -1,0 +1,54 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "foundation/geometry/transform_buffer.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::wire {
+
+/// A component's view of the frames: reads tf and tf_static into a TransformBuffer, and holds back
+/// work that needs a transform which is not known yet.
+class TransformInput {
+ public:
+  explicit TransformInput(runtime::Host& host);
+  TransformInput(const TransformInput&) = delete;
+  TransformInput& operator=(const TransformInput&) = delete;
+
+  Result<geometry::Pose3> lookup(const std::string& target, const std::string& source,
+                                 runtime::Time stamp) const {
+    return buffer_.lookup(target, source, stamp.time_since_epoch());
+  }
+  Result<geometry::Pose2> lookup_planar(const std::string& target, const std::string& source,
+                                        runtime::Time stamp) const;
+  const geometry::TransformBuffer& buffer() const { return buffer_; }
+
+  /// Runs `work(target_T_source)` now or in the handler that makes the transform known. Work that
+  /// waited 100 ms is dropped and counted ("tf: dropped"), the oldest too when more than 16 wait.
+  void when_known(const std::string& target, const std::string& source, runtime::Time stamp,
+                  std::function<void(const geometry::Pose3&)> work);
+
+ private:
+  struct Waiting {
+    std::string target, source;
+    runtime::Time stamp, since;
+    std::function<void(const geometry::Pose3&)> work;
+  };
+  void take(const tf2_msgs::msg::TFMessage& message, bool fixed);
+  void serve();
+
+  runtime::Host& host_;
+  geometry::TransformBuffer buffer_;
+  std::deque<Waiting> waiting_;
+  std::uint64_t& dropped_;
+  std::uint64_t& refused_;
+  runtime::Input<tf2_msgs::msg::TFMessage> moving_;
+  runtime::Input<tf2_msgs::msg::TFMessage> fixed_;
+};
+
+}  // namespace usher::wire
