@@ -53,7 +53,7 @@ ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits,
   const double overshoot = parameters_.overshoot * (span.high - span.low);
   const double low = span.low - overshoot;
   const double high = span.high + overshoot;
-  axis.error.error = outside(measured, low, high);
+  axis.error.error = -outside(measured, low, high);
   const double excess = outside(measured, std::min(low, 0.0), std::max(high, 0.0));
 
   axis.error.lasting =

@@ -36,7 +36,7 @@ class ResponseWatch {
   enum class Verdict : std::uint8_t { kObeys, kFallsShort, kDisobeys };
 
   struct AxisError {
-    double error = 0.0;  ///< signed distance from the predicted span; 0 inside it
+    double error = 0.0;  ///< nearest predicted velocity minus the measured one
     Time lasting{};      ///< for how long its size has been above the threshold
   };
 

@@ -123,9 +123,9 @@ TEST(ResponseWatch, StandingInsteadOfDrivingIsFallingShort) {
 TEST(ResponseWatch, ReportsSignedErrorAndItsTime) {
   ResponseWatch watch;
   for (int i = 0; i <= 50; ++i) watch.observe({0.0, 0.0}, {-0.75, 0.1}, at(i * 0.01));
-  EXPECT_DOUBLE_EQ(watch.linear().error, -0.75);
+  EXPECT_DOUBLE_EQ(watch.linear().error, 0.75);
   EXPECT_EQ(watch.linear().lasting, milliseconds(500));
-  EXPECT_DOUBLE_EQ(watch.angular().error, 0.1);
+  EXPECT_DOUBLE_EQ(watch.angular().error, -0.1);
   EXPECT_EQ(watch.angular().lasting, milliseconds(0));
   watch.observe({0.0, 0.0}, {0.2, 0.0}, at(0.51));
   EXPECT_EQ(watch.linear().lasting, milliseconds(0));

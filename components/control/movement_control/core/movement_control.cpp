@@ -1,0 +1,197 @@
+#include "control/movement_control/core/movement_control.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace usher::movement_control {
+
+namespace {
+
+/// The next value on the way from `from` to `to`, through zero when the sign changes.
+double approach(double from, double to, const AccelerationLimit& limit, double seconds) {
+  if (from == to) return to;
+  const bool through_zero = from * to < 0.0;
+  const double goal = through_zero ? 0.0 : to;
+  const double rate = std::abs(goal) > std::abs(from) ? limit.speed_up
+                      : goal == 0.0                   ? limit.stop
+                                                      : limit.slow_down;
+  if (rate == 0.0) return through_zero ? approach(0.0, to, limit, seconds) : goal;
+  const double step = rate * seconds;
+  return from < goal ? std::min(from + step, goal) : std::max(from - step, goal);
+}
+
+}  // namespace
+
+std::string_view text(Limit limit) {
+  switch (limit) {
+    case Limit::kNone:
+      return "";
+    case Limit::kNotEnabled:
+      return "movement is not enabled";
+    case Limit::kNoCommand:
+      return "no enabled source has a fresh command";
+    case Limit::kNotFinite:
+      return "the command is not finite";
+    case Limit::kNoBase:
+      return "the base's status is missing";
+    case Limit::kNoWhiskers:
+      return "the whiskers are missing";
+    case Limit::kWhisker:
+      return "a whisker is touched";
+    case Limit::kLocalizationLost:
+      return "the pose is lost";
+    case Limit::kLocalizationDegraded:
+      return "the pose is uncertain";
+    case Limit::kLowBattery:
+      return "the battery is low";
+    case Limit::kPersonAhead:
+      return "a person is ahead";
+    case Limit::kSpeedFactor:
+      return "a component is degraded";
+    case Limit::kSituation:
+      return "the room is limited";
+    case Limit::kReverse:
+      return "driving backwards unseen";
+    case Limit::kAcceleration:
+      return "accelerating";
+  }
+  return "unknown";
+}
+
+MovementControl::MovementControl() : MovementControl(Parameters{}) {}
+
+MovementControl::MovementControl(const Parameters& parameters)
+    : parameters_(parameters), watch_(parameters.response) {
+  assert(parameters.longest_step > Time::zero() && parameters.reverse >= 0.0);
+  status_.max_human = parameters.person_ahead;
+  status_.max_normal = parameters.open;
+  status_.threshold_linear = parameters.response.linear;
+  status_.threshold_angular = parameters.response.angular;
+}
+
+MovementControl::Wish MovementControl::choose(const Inputs& inputs) const {
+  const Enables enables = inputs.enables.value_or(Enables{});
+  if (!enables.movement) return {Source::kNone, {}, Limit::kNotEnabled};
+  if (parameters_.base_required && !inputs.measured) return {Source::kNone, {}, Limit::kNoBase};
+  if (parameters_.whiskers_required && !inputs.whiskers) {
+    return {Source::kNone, {}, Limit::kNoWhiskers};
+  }
+  Wish wish{Source::kNone, {}, Limit::kNoCommand};
+  if (enables.manual && inputs.manual) {
+    wish = {Source::kManual, *inputs.manual, Limit::kNone};
+  } else if (enables.interaction && inputs.interaction) {
+    wish = {Source::kInteraction, *inputs.interaction, Limit::kNone};
+  } else if (enables.navigation && inputs.navigation) {
+    wish = {Source::kNavigation, *inputs.navigation, Limit::kNone};
+  } else if (!enables.manual && !enables.interaction && !enables.navigation) {
+    wish.limit = Limit::kNotEnabled;
+  }
+  // A source that speaks nonsense keeps its priority: nobody below it takes over by accident.
+  if (!wish.twist.finite()) return {wish.source, {}, Limit::kNotFinite};
+  return wish;
+}
+
+MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& wish) const {
+  Bound bound;
+  bound.limit = inputs.situation == Situation::kOpen       ? parameters_.open
+                : inputs.situation == Situation::kCorridor ? parameters_.corridor
+                                                           : parameters_.confined;
+  const auto tighten = [&bound](const VelocityLimit& limit, Limit cause) {
+    if (limit.linear < bound.limit.linear) {
+      bound.limit.linear = limit.linear;
+      bound.linear_by = cause;
+    }
+    if (limit.angular < bound.limit.angular) {
+      bound.limit.angular = limit.angular;
+      bound.angular_by = cause;
+    }
+  };
+  if (wish.twist.v < 0.0) {
+    tighten({parameters_.reverse, bound.limit.angular}, Limit::kReverse);
+  }
+  if (inputs.person_ahead.value_or(true)) tighten(parameters_.person_ahead, Limit::kPersonAhead);
+  if (inputs.low_battery) tighten(parameters_.low_battery, Limit::kLowBattery);
+  if (wish.source == Source::kNavigation) {
+    if (inputs.localization == Localization::kDegraded) {
+      tighten(parameters_.localization_degraded, Limit::kLocalizationDegraded);
+    } else if (inputs.localization == Localization::kLost) {
+      tighten(parameters_.localization_lost, Limit::kLocalizationLost);
+    }
+  }
+  const double factor = inputs.enables ? inputs.enables->speed_factor : 1.0;
+  if (!(factor >= 1.0)) {  // NaN is the careful case
+    const double careful = factor > 0.0 ? factor : 0.0;
+    tighten({bound.limit.linear * careful, bound.limit.angular * careful}, Limit::kSpeedFactor);
+  }
+  return bound;
+}
+
+geometry::Twist2 MovementControl::ramp(const geometry::Twist2& wanted, Time now) const {
+  const Time step =
+      last_at_ ? std::clamp(now - *last_at_, Time::zero(), parameters_.longest_step) : Time::zero();
+  const double seconds = std::chrono::duration<double>(step).count();
+  return {approach(last_.v, wanted.v, parameters_.linear, seconds),
+          approach(last_.w, wanted.w, parameters_.angular, seconds)};
+}
+
+Decision MovementControl::decide(const Inputs& inputs, Time now) {
+  const Wish wish = choose(inputs);
+  const Bound limits = bound(inputs, wish);
+  Decision decision{{}, wish.source, wish.limit};
+
+  if (wish.limit == Limit::kNotFinite) ++rejected_;
+  if (wish.limit == Limit::kNone) {
+    // One factor for both, so that a slower robot drives the same arc. What may not move at all is
+    // cut instead: a lost pose forbids driving but not turning.
+    const auto share = [](double limit, double wanted) {
+      return std::abs(wanted) > limit && limit > 0.0 ? limit / std::abs(wanted) : 1.0;
+    };
+    const double linear_share = share(limits.limit.linear, wish.twist.v);
+    const double angular_share = share(limits.limit.angular, wish.twist.w);
+    const double factor = std::min(linear_share, angular_share);
+    geometry::Twist2 wanted{wish.twist.v * factor, wish.twist.w * factor};
+    if (factor < 1.0) {
+      decision.limit = linear_share <= angular_share ? limits.linear_by : limits.angular_by;
+    }
+    if (limits.limit.linear == 0.0 && wanted.v != 0.0) {
+      wanted.v = 0.0;
+      decision.limit = limits.linear_by;
+    }
+    if (limits.limit.angular == 0.0 && wanted.w != 0.0) {
+      wanted.w = 0.0;
+      decision.limit = limits.angular_by;
+    }
+
+    const geometry::Twist2 ramped = ramp(wanted, now);
+    if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
+    decision.twist = whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}));
+    if (decision.twist != ramped) decision.limit = Limit::kWhisker;
+  }
+
+  last_ = decision.twist;
+  last_at_ = now;
+  report(inputs, decision, limits, now);
+  return decision;
+}
+
+void MovementControl::report(const Inputs& inputs, const Decision& decision, const Bound& bound,
+                             Time now) {
+  if (inputs.measured) watch_.observe(decision.twist, *inputs.measured, now);
+  status_.enables = inputs.enables.value_or(Enables{});
+  status_.max_current = bound.limit;
+  status_.current = decision.twist;
+  status_.measured = inputs.measured.value_or(geometry::Twist2{});
+  status_.error_linear = watch_.linear();
+  status_.error_angular = watch_.angular();
+  status_.whiskers = inputs.whiskers.value_or(Whiskers{});
+  status_.base_connected = inputs.measured.has_value();
+  status_.ok = inputs.enables && (inputs.measured || !parameters_.base_required) &&
+               (inputs.whiskers || !parameters_.whiskers_required) &&
+               decision.limit != Limit::kNotFinite;
+  status_.source = decision.source;
+  status_.situation = inputs.situation;
+  status_.limit = decision.limit;
+}
+
+}  // namespace usher::movement_control

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "control/movement_control/core/situation.hpp"
+#include "control/movement_control/core/whisker_reflex.hpp"
+#include "drivers/base_obedience/core/response_watch.hpp"
+#include "foundation/geometry/pose2.hpp"
+
+namespace usher::movement_control {
+
+/// Who is driving. The numbers are those of MovementStatus on the wire.
+enum class Source : std::uint8_t { kNone = 0, kManual = 1, kInteraction = 2, kNavigation = 3 };
+
+/// How far the pose can be trusted. The zero is the safe one, as on the wire.
+enum class Localization : std::uint8_t { kLost = 0, kDegraded = 1, kGood = 2 };
+
+/// What the supervisor allows (table 6.1 of the thesis).
+struct Enables {
+  bool movement = false;  ///< anything but zero may be passed
+  bool manual = false;
+  bool interaction = false;
+  bool navigation = false;
+  double speed_factor = 1.0;  ///< {0..1} on all velocity limits
+};
+
+struct VelocityLimit {
+  double linear = 0.0;   ///< [m/s] {>= 0}
+  double angular = 0.0;  ///< [rad/s] {>= 0}
+};
+
+/// How fast the commanded velocity may change; 0 means at once.
+struct AccelerationLimit {
+  double speed_up = 0.0;   ///< [m/s^2] or [rad/s^2] away from zero
+  double slow_down = 0.0;  ///< toward a smaller speed that is not zero
+  double stop = 0.0;       ///< toward zero
+};
+
+struct Parameters {
+  // The thesis, section 8.1.3 and 6.1.
+  VelocityLimit open{1.4, 1.0};
+  VelocityLimit corridor{1.0, 1.0};
+  VelocityLimit confined{0.8, 1.0};
+  VelocityLimit person_ahead{1.0, 0.5};
+  // Ours.
+  VelocityLimit localization_degraded{0.5, 0.6};
+  VelocityLimit localization_lost{0.0, 0.5};  ///< navigation only; turning may find the pose again
+  VelocityLimit low_battery{0.8, 0.6};
+  double reverse = 0.4;  ///< [m/s] {>= 0} nothing sees behind
+
+  /// The Segway's own acceleration; a stop passes at once, as the stopping distances were measured.
+  AccelerationLimit linear{0.7, 1.4, 0.0};
+  AccelerationLimit angular{1.5, 3.0, 0.0};
+  /// A longer pause between two decisions counts as this one for the acceleration. {> 0}
+  Time longest_step = std::chrono::milliseconds(40);
+
+  bool whiskers_required = true;  ///< without fresh whiskers nothing moves
+  bool base_required = true;      ///< without a fresh base status nothing moves
+  drive::ResponseWatch::Parameters response;
+};
+
+/// All that a decision depends on. Absence means that nothing fresh is known, and is always the
+/// careful case.
+struct Inputs {
+  std::optional<Enables> enables;          ///< absent: nothing is enabled
+  std::optional<geometry::Twist2> manual;  ///< fresh commands of the three sources
+  std::optional<geometry::Twist2> interaction;
+  std::optional<geometry::Twist2> navigation;
+  std::optional<Whiskers> whiskers;
+  std::optional<bool> person_ahead;  ///< absent: as if there were one
+  Situation situation = Situation::kConfined;
+  Localization localization = Localization::kLost;
+  bool low_battery = false;
+  std::optional<geometry::Twist2> measured;  ///< absent: the base is not connected
+};
+
+/// What bounds the velocity or stops the robot now, the strictest one.
+enum class Limit : std::uint8_t {
+  kNone,
+  kNotEnabled,  ///< the supervisor allows nothing, or is silent
+  kNoCommand,   ///< no enabled source has a fresh command
+  kNotFinite,   ///< the driving source sent NaN or infinity
+  kNoBase,      ///< the base's status is missing
+  kNoWhiskers,  ///< the whiskers are required and missing
+  kWhisker,     ///< a touched corner bars this motion
+  kLocalizationLost,
+  kLocalizationDegraded,
+  kLowBattery,
+  kPersonAhead,
+  kSpeedFactor,  ///< something is degraded, says the supervisor
+  kSituation,
+  kReverse,
+  kAcceleration,
+};
+
+/// Words for an operator; empty for kNone.
+std::string_view text(Limit limit);
+
+/// Appendix A.1 of the thesis, without its topic and frame names.
+struct Status {
+  Enables enables;
+  VelocityLimit max_human;
+  VelocityLimit max_normal;
+  drive::ResponseWatch::Axis threshold_linear;
+  drive::ResponseWatch::Axis threshold_angular;
+  VelocityLimit max_current;  ///< in force now
+  geometry::Twist2 current;   ///< commanded now
+  geometry::Twist2 measured;  ///< zero when unknown
+  drive::ResponseWatch::AxisError error_linear;
+  drive::ResponseWatch::AxisError error_angular;
+  Whiskers whiskers;  ///< none pressed when unknown
+  bool base_connected = false;
+  bool ok = false;                ///< all that is needed to drive is there
+  Source source = Source::kNone;  ///< who drives
+  Situation situation = Situation::kConfined;
+  Limit limit = Limit::kNotEnabled;  ///< the strictest limit that bears on the command
+};
+
+struct Decision {
+  geometry::Twist2 twist;  ///< what to command; always finite
+  Source source = Source::kNone;
+  Limit limit = Limit::kNotEnabled;
+};
+
+/// Chooses among the three sources by priority and bounds what they want.
+///
+/// In this order: the highest enabled source with a fresh command; velocity limits of the
+/// situation, of a person ahead, of localization, battery and supervisor, by one factor so that the
+/// driven arc stays; acceleration limits; whisker reflex. Anything missing gives zero, and zero is
+/// a decision too: it is to be published, silence is not.
+///
+/// Call it whenever a command arrives and at the timer; the acceleration limits use the time since
+/// the last call. Deterministic, no allocation.
+class MovementControl {
+ public:
+  MovementControl();
+  explicit MovementControl(const Parameters& parameters);
+
+  Decision decide(const Inputs& inputs, Time now);
+
+  /// About the last decision.
+  const Status& status() const { return status_; }
+
+  /// How often a source with the right to drive sent something that is not finite.
+  std::uint64_t rejected() const { return rejected_; }
+
+ private:
+  struct Wish {
+    Source source = Source::kNone;
+    geometry::Twist2 twist;
+    Limit limit = Limit::kNone;
+  };
+  struct Bound {
+    VelocityLimit limit;
+    Limit linear_by = Limit::kSituation;
+    Limit angular_by = Limit::kSituation;
+  };
+
+  Wish choose(const Inputs& inputs) const;
+  Bound bound(const Inputs& inputs, const Wish& wish) const;
+  geometry::Twist2 ramp(const geometry::Twist2& wanted, Time now) const;
+  void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
+
+  Parameters parameters_;
+  drive::ResponseWatch watch_;
+  geometry::Twist2 last_;
+  std::optional<Time> last_at_;
+  std::uint64_t rejected_ = 0;
+  Status status_;
+};
+
+}  // namespace usher::movement_control

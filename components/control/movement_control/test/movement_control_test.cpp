@@ -1,0 +1,467 @@
+#include "control/movement_control/core/movement_control.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "foundation/random/random.hpp"
+
+namespace usher::movement_control {
+namespace {
+
+using geometry::Twist2;
+using std::chrono::milliseconds;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Everything is well, wide and enabled for navigation.
+Inputs all_well() {
+  Inputs inputs;
+  inputs.enables = Enables{true, true, true, true, 1.0};
+  inputs.whiskers = Whiskers{};
+  inputs.person_ahead = false;
+  inputs.situation = Situation::kOpen;
+  inputs.localization = Localization::kGood;
+  inputs.measured = Twist2{};
+  return inputs;
+}
+
+/// The command that is reached when the inputs stay as they are for five seconds.
+Decision settled(const Inputs& inputs, const Parameters& parameters = {}) {
+  MovementControl control(parameters);
+  Decision decision;
+  for (int i = 0; i < 250; ++i) decision = control.decide(inputs, milliseconds(20 * i));
+  return decision;
+}
+
+struct Case {
+  const char* name;
+  void (*change)(Inputs&);
+  Twist2 twist;
+  Source source;
+  Limit limit;
+};
+
+TEST(MovementControl, DecidesByTheTable) {
+  using enum Limit;
+  const Case cases[] = {
+      {"silence is zero", [](Inputs&) {}, {}, Source::kNone, kNoCommand},
+      {"navigation drives alone",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2};
+       },
+       {0.5, 0.2},
+       Source::kNavigation,
+       kNone},
+      {"interaction goes before navigation",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.interaction = {0.0, -0.3};
+       },
+       {0.0, -0.3},
+       Source::kInteraction,
+       kNone},
+      {"manual goes before all",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.interaction = {0.0, -0.3}, i.manual = {0.1, 0.0};
+       },
+       {0.1, 0.0},
+       Source::kManual,
+       kNone},
+      {"a zero of manual is a command",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.manual = {0.0, 0.0};
+       },
+       {0.0, 0.0},
+       Source::kManual,
+       kNone},
+      {"a disabled source is passed over",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.manual = {0.1, 0.0}, i.enables->manual = false;
+       },
+       {0.5, 0.2},
+       Source::kNavigation,
+       kNone},
+      {"no source enabled",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.enables = Enables{true};
+       },
+       {},
+       Source::kNone,
+       kNotEnabled},
+      {"movement disabled",
+       [](Inputs& i) {
+         i.manual = {0.5, 0.2}, i.enables->movement = false;
+       },
+       {},
+       Source::kNone,
+       kNotEnabled},
+      {"supervisor silent",
+       [](Inputs& i) {
+         i.manual = {0.5, 0.2}, i.enables.reset();
+       },
+       {},
+       Source::kNone,
+       kNotEnabled},
+      {"base silent",
+       [](Inputs& i) {
+         i.manual = {0.5, 0.2}, i.measured.reset();
+       },
+       {},
+       Source::kNone,
+       kNoBase},
+      {"whiskers silent",
+       [](Inputs& i) {
+         i.manual = {0.5, 0.2}, i.whiskers.reset();
+       },
+       {},
+       Source::kNone,
+       kNoWhiskers},
+      {"nonsense of a higher source lets no lower one drive",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.2}, i.manual = {kNan, 0.0};
+       },
+       {},
+       Source::kManual,
+       kNotFinite},
+
+      {"open space",
+       [](Inputs& i) {
+         i.navigation = {2.0, 0.0};
+       },
+       {1.4, 0.0},
+       Source::kNavigation,
+       kSituation},
+      {"corridor",
+       [](Inputs& i) {
+         i.navigation = {2.0, 0.0}, i.situation = Situation::kCorridor;
+       },
+       {1.0, 0.0},
+       Source::kNavigation,
+       kSituation},
+      {"confined",
+       [](Inputs& i) {
+         i.navigation = {2.0, 0.0}, i.situation = Situation::kConfined;
+       },
+       {0.8, 0.0},
+       Source::kNavigation,
+       kSituation},
+      {"a slower robot drives the same arc",
+       [](Inputs& i) {
+         i.navigation = {2.8, 0.5};
+       },
+       {1.4, 0.25},
+       Source::kNavigation,
+       kSituation},
+      {"turning is limited too",
+       [](Inputs& i) {
+         i.navigation = {1.0, -2.0};
+       },
+       {0.5, -1.0},
+       Source::kNavigation,
+       kSituation},
+      {"backwards is slow",
+       [](Inputs& i) {
+         i.navigation = {-1.0, 0.0};
+       },
+       {-0.4, 0.0},
+       Source::kNavigation,
+       kReverse},
+      {"person ahead",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.0}, i.person_ahead = true;
+       },
+       {1.0, 0.0},
+       Source::kNavigation,
+       kPersonAhead},
+      {"person ahead, turning",
+       [](Inputs& i) {
+         i.navigation = {0.0, 1.0}, i.person_ahead = true;
+       },
+       {0.0, 0.5},
+       Source::kNavigation,
+       kPersonAhead},
+      {"people unknown is a person ahead",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.0}, i.person_ahead.reset();
+       },
+       {1.0, 0.0},
+       Source::kNavigation,
+       kPersonAhead},
+      {"a person in a confined place does not widen it",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.0}, i.person_ahead = true, i.situation = Situation::kConfined;
+       },
+       {0.8, 0.0},
+       Source::kNavigation,
+       kSituation},
+      {"localization degraded",
+       [](Inputs& i) {
+         i.navigation = {1.0, 0.0}, i.localization = Localization::kDegraded;
+       },
+       {0.5, 0.0},
+       Source::kNavigation,
+       kLocalizationDegraded},
+      {"localization lost stops, but may turn",
+       [](Inputs& i) {
+         i.navigation = {1.0, 0.4}, i.localization = Localization::kLost;
+       },
+       {0.0, 0.4},
+       Source::kNavigation,
+       kLocalizationLost},
+      {"an operator drives without localization",
+       [](Inputs& i) {
+         i.manual = {0.6, 0.0}, i.localization = Localization::kLost;
+       },
+       {0.6, 0.0},
+       Source::kManual,
+       kNone},
+      {"battery low",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.0}, i.low_battery = true;
+       },
+       {0.8, 0.0},
+       Source::kNavigation,
+       kLowBattery},
+      {"something degraded",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.0}, i.enables->speed_factor = 0.5;
+       },
+       {0.7, 0.0},
+       Source::kNavigation,
+       kSpeedFactor},
+      {"a speed factor of zero stops",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.3}, i.enables->speed_factor = 0.0;
+       },
+       {0.0, 0.0},
+       Source::kNavigation,
+       kSpeedFactor},
+      {"a speed factor that is not a number stops",
+       [](Inputs& i) {
+         i.navigation = {1.4, 0.3}, i.enables->speed_factor = kNan;
+       },
+       {0.0, 0.0},
+       Source::kNavigation,
+       kSpeedFactor},
+
+      {"front left whisker",
+       [](Inputs& i) {
+         i.navigation = {0.5, 0.3}, i.whiskers->front_left = true;
+       },
+       {0.0, 0.0},
+       Source::kNavigation,
+       kWhisker},
+      {"front left whisker, turning away",
+       [](Inputs& i) {
+         i.navigation = {0.5, -0.3}, i.whiskers->front_left = true;
+       },
+       {0.0, -0.3},
+       Source::kNavigation,
+       kWhisker},
+      {"a whisker stops the operator too",
+       [](Inputs& i) {
+         i.manual = {0.5, 0.0}, i.whiskers->front_right = true;
+       },
+       {0.0, 0.0},
+       Source::kManual,
+       kWhisker},
+  };
+  for (const Case& test : cases) {
+    SCOPED_TRACE(test.name);
+    Inputs inputs = all_well();
+    test.change(inputs);
+    const Decision decision = settled(inputs);
+    EXPECT_NEAR(decision.twist.v, test.twist.v, 1e-12);
+    EXPECT_NEAR(decision.twist.w, test.twist.w, 1e-12);
+    EXPECT_EQ(decision.source, test.source);
+    EXPECT_EQ(text(decision.limit), text(test.limit));
+  }
+}
+
+TEST(MovementControl, WorksWithoutWhiskersWhereThereAreNone) {
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{0.5, 0.0};
+  inputs.whiskers.reset();
+  Parameters parameters;
+  parameters.whiskers_required = false;
+  EXPECT_EQ(settled(inputs, parameters).twist.v, 0.5);
+}
+
+TEST(WhiskerReflex, BarsPerCornerAndDirection) {
+  struct Row {
+    Whiskers whiskers;
+    bool forward, backward, left, right;  ///< what stays possible
+  };
+  const Row rows[] = {
+      {{false, false, false, false}, true, true, true, true},
+      {{true, false, false, false}, false, true, false, true},
+      {{false, true, false, false}, false, true, true, false},
+      {{true, true, false, false}, false, true, false, false},
+      {{false, false, true, false}, true, false, true, false},
+      {{false, false, false, true}, true, false, false, true},
+      {{false, false, true, true}, true, false, false, false},
+      {{true, false, true, false}, false, false, false, false},
+      {{true, false, false, true}, false, false, false, true},
+      {{false, true, true, false}, false, false, true, false},
+      {{true, true, true, true}, false, false, false, false},
+  };
+  for (const Row& row : rows) {
+    EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers).v, row.forward ? 0.5 : 0.0);
+    EXPECT_EQ(whisker_reflex({-0.5, 0.0}, row.whiskers).v, row.backward ? -0.5 : 0.0);
+    EXPECT_EQ(whisker_reflex({0.0, 0.5}, row.whiskers).w, row.left ? 0.5 : 0.0);
+    EXPECT_EQ(whisker_reflex({0.0, -0.5}, row.whiskers).w, row.right ? -0.5 : 0.0);
+  }
+}
+
+TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{1.0, 1.0};
+  EXPECT_EQ(control.decide(inputs, milliseconds(0)).twist, (Twist2{0.0, 0.0}));
+  EXPECT_NEAR(control.decide(inputs, milliseconds(20)).twist.v, 0.7 * 0.02, 1e-12);
+  EXPECT_NEAR(control.decide(inputs, milliseconds(40)).twist.w, 1.5 * 0.04, 1e-12);
+  EXPECT_EQ(control.status().limit, Limit::kAcceleration);
+  for (int ms = 60; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  EXPECT_EQ(control.status().current, (Twist2{1.0, 1.0}));
+  inputs.navigation = Twist2{0.5, 1.0};
+  EXPECT_NEAR(control.decide(inputs, milliseconds(3000)).twist.v, 1.0 - 1.4 * 0.02, 1e-12);
+  inputs.navigation = Twist2{0.0, 0.0};
+  EXPECT_EQ(control.decide(inputs, milliseconds(3001)).twist, (Twist2{0.0, 0.0}));
+}
+
+TEST(MovementControl, ReversesThroughZero) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{0.5, 0.0};
+  int ms = 0;
+  for (; ms < 2000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.navigation = Twist2{-0.3, 0.0};
+  const double first = control.decide(inputs, milliseconds(ms)).twist.v;
+  EXPECT_LE(first, 0.0);
+  EXPECT_GE(first, -0.7 * 0.04);
+}
+
+TEST(MovementControl, StopRateIsKeptWhereOneIsSet) {
+  Parameters parameters;
+  parameters.linear.stop = 2.0;
+  MovementControl control(parameters);
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{1.0, 0.0};
+  for (int ms = 0; ms <= 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.navigation = Twist2{0.0, 0.0};
+  EXPECT_NEAR(control.decide(inputs, milliseconds(3020)).twist.v, 1.0 - 0.04, 1e-12);
+  // But not for what must not move at all.
+  inputs.enables.reset();
+  EXPECT_EQ(control.decide(inputs, milliseconds(3040)).twist.v, 0.0);
+}
+
+TEST(MovementControl, DecidesTheSameHoweverOftenItIsAsked) {
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{1.4, 0.7};
+  MovementControl often;
+  MovementControl rarely;
+  for (int ms = 0; ms <= 1000; ++ms) {
+    often.decide(inputs, milliseconds(ms));
+    often.decide(inputs, milliseconds(ms));
+    if (ms % 20 == 0) rarely.decide(inputs, milliseconds(ms));
+  }
+  EXPECT_NEAR(often.status().current.v, rarely.status().current.v, 1e-9);
+  EXPECT_NEAR(often.status().current.w, rarely.status().current.w, 1e-9);
+}
+
+TEST(MovementControl, APauseGivesNoLeap) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{1.4, 0.0};
+  control.decide(inputs, milliseconds(0));
+  EXPECT_NEAR(control.decide(inputs, milliseconds(60000)).twist.v, 0.7 * 0.04, 1e-12);
+}
+
+TEST(MovementControl, ReportsAppendixA1) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{0.5, 0.0};
+  inputs.measured = Twist2{2.0, 0.0};
+  inputs.whiskers->back_left = true;
+  for (int ms = 0; ms <= 600; ms += 10) control.decide(inputs, milliseconds(ms));
+  const Status& status = control.status();
+  EXPECT_TRUE(status.enables.movement && status.enables.navigation);
+  EXPECT_EQ(status.max_human.linear, 1.0);
+  EXPECT_EQ(status.max_human.angular, 0.5);
+  EXPECT_EQ(status.max_normal.linear, 1.4);
+  EXPECT_EQ(status.max_normal.angular, 1.0);
+  EXPECT_EQ(status.threshold_linear.threshold, 0.5);
+  EXPECT_EQ(status.max_current.linear, 1.4);
+  EXPECT_EQ(status.measured.v, 2.0);
+  EXPECT_LT(status.error_linear.error, -1.0);
+  EXPECT_EQ(status.error_linear.lasting, milliseconds(600));
+  EXPECT_TRUE(status.whiskers.back_left);
+  EXPECT_TRUE(status.base_connected);
+  EXPECT_TRUE(status.ok);
+  EXPECT_EQ(status.source, Source::kNavigation);
+  inputs.measured.reset();
+  control.decide(inputs, milliseconds(620));
+  EXPECT_FALSE(control.status().base_connected);
+  EXPECT_FALSE(control.status().ok);
+}
+
+TEST(MovementControl, CountsNonsense) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.manual = Twist2{0.0, std::numeric_limits<double>::infinity()};
+  control.decide(inputs, milliseconds(0));
+  control.decide(inputs, milliseconds(20));
+  EXPECT_EQ(control.rejected(), 2U);
+}
+
+// Whatever comes in: what goes out is finite, within the limit in force plus what slowing down
+// still needs, never against a whisker, and zero without an enabled source.
+TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
+  Random random(3);
+  const auto chance = [&random](std::uint64_t n) { return random.below(n) == 0; };
+  const auto twist = [&]() -> std::optional<Twist2> {
+    if (chance(3)) return std::nullopt;
+    if (chance(30)) return Twist2{kNan, 1.0};
+    return Twist2{random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
+  };
+  for (int run = 0; run < 200; ++run) {
+    MovementControl control;
+    Time now{};
+    double last = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      Inputs inputs = all_well();
+      inputs.enables = Enables{!chance(5), chance(2), chance(2), chance(2), random.uniform()};
+      if (chance(20)) inputs.enables.reset();
+      inputs.manual = twist();
+      inputs.interaction = twist();
+      inputs.navigation = twist();
+      if (chance(4)) inputs.whiskers = Whiskers{chance(2), chance(2), chance(2), chance(2)};
+      if (chance(20)) inputs.whiskers.reset();
+      inputs.situation = static_cast<Situation>(random.below(3));
+      inputs.localization = static_cast<Localization>(random.below(3));
+      now += milliseconds(random.below(50));
+      const Decision decision = control.decide(inputs, now);
+      const Twist2& out = decision.twist;
+      ASSERT_TRUE(out.finite());
+      const double bound = control.status().max_current.linear;
+      ASSERT_LE(std::abs(out.v), std::max(bound, std::abs(last)) + 1e-9);
+      const Enables enables = inputs.enables.value_or(Enables{});
+      const bool any = (enables.manual && inputs.manual) ||
+                       (enables.interaction && inputs.interaction) ||
+                       (enables.navigation && inputs.navigation);
+      if (!enables.movement || !any || !inputs.whiskers) {
+        ASSERT_EQ(out, Twist2{});
+      }
+      if (inputs.whiskers) {
+        ASSERT_EQ(whisker_reflex(out, *inputs.whiskers), out);
+      }
+      last = out.v;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace usher::movement_control
