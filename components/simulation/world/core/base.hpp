@@ -1,0 +1,63 @@
+#pragma once
+
+#include "foundation/geometry/pose2.hpp"
+
+namespace usher::world {
+
+using geometry::Point2;
+using geometry::Pose2;
+using geometry::Twist2;
+
+/// Every model of the world advances by exactly this [s].
+inline constexpr double kStep = 0.01;
+
+/// Where the robot really is: nothing on the robot may read it, only the simulator and its judges.
+struct BaseTruth {
+  Pose2 pose;               ///< in world, of base_footprint: the floor below the middle of the axle
+  Twist2 twist;             ///< [m/s], [rad/s]
+  double pitch = 0.0;       ///< [rad] positive leans forward; 0 for bases that do not lean
+  double pitch_rate = 0.0;  ///< [rad/s]
+};
+
+/// What the base's own sensors say.
+struct BaseReadings {
+  double distance = 0.0;         ///< [m] forward travel by the wheel encoders since start, signed
+  double yaw = 0.0;              ///< [rad] turned by the wheel encoders since start, not wrapped
+  Twist2 twist;                  ///< from the encoders
+  double pitch = 0.0;            ///< [rad] positive leans forward
+  double pitch_rate = 0.0;       ///< [rad/s]
+  double battery_voltage = 0.0;  ///< [V]
+  bool motors_on = true;         ///< false from an emergency stop until the base stands again
+  bool emergency = false;        ///< latched from emergency_stop() to reset()
+};
+
+/// A mobile base: takes velocity commands, moves in the world, reports what its encoders measure.
+/// Deterministic for its seed. A command that is not repeated within the base's time-out is taken
+/// as zero.
+class Base {
+ public:
+  virtual ~Base() = default;
+
+  /// Puts the base somewhere, standing still; the encoders keep their counts.
+  virtual void place(const Pose2& pose) = 0;
+  /// The wanted twist; values that are not finite are ignored.
+  virtual void command(const Twist2& twist) = 0;
+  /// Motors off, latched: commands are ignored until reset().
+  virtual void emergency_stop() = 0;
+  /// Clears the latch; the base obeys again once it stands still and upright.
+  virtual void reset() = 0;
+  /// Advances by kStep.
+  virtual void step() = 0;
+  /// Something solid stopped the base at `pose`: the speed is lost, the wheels slip (encoders keep
+  /// counting).
+  virtual void obstruct(const Pose2& pose) = 0;
+
+  const BaseTruth& truth() const { return truth_; }
+  const BaseReadings& readings() const { return readings_; }
+
+ protected:
+  BaseTruth truth_;
+  BaseReadings readings_;
+};
+
+}  // namespace usher::world
