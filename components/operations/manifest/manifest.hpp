@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+#include "operations/manifest/tree.hpp"
+#include "runtime/parameters/parameter_file.hpp"
+
+namespace usher::operations {
+
+/// What the loss of a component means to the supervisor.
+enum class Criticality { kStop, kDegrade, kNotify };
+enum class RestartPolicy { kAlways, kOnFailure, kNever };
+
+/// One component of a deployment.
+struct ManifestComponent {
+  std::string name;  ///< unique; also the name of its DDS participant
+  std::string type;  ///< folder and program: usher-<type>; the name unless given
+  std::string host;
+  Criticality criticality = Criticality::kStop;
+  RestartPolicy restart = RestartPolicy::kAlways;
+  int restart_budget = 10;         ///< starts within a minute before the launcher gives up
+  double heartbeat_timeout = 0.2;  ///< [s]
+  std::string group;               ///< components of one group share a process; empty = its own
+  std::vector<runtime::ParameterValue> parameters;
+  std::string origin;
+};
+
+struct ManifestHost {
+  std::string name;
+  std::vector<std::string> peers;  ///< addresses of the other hosts, where multicast does not reach
+  std::string origin;
+};
+
+/// What runs where. Read strictly: an unknown key, a missing host or a wrong type is an error with
+/// file and line.
+struct Manifest {
+  std::string path;
+  std::string name;        ///< of the deployment; the file's name unless given
+  std::string robot_file;  ///< config/robots/<robot>.yaml
+  std::string site_file;   ///< config/sites/<site>/site.yaml
+  std::uint32_t domain = 0;
+  std::uint64_t seed = 1;
+  std::vector<ManifestHost> hosts;
+  std::vector<ManifestComponent> components;
+
+  const ManifestComponent* component(const std::string& component_name) const;
+  const ManifestHost* host(const std::string& host_name) const;
+};
+
+/// Reads a manifest and what it extends. `config_directory` holds robots/ and sites/.
+Result<Manifest> read_manifest(const std::string& path, const std::string& config_directory);
+
+std::string to_string(Criticality criticality);
+
+}  // namespace usher::operations

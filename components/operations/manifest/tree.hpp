@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+
+namespace usher::operations {
+
+/// A YAML document whose every node knows where it was written, so that files can be laid over one
+/// another and errors still name the line that is wrong.
+struct Tree {
+  enum class Kind { kNull, kScalar, kList, kMap };
+
+  Kind kind = Kind::kNull;
+  std::string scalar;
+  std::vector<Tree> items;                            ///< of a list
+  std::vector<std::pair<std::string, Tree>> entries;  ///< of a map, in the order of the file
+  std::string origin;                                 ///< "deploy/demo.yaml:12"
+
+  const Tree* find(const std::string& key) const;
+  Tree* find(const std::string& key);
+  /// The node as YAML in flow style: `0.2 m`, `[1, 2]`, `{x: 1}`.
+  std::string yaml() const;
+};
+
+/// Fails with file and line on unreadable files, bad YAML, repeated keys, aliases, and on documents
+/// of more than 1 MB.
+Result<Tree> read_tree(const std::string& path);
+Result<Tree> parse_tree(const std::string& text, const std::string& where);
+
+/// `over` laid over `base`: maps are merged key by key, anything else is replaced; a null removes.
+Tree overlay(Tree base, const Tree& over);
+
+}  // namespace usher::operations

@@ -1,0 +1,229 @@
+#include "operations/manifest/wiring.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "idl/topics.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Contract;
+
+struct CatalogueEntry {
+  std::set<std::string> writers;
+  bool anybody = false;
+};
+
+/// Topics that the deployment's own tools write besides components.
+constexpr const char* kOperator = "operator";
+
+const std::map<std::string, CatalogueEntry>& catalogue() {
+  static const auto entries = [] {
+    std::map<std::string, CatalogueEntry> map;
+    std::apply(
+        [&map](const auto&... topic) {
+          const auto add = [&map](const auto& t) {
+            CatalogueEntry entry;
+            std::istringstream words{std::string(t.writers)};
+            for (std::string word; words >> word;) {
+              if (word == "*") entry.anybody = true;
+              entry.writers.insert(word);
+            }
+            map.emplace(std::string(t.name), std::move(entry));
+          };
+          (add(topic), ...);
+        },
+        topics::kAll);
+    return map;
+  }();
+  return entries;
+}
+
+/// A simulated variant counts as the component whose place it takes.
+std::string role(const std::string& type) {
+  constexpr std::string_view kSimulated = "_sim";
+  return type.ends_with(kSimulated) ? type.substr(0, type.size() - kSimulated.size()) : type;
+}
+
+struct Writer {
+  const ManifestComponent* component;
+  const Contract::OutputPort* port;
+};
+
+class Judge {
+ public:
+  Judge(const Manifest& manifest, const Contracts& contracts, std::vector<Finding>& findings)
+      : manifest_(manifest), contracts_(contracts), findings_(findings) {
+    for (const auto& component : manifest.components) {
+      const auto contract = contracts.find(component.type);
+      if (contract == contracts.end()) continue;
+      for (const auto& port : contract->second.outputs)
+        writers_[port.topic].push_back({&component, &port});
+    }
+  }
+
+  void run() {
+    char digest[20];
+    std::snprintf(digest, sizeof(digest), "%016llx",
+                  static_cast<unsigned long long>(USHER_IDL_DIGEST));
+    for (const auto& component : manifest_.components) {
+      const auto contract = contracts_.find(component.type);
+      if (contract == contracts_.end()) continue;
+      if (contract->second.idl_digest != digest) {
+        found(Verdict::kWrongIdl,
+              "the contract of '" + component.type + "' was made from IDL " +
+                  contract->second.idl_digest + ", this program from " + digest,
+              component);
+      }
+      for (const auto& port : contract->second.inputs) judge_input(component, port);
+    }
+    for (const auto& [topic, writers] : writers_) judge_topic(topic, writers);
+    judge_drive_chain();
+    judge_groups();
+  }
+
+ private:
+  void found(Verdict verdict, std::string text, const ManifestComponent& component) {
+    findings_.push_back({verdict, std::move(text), component.origin});
+  }
+
+  void judge_input(const ManifestComponent& reader, const Contract::InputPort& port) {
+    const auto writers = writers_.find(port.topic);
+    if (writers == writers_.end()) {
+      const auto entry = catalogue().find(port.topic);
+      const bool by_operator =
+          entry != catalogue().end() && entry->second.writers.contains(kOperator);
+      if (!port.optional && !by_operator) {
+        found(Verdict::kNoWriter,
+              "'" + reader.name + "' reads " + port.topic + ", and nobody writes it", reader);
+      }
+      return;
+    }
+    for (const auto& writer : writers->second) {
+      if (writer.port->type != port.type) {
+        found(Verdict::kTypeMismatch,
+              port.topic + " is written as " + writer.port->type + " by '" +
+                  writer.component->name + "' and read as " + port.type + " by '" + reader.name +
+                  "'",
+              reader);
+      }
+      if ((port.qos.reliable && !writer.port->qos.reliable) ||
+          (port.qos.latched && !writer.port->qos.latched)) {
+        found(Verdict::kQosMismatch,
+              "'" + reader.name + "' asks more of " + port.topic + " than '" +
+                  writer.component->name + "' offers",
+              reader);
+      }
+      // One lost or late sample must not make an input stale.
+      if (port.max_age > 0.0 && writer.port->rate_hz > 0.0 &&
+          port.max_age < 1.5 / writer.port->rate_hz) {
+        char text[256];
+        std::snprintf(text, sizeof(text),
+                      "'%s' accepts %s up to %.3g s old, but '%s' writes it at %.3g Hz only",
+                      reader.name.c_str(), port.topic.c_str(), port.max_age,
+                      writer.component->name.c_str(), writer.port->rate_hz);
+        found(Verdict::kRateTooLow, text, reader);
+      }
+    }
+  }
+
+  void judge_topic(const std::string& topic, const std::vector<Writer>& writers) {
+    const auto entry = catalogue().find(topic);
+    if (entry == catalogue().end()) {
+      found(Verdict::kTypeMismatch,
+            "'" + writers.front().component->name + "' writes " + topic +
+                ", which the catalogue does not know",
+            *writers.front().component);
+      return;
+    }
+    if (entry->second.anybody) return;
+    std::map<std::string, const ManifestComponent*> by_role;
+    for (const auto& writer : writers) {
+      const std::string type = role(writer.component->type);
+      if (!entry->second.writers.contains(type)) {
+        found(Verdict::kUnauthorizedWriter,
+              "'" + writer.component->name + "' (" + writer.component->type + ") may not write " +
+                  topic,
+              *writer.component);
+      }
+      const auto [other, first] = by_role.emplace(type, writer.component);
+      if (!first) {
+        found(Verdict::kTwoWriters,
+              topic + " is written by '" + other->second->name + "' and by '" +
+                  writer.component->name + "'",
+              *writer.component);
+      }
+    }
+  }
+
+  /// Whoever writes a command, a grant or the base's state decides over motion.
+  void judge_drive_chain() {
+    std::map<std::string, const ManifestComponent*> chain;
+    for (const auto* topic : {"drive/command", "drive/grant", "base/status", "movement/enable"}) {
+      const auto writers = writers_.find(topic);
+      if (writers == writers_.end()) continue;
+      for (const auto& writer : writers->second)
+        chain.emplace(writer.component->name, writer.component);
+    }
+    const ManifestComponent* first = nullptr;
+    for (const auto& [name, component] : chain) {
+      if (component->criticality != Criticality::kStop) {
+        found(Verdict::kUnsafePolicy,
+              "'" + name + "' belongs to the drive chain: its criticality must be stop, not " +
+                  to_string(component->criticality),
+              *component);
+      }
+      if (component->restart != RestartPolicy::kAlways) {
+        found(Verdict::kUnsafePolicy,
+              "'" + name + "' belongs to the drive chain: its restart must be always", *component);
+      }
+      if (component->heartbeat_timeout > 0.5) {
+        found(Verdict::kUnsafePolicy,
+              "'" + name +
+                  "' belongs to the drive chain: its heartbeat_timeout must be at most 0.5 s",
+              *component);
+      }
+      if (first == nullptr) first = component;
+      if (component->host != first->host) {
+        found(Verdict::kSplitDriveChain,
+              "the drive chain must live on one host: '" + first->name + "' is on " + first->host +
+                  ", '" + name + "' on " + component->host,
+              *component);
+      }
+    }
+  }
+
+  void judge_groups() {
+    std::map<std::string, const ManifestComponent*> groups;
+    for (const auto& component : manifest_.components) {
+      if (component.group.empty()) continue;
+      const auto [first, is_first] = groups.emplace(component.group, &component);
+      if (!is_first && first->second->host != component.host) {
+        found(Verdict::kSplitGroup,
+              "group '" + component.group + "' must live on one host: '" + first->second->name +
+                  "' is on " + first->second->host + ", '" + component.name + "' on " +
+                  component.host,
+              component);
+      }
+    }
+  }
+
+  const Manifest& manifest_;
+  const Contracts& contracts_;
+  std::vector<Finding>& findings_;
+  std::map<std::string, std::vector<Writer>> writers_;
+};
+
+}  // namespace
+
+void judge_wiring(const Manifest& manifest, const Contracts& contracts,
+                  std::vector<Finding>& findings) {
+  Judge(manifest, contracts, findings).run();
+}
+
+}  // namespace usher::operations
