@@ -113,6 +113,11 @@ class Input {
   const Message* latest() const { return message(port_->latest()); }
   /// The same, but null when it is older than the age that the input declared.
   const Message* fresh() const { return message(port_->fresh()); }
+  /// The newest sample, to keep beyond the handler without a copy; null before the first.
+  std::shared_ptr<const Message> share() const {
+    const auto* sample = port_->latest();
+    return sample ? std::static_pointer_cast<const Message>(sample->message) : nullptr;
+  }
   /// About the newest sample; null before the first.
   const SampleInfo* info() const {
     const auto* sample = port_->latest();

@@ -1,0 +1,271 @@
+#include "navigation/costmap/shell/component.hpp"
+
+#include <cmath>
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::costmap {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+
+constexpr auto kScanAge = milliseconds(300);
+constexpr auto kWhiskerAge = milliseconds(300);
+constexpr int kGlobalShare =
+    5;  // every fifth scan goes into the global costs, which planning reads once a second
+
+double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
+
+grid::OccupancyGrid viewed(const grid::Grid<std::uint8_t>& costs) {
+  grid::OccupancyGrid view(costs.geometry());
+  for (std::size_t i = 0; i < costs.size(); ++i) view[i] = kOccupancyOfCost[costs[i]];
+  return view;
+}
+
+}  // namespace
+
+CostmapComponent::CostmapComponent(runtime::Host& host)
+    : host_(host),
+      rejected_scans_(host.health().counter("scan: rejected")),
+      rejected_maps_(host.health().counter("map: rejected")),
+      transforms_(host) {
+  auto& parameters = host.parameters();
+  const auto corners = parameters.numbers(
+      "robot.footprint", "m", {-5, 5}, 6, 2 * Footprint::kMaxCorners, {},
+      "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
+    footprint_.emplace_back(corners[i], corners[i + 1]);
+
+  resolution_ =
+      parameters.number("resolution", "m", {0.01, 0.5}, 0.05, "Side of a cell of the local costs.");
+  local_size_ = parameters.number("local_size", "m", {2, 40}, 6.0,
+                                  "Side of the window that rolls with the robot.");
+  local_period_ = runtime::from_seconds(parameters.number(
+      "local_period", "s", {0.01, 1}, 0.03, "Shortest time between two local costs."));
+  static_in_local_ = parameters.flag("static_in_local", true,
+                                     "The static map fills what no sensor has seen in the window.");
+  settings_.inflation_radius =
+      parameters.number("inflation_radius", "m", {0.1, 3}, 0.6, "No cost beyond this distance.");
+  settings_.cost_scaling = parameters.number("cost_scaling", "-", {0, 100}, 6.0,
+                                             "How fast costs fall with distance, per meter.");
+  settings_.unseen =
+      parameters.flag("unknown_is_free", true, "Space that nobody has seen yet costs nothing.")
+          ? Inflation::Unseen::kFree
+          : Inflation::Unseen::kUnknown;
+  laser_settings_.name = "laser";
+  laser_settings_.max_obstacle_range = parameters.number("laser_obstacle_range", "m", {0.5, 30},
+                                                         8.0, "Farther laser echoes mark nothing.");
+  laser_settings_.max_raytrace_range =
+      parameters.number("laser_clear_range", "m", {0.5, 30}, 9.0, "The laser clears no farther.");
+  // The laser sees through glass that the map has.
+  laser_settings_.overrules_static_map = parameters.flag(
+      "laser_overrules_map", false,
+      "What the laser sees free hides the static map; false where the map has glass.");
+  laser_settings_.persistence =
+      parameters.number("persistence", "s", {0, 600}, 20.0,
+                        "Obstacles that are not seen again are forgotten; 0 = never.");
+  ultrasonic_settings_.name = "ultrasonic";
+  ultrasonic_settings_.max_obstacle_range = parameters.number(
+      "ultrasonic_obstacle_range", "m", {0.2, 6}, 2.5, "Farther ultrasonic echoes mark nothing.");
+  ultrasonic_settings_.max_raytrace_range = ultrasonic_settings_.max_obstacle_range;
+  ultrasonic_settings_.overrules_static_map = false;
+  ultrasonic_settings_.persistence = parameters.number("ultrasonic_persistence", "s", {0, 600}, 5.0,
+                                                       "The same for the ultrasonic sensors.");
+
+  local_.frame = frames::kOdom;
+  global_.frame = frames::kMap;
+  if (!footprint_.empty()) {  // empty while the component is only described, or refused for its
+                              // parameters
+    const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
+    local_.costs.emplace(make(true, {cells, cells, resolution_, 0.0, 0.0}));
+    add_layers(local_);
+  }
+
+  map_ =
+      host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
+  scan_ = host.input(
+      topics::kScanFiltered,
+      {.max_age = kScanAge, .on_loss = "publishes no local costs: the local planner stops"},
+      [this](const auto&, const auto&) { take_scan(scan_.share(), laser_beams_, &Map::laser); },
+      [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
+  ultrasonic_ = host.input(topics::kUltrasonicFiltered,
+                           {.max_age = milliseconds(500),
+                            .on_loss = "goes on without glass, degraded",
+                            .optional = true},
+                           [this](const auto&, const auto&) {
+                             take_scan(ultrasonic_.share(), ultrasonic_beams_, &Map::ultrasonic);
+                           });
+  whiskers_ =
+      host.input(topics::kWhiskers,
+                 {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
+                 [this](const auto& message, const auto&) { take_whiskers(message); });
+  request_ = host.input(topics::kCostmapRequest, {.optional = true},
+                        [this](const auto& request, const auto&) {
+                          if (request.id() == last_request_) return;
+                          last_request_ = request.id();
+                          if (local_.costs) local_.costs->forget();
+                          if (global_.costs) global_.costs->forget();
+                        });
+  local_costs_ = host.output(topics::kLocalCosts);
+  global_costs_ = host.output(topics::kGlobalCosts);
+  local_view_ = host.output(topics::kLocalCostmap);
+  global_view_ = host.output(topics::kGlobalCostmap);
+  global_timer_ =
+      host.timer("global costs", milliseconds(1000), [this](auto) { publish_global(); });
+  view_timer_ = host.timer("views", milliseconds(200), [this](auto) {
+    if (local_.costs && local_view_.reader_count() > 0) {
+      local_view_.publish(
+          wire::to_message(local_.newest, local_.frame, viewed(local_.costs->costs())));
+    }
+    report();
+  });
+}
+
+Costmap CostmapComponent::make(bool rolling, const grid::GridGeometry& window) {
+  CostmapConfig config = settings_;
+  config.window = window;
+  config.rolling = rolling;
+  config.footprint = footprint_;
+  auto made = Costmap::make(std::move(config));
+  if (!made) host_.fault("costmap: " + made.error());
+  return std::move(made).value();
+}
+
+void CostmapComponent::add_layers(Map& map) {
+  const auto add = [&](const ObstacleLayerConfig& config) {
+    const auto id = map.costs->add_obstacle_layer(config);
+    if (!id) host_.fault("layer " + config.name + ": " + id.error());
+    return *id;
+  };
+  map.laser = add(laser_settings_);
+  map.ultrasonic = add(ultrasonic_settings_);
+  ObstacleLayerConfig whiskers;
+  whiskers.name = "whiskers";
+  whiskers.footprint_clearing = false;
+  whiskers.overrules_static_map = false;
+  map.whiskers = add(whiskers);
+}
+
+void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
+  const auto map = wire::from_message(message);
+  if (!map) {
+    ++rejected_maps_;
+    host_.health().set(HealthState::kDegraded, "map refused: " + map.error());
+    return;
+  }
+  global_.costs.emplace(make(false, map->geometry()));
+  add_layers(global_);
+  for (Map* each : {&local_, &global_}) {
+    if (each == &local_ && !static_in_local_) continue;
+    if (const auto status = each->costs->set_static_map(*map); !status) {
+      host_.fault("map: " + status.error());
+    }
+  }
+  global_.static_known = true;
+  publish_global();
+}
+
+void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
+                                 Beams& beams, Costmap::LayerId Map::*layer) {
+  if (const auto status = wire::check(*scan); !status) {
+    ++rejected_scans_;
+    return;
+  }
+  if (beams.angle_min != scan->angle_min() || beams.increment != scan->angle_increment() ||
+      beams.directions.size() != scan->ranges().size()) {
+    beams = {scan->angle_min(), scan->angle_increment(),
+             beam_directions(scan->angle_min(), scan->angle_increment(), scan->ranges().size())};
+  }
+  const runtime::Time stamp = wire::from_message(scan->header().stamp());
+  const std::string frame = scan->header().frame_id();
+  transforms_.when_known(frames::kOdom, frame, stamp,
+                         [this, scan = std::move(scan), &beams, layer, stamp](const auto& pose) {
+                           place_scan(*scan, beams, layer, stamp, geometry::to_plane(pose));
+                         });
+}
+
+void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
+                                  Costmap::LayerId Map::*layer, runtime::Time stamp,
+                                  const geometry::Pose2& odom_T_sensor) {
+  const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
+  if (!odom_T_base) return;
+  if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
+  observe(local_, local_.*layer, odom_T_sensor, beams, scan);
+
+  const bool is_laser = layer == &Map::laser;
+  const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
+  if (map_T_odom && global_.costs && (!is_laser || ++global_share_ % kGlobalShare == 0)) {
+    if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
+    observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, scan);
+  }
+  if (is_laser && host_.now() - local_published_ >= local_period_) publish_local();
+}
+
+void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor,
+                               const Beams& beams, const sensor_msgs::msg::LaserScan& scan) {
+  const runtime::Time stamp = wire::from_message(scan.header().stamp());
+  const RangeObservation observation{sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
+  if (!map.costs->observe(layer, observation)) {
+    ++rejected_scans_;
+    return;
+  }
+  map.newest = std::max(map.newest, stamp);
+}
+
+void CostmapComponent::take_whiskers(const usher_msgs::msg::Whiskers& message) {
+  const runtime::Time stamp = wire::from_message(message.header().stamp());
+  const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
+  if (!odom_T_base) return;
+  double front = 0.0, back = 0.0, side = 0.0;  // the footprint's corners
+  for (const auto& corner : footprint_) {
+    front = std::max(front, corner.x());
+    back = std::min(back, corner.x());
+    side = std::max(side, std::abs(corner.y()));
+  }
+  std::vector<geometry::Point2> touched;
+  const auto touch = [&](bool pressed, double x, double y) {
+    if (pressed) touched.push_back(*odom_T_base * geometry::Point2(x, y));
+  };
+  touch(message.front_left(), front, side);
+  touch(message.front_right(), front, -side);
+  touch(message.back_left(), back, side);
+  touch(message.back_right(), back, -side);
+  if (!local_.costs->replace(local_.whiskers, touched, in_seconds(stamp))) ++rejected_scans_;
+}
+
+void CostmapComponent::publish_local() {
+  if (static_in_local_ && global_.static_known) {
+    if (const auto map_T_odom =
+            transforms_.lookup_planar(frames::kMap, frames::kOdom, local_.newest)) {
+      if (!local_.costs->set_static_transform(*map_T_odom)) ++rejected_maps_;
+    }
+  }
+  local_costs_.publish(wire::to_message(local_.newest, local_.frame,
+                                        local_.costs->update(in_seconds(local_.newest))));
+  local_published_ = host_.now();
+}
+
+void CostmapComponent::publish_global() {
+  if (!global_.costs) return;
+  const auto& costs = global_.costs->update(in_seconds(host_.now()));
+  global_costs_.publish(wire::to_message(host_.now(), global_.frame, costs));
+  if (global_view_.reader_count() > 0)
+    global_view_.publish(wire::to_message(host_.now(), global_.frame, viewed(costs)));
+}
+
+void CostmapComponent::report() {
+  if (!scan_.fresh()) {
+    host_.health().set(HealthState::kDegraded, "no scan");
+  } else if (!global_.static_known) {
+    host_.health().set(HealthState::kDegraded, "no map");
+  } else if (!transforms_.lookup(frames::kMap, frames::kBaseFootprint, local_.newest)) {
+    host_.health().set(HealthState::kDegraded, "robot not localized");
+  } else {
+    host_.health().set(HealthState::kOk);
+  }
+}
+
+}  // namespace usher::costmap

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "navigation/costmap/core/costmap.hpp"
+#include "runtime/api/host.hpp"
+#include "wire/transform_input.hpp"
+
+namespace usher::costmap {
+
+/// Keeps two costmaps from the same sensors: a window that rolls with the robot in odom, for the
+/// local planner, and the whole map in map, for the global one. Event-driven: a scan is in the
+/// local costs that leave in the same turn.
+class CostmapComponent final : public runtime::Component {
+ public:
+  explicit CostmapComponent(runtime::Host& host);
+
+ private:
+  /// One costmap with a layer for each sensor.
+  struct Map {
+    const char* frame = "";
+    std::optional<Costmap> costs;
+    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0;
+    bool static_known = false;
+    runtime::Time newest{};  ///< stamp of the newest observation
+  };
+  /// Beam directions of one scanner, computed when its angles change.
+  struct Beams {
+    float angle_min = 0.0F, increment = 0.0F;
+    std::vector<geometry::Point2> directions;
+  };
+
+  Costmap make(bool rolling, const grid::GridGeometry& window);
+  void add_layers(Map& map);
+  void take_map(const nav_msgs::msg::OccupancyGrid& message);
+  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan, Beams& beams,
+                 Costmap::LayerId Map::*layer);
+  void place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
+                  Costmap::LayerId Map::*layer, runtime::Time stamp,
+                  const geometry::Pose2& odom_T_sensor);
+  void take_whiskers(const usher_msgs::msg::Whiskers& message);
+  void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
+               const sensor_msgs::msg::LaserScan& scan);
+  void publish_local();
+  void publish_global();
+  void report();
+
+  runtime::Host& host_;
+  std::vector<geometry::Point2> footprint_;
+  CostmapConfig settings_;  ///< what both maps share
+  ObstacleLayerConfig laser_settings_, ultrasonic_settings_;
+  double local_size_, resolution_;
+  bool static_in_local_;
+  runtime::Duration local_period_;
+
+  std::uint64_t& rejected_scans_;
+  std::uint64_t& rejected_maps_;
+  Map local_, global_;
+  Beams laser_beams_, ultrasonic_beams_;
+  runtime::Time local_published_{};
+  std::uint64_t last_request_ = 0;
+  int global_share_ = 0;
+
+  wire::TransformInput transforms_;
+  runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
+  runtime::Input<sensor_msgs::msg::LaserScan> scan_;
+  runtime::Input<sensor_msgs::msg::LaserScan> ultrasonic_;
+  runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
+  runtime::Input<usher_msgs::msg::CostmapRequest> request_;
+  runtime::Output<usher_msgs::msg::Costmap> local_costs_;
+  runtime::Output<usher_msgs::msg::Costmap> global_costs_;
+  runtime::Output<nav_msgs::msg::OccupancyGrid> local_view_;
+  runtime::Output<nav_msgs::msg::OccupancyGrid> global_view_;
+  runtime::Timer global_timer_;
+  runtime::Timer view_timer_;
+};
+
+}  // namespace usher::costmap
