@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "foundation/cpu/cpu.hpp"
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/grid/grid.hpp"
+#include "foundation/result/result.hpp"
+#include "navigation/costmap/core/cells.hpp"
+#include "navigation/costmap/core/costs.hpp"
+#include "navigation/costmap/core/footprint.hpp"
+#include "navigation/costmap/core/inflation.hpp"
+#include "navigation/costmap/core/obstacle_layer.hpp"
+#include "navigation/costmap/core/static_layer.hpp"
+
+namespace usher::costmap {
+
+struct CostmapConfig {
+  /// A fixed window (rolling = false) lies where this says, usually over the whole map. A rolling
+  /// window takes width, height and resolution from it, is centred at the robot and moves by whole
+  /// cells of a raster anchored at its frame's origin. Resolution in [0.001, 10] m, at most 2^28
+  /// cells.
+  grid::GridGeometry window;
+  bool rolling = false;
+  std::vector<geometry::Point2> footprint;  ///< corners in the base frame [m], see Footprint::make
+  double inflation_radius = 0.55;  ///< [m] from the footprint's inscribed radius to 120 cells
+  double cost_scaling = 10.0;      ///< [1/m] see CostDecay
+  Inflation::Unseen unseen =
+      Inflation::Unseen::kFree;  ///< what a cell costs that no layer has seen
+  int occupied_from = 65;        ///< [%] occupancy of the static map that is an obstacle
+  cpu::Simd simd = cpu::best_simd();
+};
+
+/// A layered costmap (MARVIN thesis 5.2): a static map, one obstacle layer per sensor, combined
+/// cell by cell, inflated.
+///
+/// Per cell: the static map counts where no layer has seen anything; where layers have, the maximum
+/// over them (occupied > free > unseen). Layers with overrules_static_map = false join by maximum
+/// after that. Then inflation.
+///
+/// One cycle: move_to(), observe() for the scans that came, update(). update() redoes what changed
+/// since the last call and always gives what a fresh computation would give. No allocation after
+/// the first cycle.
+class Costmap {
+ public:
+  using LayerId = std::size_t;
+
+  /// An error names the first value of the config that cannot be.
+  static Result<Costmap> make(CostmapConfig config);
+
+  /// An empty layer for one sensor. An error names the value that cannot be.
+  Result<LayerId> add_obstacle_layer(ObstacleLayerConfig config);
+
+  /// The map in its own frame. Without set_static_transform the costmap's frame is the map's frame.
+  Status set_static_map(const grid::OccupancyGrid& map);
+  /// For example map_T_odom. A changed transform samples the whole window anew.
+  Status set_static_transform(const geometry::Pose2& map_T_window);
+
+  /// The robot's pose in the costmap's frame: moves a rolling window, places the footprint. A pose
+  /// that is not finite or farther than 1e5 m is refused and changes nothing.
+  Status move_to(const geometry::Pose2& base);
+
+  /// Marks and clears the layer's cells by one scan. An error says why the whole scan was refused.
+  Status observe(LayerId layer, const RangeObservation& observation);
+  /// The whisker layer's rule: forgets the layer and marks the given points (footprint corners
+  /// whose whisker is triggered), in the costmap's frame. Such a layer wants footprint_clearing =
+  /// false.
+  Status replace(LayerId layer, std::span<const geometry::Point2> points, double stamp);
+  /// Forgets all that the sensors saw (a recovery).
+  void forget();
+
+  /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
+  /// observations' stamps; only persistence depends on it. The reference stays valid as long as the
+  /// costmap; its content until the next call.
+  const grid::Grid<std::uint8_t>& update(double now);
+
+  const grid::Grid<std::uint8_t>& costs() const { return master_; }
+  /// Cells that the last update wrote: all when the window moved; the others kept their value.
+  const CellRect& changed() const { return changed_; }
+  /// The last update moved the window.
+  bool moved() const { return moved_; }
+  /// Makes the next update compute everything anew.
+  void invalidate();
+
+  /// Cost at a point of the costmap's frame; nothing outside of the window (or for NaN).
+  std::optional<std::uint8_t> cost_at(const geometry::Point2& point) const;
+  /// What lies under the footprint at a pose in the costmap's frame.
+  FootprintReading footprint_at(const geometry::Pose2& base) const {
+    return footprint_reading(master_, footprint_, base);
+  }
+
+  const Footprint& footprint() const { return footprint_; }
+  const Raster& raster() const { return raster_; }
+  std::size_t layer_count() const { return layers_.size(); }
+  const ObstacleLayer& layer(LayerId id) const { return layers_[id]; }
+
+ private:
+  Costmap(CostmapConfig config, Footprint footprint);
+  void touch(const CellRect& cells) { dirty_ = dirty_.united(cells); }
+  void clear_footprint();
+  void combine_row(int y, int x0, int x1);
+
+  CostmapConfig config_;
+  Footprint footprint_;
+  Raster raster_;
+  StaticLayer static_layer_;
+  geometry::Pose2 map_T_window_;
+  grid::Grid<std::uint8_t> static_states_;
+  CellRect static_dirty_;
+  std::vector<ObstacleLayer> layers_;
+  Inflation inflation_;
+  grid::Grid<std::uint8_t> master_;
+  std::optional<geometry::Pose2> base_;
+  CellRect dirty_;
+  CellRect changed_;
+  bool moved_ = false;
+  bool moving_ = false;  // the window moved since the last update
+};
+
+}  // namespace usher::costmap

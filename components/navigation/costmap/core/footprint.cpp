@@ -1,0 +1,182 @@
+#include "navigation/costmap/core/footprint.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "navigation/costmap/core/costs.hpp"
+
+namespace usher::costmap {
+
+using geometry::Point2;
+
+namespace {
+
+constexpr double kFarthestCorner = 100.0;  // [m]
+constexpr double kSmallestArea = 1e-6;     // [m2]
+
+double signed_area(const std::vector<Point2>& corners) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Point2& a = corners[i];
+    const Point2& b = corners[(i + 1) % corners.size()];
+    twice += a.x() * b.y() - b.x() * a.y();
+  }
+  return 0.5 * twice;
+}
+
+double distance_from_origin_to_edge(const Point2& a, const Point2& b) {
+  const Point2 along = b - a;
+  const double squared = along.squaredNorm();
+  const double t = squared > 0.0 ? std::clamp(-a.dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (a + t * along).norm();
+}
+
+bool holds_origin(const std::vector<Point2>& corners) {
+  bool inside = false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Point2& a = corners[i];
+    const Point2& b = corners[(i + 1) % corners.size()];
+    if ((a.y() <= 0.0) == (b.y() <= 0.0)) continue;
+    if (a.x() - a.y() * (b.x() - a.x()) / (b.y() - a.y()) > 0.0) inside = !inside;
+  }
+  return inside;
+}
+
+int clamped_floor(double value, int low, int high) {
+  return static_cast<int>(
+      std::floor(std::clamp(value, static_cast<double>(low), static_cast<double>(high))));
+}
+
+}  // namespace
+
+Result<Footprint> Footprint::make(std::vector<Point2> corners) {
+  if (corners.size() < 3 || corners.size() > kMaxCorners) {
+    return Error{"footprint must have 3 to " + std::to_string(kMaxCorners) + " corners, got " +
+                 std::to_string(corners.size())};
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!(corners[i].cwiseAbs().maxCoeff() <= kFarthestCorner) || !corners[i].allFinite()) {
+      return Error{"footprint corner " + std::to_string(i) +
+                   " must be finite and within 100 m, got (" + std::to_string(corners[i].x()) +
+                   ", " + std::to_string(corners[i].y()) + ") m"};
+    }
+  }
+  const double area = std::abs(signed_area(corners));
+  if (area < kSmallestArea) {
+    return Error{"footprint must enclose an area, got " + std::to_string(area) + " m2"};
+  }
+  return Footprint(std::move(corners));
+}
+
+Footprint::Footprint(std::vector<Point2> corners) : corners_(std::move(corners)) {
+  inscribed_radius_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Point2& next = corners_[(i + 1) % corners_.size()];
+    inscribed_radius_ =
+        std::min(inscribed_radius_, distance_from_origin_to_edge(corners_[i], next));
+    circumscribed_radius_ = std::max(circumscribed_radius_, corners_[i].norm());
+  }
+  if (!holds_origin(corners_)) inscribed_radius_ = 0.0;
+}
+
+PolygonRaster::PolygonRaster(const Footprint& footprint, const geometry::Pose2& pose,
+                             const grid::GridGeometry& geometry)
+    : corners_(footprint.corners().size()), width_(geometry.width) {
+  const double c = std::cos(pose.yaw);
+  const double s = std::sin(pose.yaw);
+  double low_x = std::numeric_limits<double>::infinity(), low_y = low_x, high_x = -low_x,
+         high_y = -low_x;
+  for (std::size_t i = 0; i < corners_; ++i) {
+    const Point2& corner = footprint.corners()[i];
+    x_[i] = (pose.x + c * corner.x() - s * corner.y() - geometry.origin_x) / geometry.resolution;
+    y_[i] = (pose.y + s * corner.x() + c * corner.y() - geometry.origin_y) / geometry.resolution;
+    low_x = std::min(low_x, x_[i]), high_x = std::max(high_x, x_[i]);
+    low_y = std::min(low_y, y_[i]), high_y = std::max(high_y, y_[i]);
+  }
+  x_[corners_] = x_[0];
+  y_[corners_] = y_[0];
+  leaves_grid_ =
+      !(low_x >= 0.0 && low_y >= 0.0 && high_x < geometry.width && high_y < geometry.height);
+  const bool meets_grid =
+      high_x >= 0.0 && high_y >= 0.0 && low_x < geometry.width && low_y < geometry.height;
+  if (meets_grid) {
+    first_row_ = clamped_floor(low_y, 0, geometry.height - 1);
+    end_row_ = clamped_floor(high_y, 0, geometry.height - 1) + 1;
+  }
+}
+
+// A cell that no edge touches lies wholly inside or wholly outside, so its centre decides: the runs
+// are what the edges cover within the row and what lies between crossings of the row's middle line.
+std::size_t PolygonRaster::row_spans(int y, std::array<CellSpan, kMaxSpans>& spans) const {
+  const double bottom = y;
+  const double top = bottom + 1.0;
+  const double middle = bottom + 0.5;
+  std::array<double, Footprint::kMaxCorners> crossings;
+  std::size_t crossing_count = 0;
+  std::size_t count = 0;
+  const auto add = [&](int first, int last) {
+    first = std::max(first, 0);
+    last = std::min(last, width_ - 1);
+    if (first > last) return;
+    std::size_t at = count++;
+    for (; at > 0 && spans[at - 1].x0 > first; --at) spans[at] = spans[at - 1];
+    spans[at] = {y, first, last + 1};
+  };
+  for (std::size_t i = 0; i < corners_; ++i) {
+    const bool rises = y_[i] <= y_[i + 1];
+    const std::size_t low = rises ? i : i + 1;
+    const std::size_t high = rises ? i + 1 : i;
+    if (y_[high] < bottom || y_[low] >= top) continue;
+    const double height = y_[high] - y_[low];
+    const double slope = height > 0.0 ? (x_[high] - x_[low]) / height : 0.0;
+    const double enter = y_[low] < bottom ? x_[low] + (bottom - y_[low]) * slope : x_[low];
+    const double leave = y_[high] > top ? x_[low] + (top - y_[low]) * slope : x_[high];
+    add(clamped_floor(std::min(enter, leave), -1, width_),
+        clamped_floor(std::max(enter, leave), -1, width_));
+    if (y_[low] <= middle && y_[high] > middle) {
+      const double crossing = x_[low] + (middle - y_[low]) * slope;
+      std::size_t at = crossing_count++;
+      for (; at > 0 && crossings[at - 1] > crossing; --at) crossings[at] = crossings[at - 1];
+      crossings[at] = crossing;
+    }
+  }
+  for (std::size_t i = 0; i + 1 < crossing_count; i += 2) {
+    add(clamped_floor(crossings[i] + 0.5, 0, width_),
+        clamped_floor(crossings[i + 1] - 0.5, -1, width_));
+  }
+  std::size_t merged = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (merged > 0 && spans[i].x0 <= spans[merged - 1].x1) {
+      spans[merged - 1].x1 = std::max(spans[merged - 1].x1, spans[i].x1);
+    } else {
+      spans[merged++] = spans[i];
+    }
+  }
+  return merged;
+}
+
+FootprintReading footprint_reading(const grid::Grid<std::uint8_t>& costs,
+                                   const Footprint& footprint, const geometry::Pose2& pose) {
+  FootprintReading reading;
+  if (!pose.finite() || costs.empty()) {
+    reading.leaves_grid = true;
+    return reading;
+  }
+  const PolygonRaster raster(footprint, pose, costs.geometry());
+  reading.leaves_grid = raster.leaves_grid();
+  raster.for_each_span([&](const CellSpan& span) {
+    const std::uint8_t* row = costs.row(span.y);
+    for (int x = span.x0; x < span.x1; ++x) {
+      if (row[x] == kUnknownCost) {
+        reading.touches_unknown = true;
+      } else {
+        reading.highest_cost = std::max(reading.highest_cost, row[x]);
+      }
+    }
+  });
+  return reading;
+}
+
+}  // namespace usher::costmap

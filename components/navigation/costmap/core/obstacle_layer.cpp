@@ -1,0 +1,270 @@
+#include "navigation/costmap/core/obstacle_layer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace usher::costmap {
+
+namespace {
+
+constexpr double kFarthestStamp = 1e12;          // [s]
+constexpr double kLongestPersistence = 86400.0;  // [s]
+constexpr int kLongestRay = 32767;               // [cells]
+
+std::uint32_t milliseconds(double seconds) {
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(seconds * 1000.0)));
+}
+
+std::int32_t elapsed(std::uint32_t now, std::uint32_t then) {
+  return static_cast<std::int32_t>(now - then);
+}
+
+std::string meters(double value) { return std::to_string(value) + " m"; }
+
+}  // namespace
+
+std::vector<geometry::Point2> beam_directions(double angle_min, double angle_increment,
+                                              std::size_t count) {
+  std::vector<geometry::Point2> directions(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = angle_min + static_cast<double>(i) * angle_increment;
+    directions[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return directions;
+}
+
+Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution) {
+  const double farthest = std::min(kLongestRay * resolution, 0.1 * kFarthestCoordinate);
+  const auto check_range = [&](const char* what, double low, double high) -> Status {
+    if (low >= 0.0 && low <= high && high < farthest) return {};
+    return Error{"layer " + config.name + ": " + what + " range must be 0 <= min <= max < " +
+                 meters(farthest) + ", got " + meters(low) + " .. " + meters(high)};
+  };
+  if (Status s = check_range("obstacle", config.min_obstacle_range, config.max_obstacle_range);
+      !s.ok())
+    return s;
+  if (Status s = check_range("raytrace", config.min_raytrace_range, config.max_raytrace_range);
+      !s.ok())
+    return s;
+  if (!(config.persistence >= 0.0 && config.persistence <= kLongestPersistence)) {
+    return Error{"layer " + config.name + ": persistence must be in [0, 86400] s, got " +
+                 std::to_string(config.persistence) + " s"};
+  }
+  return {};
+}
+
+ObstacleLayer::ObstacleLayer(ObstacleLayerConfig config, const Raster& raster)
+    : config_(std::move(config)),
+      states_({raster.width, raster.height, raster.resolution, 0.0, 0.0}, kUnseen),
+      marked_at_(config_.persistence > 0.0 ? states_.size() : 0) {}
+
+void ObstacleLayer::shift(int dx, int dy) {
+  shift_cells(states_.values(), states_.width(), states_.height(), dx, dy, kUnseen);
+  if (!marked_at_.empty()) {
+    shift_cells(marked_at_, states_.width(), states_.height(), dx, dy, std::uint32_t{0});
+  }
+  seen_ = seen_.moved(-dx, -dy).within({0, 0, states_.width(), states_.height()});
+}
+
+Result<CellRect> ObstacleLayer::observe(const RangeObservation& observation, const Raster& raster) {
+  assert(raster.width == states_.width() && raster.height == states_.height());
+  const auto refuse = [&](const std::string& why) {
+    return Error{"layer " + config_.name + ": " + why};
+  };
+  if (observation.ranges.size() != observation.directions.size() ||
+      observation.ranges.size() > kMaxBeams) {
+    return refuse("a scan must have one range per beam and at most " + std::to_string(kMaxBeams) +
+                  ", got " + std::to_string(observation.ranges.size()) + " ranges for " +
+                  std::to_string(observation.directions.size()) + " beams");
+  }
+  const geometry::Pose2& sensor = observation.sensor;
+  if (!sensor.finite() || !reachable(sensor.x, sensor.y)) {
+    return refuse("the sensor's pose must be finite and within 1e5 m, got (" +
+                  std::to_string(sensor.x) + ", " + std::to_string(sensor.y) + ", " +
+                  std::to_string(sensor.yaw) + ")");
+  }
+  if (!(std::abs(observation.stamp) <= kFarthestStamp)) {
+    return refuse("the stamp must be finite, got " + std::to_string(observation.stamp));
+  }
+  CellRect touched = clear_and_collect(observation, raster);
+  const std::uint32_t time = milliseconds(observation.stamp);
+  for (const std::uint32_t index : marks_) mark(index, time);
+  seen_ = seen_.united(touched);
+  return touched;
+}
+
+// Distances in cells from here on. Neighbouring beams often end in the same cell; their ray is
+// traced once.
+CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
+                                          const Raster& raster) {
+  const double scale = raster.cells_per_meter;
+  const double c = std::cos(observation.sensor.yaw);
+  const double s = std::sin(observation.sensor.yaw);
+  const double x = (observation.sensor.x - raster.anchor_x) * scale;
+  const double y = (observation.sensor.y - raster.anchor_y) * scale;
+  const grid::Cell origin{floor_to_int(x) - raster.first_x, floor_to_int(y) - raster.first_y};
+  const bool clears = states_.geometry().contains(origin);
+  if (!clears) ++sensors_outside_;
+  const double max_ray = config_.max_raytrace_range;
+  const double min_ray = config_.min_raytrace_range * scale;
+  const float infinity = std::numeric_limits<float>::infinity();
+
+  marks_.clear();
+  marks_.reserve(observation.ranges.size());
+  CellRect touched;
+  grid::Cell previous{std::numeric_limits<int>::min(), 0};
+  bool previous_through = false;
+  for (std::size_t beam = 0; beam < observation.ranges.size(); ++beam) {
+    const float range = observation.ranges[beam];
+    const geometry::Point2& direction = observation.directions[beam];
+    const double dx = c * direction.x() - s * direction.y();
+    const double dy = s * direction.x() + c * direction.y();
+    if (!(range > 0.0F) || (range == infinity && !config_.infinity_clears) ||
+        !(std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001)) {
+      ++invalid_ranges_;
+      continue;
+    }
+    const auto cell_along = [&](double distance) -> grid::Cell {
+      return {floor_to_int(x + distance * scale * dx) - raster.first_x,
+              floor_to_int(y + distance * scale * dy) - raster.first_y};
+    };
+    const bool through = range > max_ray;
+    const grid::Cell end = cell_along(through ? max_ray : range);
+    if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
+      const grid::Cell hit = through ? cell_along(range) : end;
+      if (states_.geometry().contains(hit)) {
+        const auto index = static_cast<std::uint32_t>(states_.geometry().index(hit));
+        if (marks_.empty() || marks_.back() != index) {
+          marks_.push_back(index);
+          touched = touched.united({hit.x, hit.y, hit.x + 1, hit.y + 1});
+        }
+      }
+    }
+    if (!clears || (end == previous && through == previous_through)) continue;
+    previous = end;
+    previous_through = through;
+    int first = 0;
+    if (min_ray > 0.0) {
+      const double major = std::max(std::abs(end.x - origin.x), std::abs(end.y - origin.y));
+      const double length = std::hypot(end.x - origin.x, end.y - origin.y);
+      first = length > 0.0 ? static_cast<int>(std::ceil(min_ray * major / length)) : 1;
+    }
+    touched = touched.united(trace(origin, end, first, through));
+  }
+  return touched;
+}
+
+// Clears cell number first, first + 1, ... of the line from one cell to another
+// [bresenham1965line]: number i lies i cells along the longer axis and i * minor / major along the
+// other, rounded to nearest (ties towards `from`). In 32 fraction bits that is exact for lines up
+// to 32767 cells: what the rounded slope loses stays below 2^-17 of a cell, and no line comes
+// closer than 2^-16 to a tie without meeting it. The last cell is cleared only for a beam that went
+// through it. The start lies in the window; the line is cut where it leaves it.
+CellRect ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool through) {
+  const int width = states_.width();
+  const int height = states_.height();
+  const int dx = to.x - from.x;
+  const int dy = to.y - from.y;
+  const bool steep = std::abs(dy) > std::abs(dx);
+  const int major = steep ? std::abs(dy) : std::abs(dx);
+  const int minor = steep ? std::abs(dx) : std::abs(dy);
+  const int room_x = dx < 0 ? from.x : width - 1 - from.x;
+  const int room_y = dy < 0 ? from.y : height - 1 - from.y;
+  const std::int64_t half = (std::int64_t{1} << 31) - 1;
+  const std::int64_t slope = major > 0 ? (static_cast<std::int64_t>(minor) << 32) / major : 0;
+  std::int64_t count =
+      std::min<std::int64_t>(through ? major + 1 : major, (steep ? room_y : room_x) + 1);
+  const std::int64_t room = steep ? room_x : room_y;
+  if (minor > room) count = std::min(count, (((room + 1) << 32) - 1 - half) / slope + 1);
+  if (first >= count) return {};
+
+  const std::ptrdiff_t step_x = dx < 0 ? -1 : 1;
+  const std::ptrdiff_t step_y = dy < 0 ? -width : width;
+  const std::ptrdiff_t step = steep ? step_y : step_x;
+  const std::ptrdiff_t side = steep ? step_x : step_y;
+  std::uint8_t* cell = states_.data() + states_.geometry().index(from) + first * step;
+  std::int64_t position = half + first * slope;
+#pragma GCC unroll 4
+  for (std::int64_t left = count - first; left > 0; --left) {
+    cell[(position >> 32) * side] = kSeenFree;
+    cell += step;
+    position += slope;
+  }
+  const int end_x = std::clamp(to.x, 0, width - 1);
+  const int end_y = std::clamp(to.y, 0, height - 1);
+  return {std::min(from.x, end_x), std::min(from.y, end_y), std::max(from.x, end_x) + 1,
+          std::max(from.y, end_y) + 1};
+}
+
+void ObstacleLayer::mark(std::size_t index, std::uint32_t time) {
+  states_[index] = kSeenOccupied;
+  if (marked_at_.empty()) return;
+  marked_at_[index] = time;
+  const std::uint32_t end = time + milliseconds(config_.persistence);
+  if (!has_deadline_ || elapsed(deadline_, end) > 0) deadline_ = end;
+  has_deadline_ = true;
+}
+
+Result<CellRect> ObstacleLayer::replace(std::span<const geometry::Point2> points, double stamp,
+                                        const Raster& raster) {
+  if (!(std::abs(stamp) <= kFarthestStamp)) {
+    return Error{"layer " + config_.name + ": the stamp must be finite, got " +
+                 std::to_string(stamp)};
+  }
+  const CellRect wiped = forget();
+  for (const geometry::Point2& point : points) {
+    if (!reachable(point.x(), point.y())) {
+      ++invalid_ranges_;
+      continue;
+    }
+    const grid::Cell cell = raster.cell_at(point.x(), point.y());
+    if (!states_.geometry().contains(cell)) continue;
+    mark(states_.geometry().index(cell), milliseconds(stamp));
+    seen_ = seen_.united({cell.x, cell.y, cell.x + 1, cell.y + 1});
+  }
+  return wiped.united(seen_);
+}
+
+CellRect ObstacleLayer::expire(double now) {
+  assert(std::abs(now) <= kFarthestStamp);
+  if (!has_deadline_) return {};
+  const std::uint32_t time = milliseconds(now);
+  if (elapsed(time, deadline_) < 0) return {};
+  const auto persistence = static_cast<std::int32_t>(milliseconds(config_.persistence));
+  has_deadline_ = false;
+  CellRect touched;
+  for (int y = seen_.y0; y < seen_.y1; ++y) {
+    for (int x = seen_.x0; x < seen_.x1; ++x) {
+      const std::size_t index = states_.geometry().index({x, y});
+      if (states_[index] != kSeenOccupied) continue;
+      if (elapsed(time, marked_at_[index]) >= persistence) {
+        states_[index] = kUnseen;
+        touched = touched.united({x, y, x + 1, y + 1});
+      } else {
+        const std::uint32_t end = marked_at_[index] + static_cast<std::uint32_t>(persistence);
+        if (!has_deadline_ || elapsed(deadline_, end) > 0) deadline_ = end;
+        has_deadline_ = true;
+      }
+    }
+  }
+  return touched;
+}
+
+CellRect ObstacleLayer::forget() {
+  const CellRect wiped = seen_;
+  for (int y = wiped.y0; y < wiped.y1; ++y)
+    std::fill(states_.row(y) + wiped.x0, states_.row(y) + wiped.x1, kUnseen);
+  seen_ = {};
+  has_deadline_ = false;
+  return wiped;
+}
+
+void ObstacleLayer::set_free(int y, int x0, int x1) {
+  std::fill(states_.row(y) + x0, states_.row(y) + x1, kSeenFree);
+  seen_ = seen_.united({x0, y, x1, y + 1});
+}
+
+}  // namespace usher::costmap

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/grid/grid.hpp"
+#include "foundation/result/result.hpp"
+#include "navigation/costmap/core/cells.hpp"
+
+namespace usher::costmap {
+
+/// Unit vectors of a scanner's beams in its own frame, computed once per scanner. [x, y] per beam.
+std::vector<geometry::Point2> beam_directions(double angle_min, double angle_increment,
+                                              std::size_t count);
+
+/// One scan of one sensor.
+struct RangeObservation {
+  geometry::Pose2 sensor;  ///< in the costmap's frame, at the time of the scan
+  std::span<const geometry::Point2> directions;  ///< unit vectors in the sensor's frame
+  /// [m] One per direction. A finite positive range is an obstacle at that distance; +infinity is
+  /// no echo; everything else (NaN, -infinity, zero, negative) is no measurement. A driver that
+  /// reports "no echo" as the sensor's maximum range turns it into infinity, or keeps
+  /// max_obstacle_range below it.
+  std::span<const float> ranges;
+  double stamp = 0.0;  ///< [s] any steady origin, the one of update(); finite
+};
+
+struct ObstacleLayerConfig {
+  std::string name;
+  double min_obstacle_range = 0.0;  ///< [m] nearer echoes mark nothing
+  double max_obstacle_range = 2.5;  ///< [m] farther echoes mark nothing
+  double min_raytrace_range = 0.0;  ///< [m] cells nearer than this are not cleared
+  double max_raytrace_range = 3.0;  ///< [m] cells farther than this are not cleared
+  bool infinity_clears =
+      true;  ///< no echo clears up to max_raytrace_range, else it is no measurement
+  double persistence =
+      0.0;  ///< [s] an obstacle not seen again is forgotten after this time; 0: never
+  bool footprint_clearing = true;  ///< where the robot stands there is no obstacle
+  /// What this layer saw free hides an obstacle of the static map (thesis 5.2.1). Switch it off for
+  /// a sensor that sees through mapped obstacles, for example a laser behind mapped glass.
+  bool overrules_static_map = true;
+};
+
+/// Obstacles as one sensor sees them: three states per cell of the window. Each sensor has its own
+/// layer, so it clears nothing but its own marks (thesis 5.2.2).
+class ObstacleLayer {
+ public:
+  static constexpr std::size_t kMaxBeams = 16384;
+
+  /// An error names the first value of the config that cannot be. Ranges must also stay below 32767
+  /// cells.
+  static Status check(const ObstacleLayerConfig& config, double resolution);
+
+  /// The config must have passed check().
+  ObstacleLayer(ObstacleLayerConfig config, const Raster& raster);
+
+  /// Follows the window: cell (x, y) becomes what (x + dx, y + dy) was.
+  void shift(int dx, int dy);
+
+  /// First clears along all beams, then marks all echoes. Returns the rectangle of cells it may
+  /// have changed, or why it refused the scan as a whole (then nothing changed). Single invalid
+  /// ranges are counted and skipped.
+  Result<CellRect> observe(const RangeObservation& observation, const Raster& raster);
+
+  /// Forgets everything and marks the cells of the points (the whisker layer's rule). Points
+  /// outside of the window are left out, points that are not finite counted as invalid. Returns the
+  /// changed rectangle, or an error (nothing changed) when the stamp is not finite.
+  Result<CellRect> replace(std::span<const geometry::Point2> points, double stamp,
+                           const Raster& raster);
+
+  /// Forgets obstacles whose persistence is over at `now` (finite). Returns the changed rectangle.
+  CellRect expire(double now);
+  /// Forgets everything. Returns the changed rectangle.
+  CellRect forget();
+  /// Marks cells of one row as seen free.
+  void set_free(int y, int x0, int x1);
+
+  const ObstacleLayerConfig& config() const { return config_; }
+  const grid::Grid<std::uint8_t>& states() const { return states_; }
+  /// Cells outside of it are unseen.
+  const CellRect& seen() const { return seen_; }
+  std::uint64_t invalid_ranges() const { return invalid_ranges_; }
+  /// Scans that cleared nothing since the sensor was outside of the window.
+  std::uint64_t sensors_outside() const { return sensors_outside_; }
+
+ private:
+  CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
+  CellRect trace(grid::Cell from, grid::Cell to, int first, bool through);
+  void mark(std::size_t index, std::uint32_t time);
+
+  ObstacleLayerConfig config_;
+  grid::Grid<std::uint8_t> states_;
+  std::vector<std::uint32_t>
+      marked_at_;                     // [ms, wraps] of occupied cells; empty without persistence
+  std::vector<std::uint32_t> marks_;  // cells of this scan's echoes
+  CellRect seen_;
+  bool has_deadline_ = false;
+  std::uint32_t deadline_ = 0;  // [ms, wraps] no obstacle expires before
+  std::uint64_t invalid_ranges_ = 0;
+  std::uint64_t sensors_outside_ = 0;
+};
+
+}  // namespace usher::costmap

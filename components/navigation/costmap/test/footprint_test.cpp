@@ -1,0 +1,174 @@
+#include "navigation/costmap/core/footprint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "foundation/random/random.hpp"
+#include "navigation/costmap/core/costs.hpp"
+
+namespace usher::costmap {
+namespace {
+
+using geometry::Point2;
+using geometry::Pose2;
+
+Footprint square(double half) {
+  return Footprint::make({{half, half}, {-half, half}, {-half, -half}, {half, -half}}).value();
+}
+
+/// A polygon star-shaped around the origin: corners at rising angles, so it never crosses itself.
+std::vector<Point2> star(Random& random, std::size_t corners, double smallest) {
+  std::vector<Point2> points;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle = 2.0 * geometry::kPi * (static_cast<double>(i) + 0.8 * random.uniform()) /
+                         static_cast<double>(corners);
+    const double radius = random.uniform(smallest, 0.6);
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return points;
+}
+
+std::set<std::pair<int, int>> raster(const Footprint& footprint, const Pose2& pose,
+                                     const grid::GridGeometry& geometry) {
+  std::set<std::pair<int, int>> cells;
+  CellSpan last{-1, 0, 0};
+  PolygonRaster(footprint, pose, geometry).for_each_span([&](const CellSpan& span) {
+    EXPECT_TRUE(span.x0 >= 0 && span.x0 < span.x1 && span.x1 <= geometry.width);
+    EXPECT_TRUE(span.y > last.y || (span.y == last.y && span.x0 > last.x1))
+        << "runs rise and never touch";
+    last = span;
+    for (int x = span.x0; x < span.x1; ++x) EXPECT_TRUE(cells.emplace(x, span.y).second);
+  });
+  return cells;
+}
+
+/// Does the segment from a to b meet the square [low, high]? Each axis leaves an interval of the
+/// segment's parameter.
+bool meets_square(const Point2& a, const Point2& b, const Point2& low, const Point2& high) {
+  double enter = 0.0;
+  double leave = 1.0;
+  for (const int axis : {0, 1}) {
+    const double along = b[axis] - a[axis];
+    if (along == 0.0 && (a[axis] < low[axis] || a[axis] > high[axis])) return false;
+    if (along == 0.0) continue;
+    const double at_low = (low[axis] - a[axis]) / along;
+    const double at_high = (high[axis] - a[axis]) / along;
+    enter = std::max(enter, std::min(at_low, at_high));
+    leave = std::min(leave, std::max(at_low, at_high));
+  }
+  return enter <= leave;
+}
+
+/// The angle that the polygon turns around a point inside of it is a full circle, else nothing.
+bool winds_around(const std::vector<Point2>& polygon, const Point2& point) {
+  double turned = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point2 a = polygon[i] - point;
+    const Point2 b = polygon[(i + 1) % polygon.size()] - point;
+    turned += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  }
+  return std::abs(turned) > geometry::kPi;
+}
+
+bool touches(const Footprint& footprint, const Pose2& pose, const grid::GridGeometry& geometry,
+             grid::Cell cell) {
+  std::vector<Point2> polygon;
+  for (const Point2& corner : footprint.corners()) polygon.push_back(pose * corner);
+  const Point2 center = geometry.center(cell);
+  const Point2 low = center.array() - 0.5 * geometry.resolution;
+  const Point2 high = center.array() + 0.5 * geometry.resolution;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    if (meets_square(polygon[i], polygon[(i + 1) % polygon.size()], low, high)) return true;
+  }
+  return winds_around(polygon, center);
+}
+
+TEST(Footprint, KnowsItsRadii) {
+  EXPECT_DOUBLE_EQ(square(0.3).inscribed_radius(), 0.3);
+  EXPECT_DOUBLE_EQ(square(0.3).circumscribed_radius(), 0.3 * std::sqrt(2.0));
+  const Footprint beside = Footprint::make({{1.0, 0.0}, {2.0, 0.0}, {1.0, 1.0}}).value();
+  EXPECT_EQ(beside.inscribed_radius(), 0.0) << "the origin lies outside";
+}
+
+TEST(Footprint, RefusesWhatIsNoPolygon) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Footprint::make({}).error(), "footprint must have 3 to 64 corners, got 0");
+  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}}).ok());
+  EXPECT_FALSE(Footprint::make(std::vector<Point2>(65, Point2{1, 1})).ok());
+  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}, {0, nan}}).ok());
+  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}, {0, 101}}).ok());
+  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 1}, {2, 2}}).ok()) << "no area";
+}
+
+TEST(PolygonRaster, GivesExactlyTheCellsThatThePolygonTouches) {
+  Random random(7);
+  for (int round = 0; round < 1500; ++round) {
+    const grid::GridGeometry geometry{40, 36, 0.05, random.uniform(-2.0, 2.0),
+                                      random.uniform(-2.0, 2.0)};
+    const std::size_t corners = 3 + random.below(14);
+    const Result<Footprint> made =
+        Footprint::make(star(random, corners, round % 2 == 0 ? 0.05 : 0.5));
+    if (!made.ok()) continue;
+    const Footprint& footprint = made.value();
+    const Pose2 pose{geometry.origin_x + random.uniform(-0.5, 2.5),
+                     geometry.origin_y + random.uniform(-0.5, 2.3), random.uniform(-4.0, 4.0)};
+    const auto cells = raster(footprint, pose, geometry);
+    for (int y = 0; y < geometry.height; ++y) {
+      for (int x = 0; x < geometry.width; ++x) {
+        ASSERT_EQ(cells.contains({x, y}), touches(footprint, pose, geometry, {x, y}))
+            << "round " << round << " cell " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(PolygonRaster, TakesCornersEitherWayRound) {
+  Random random(8);
+  std::vector<Point2> corners = star(random, 9, 0.1);
+  const Footprint one = Footprint::make(corners).value();
+  std::reverse(corners.begin(), corners.end());
+  const Footprint other = Footprint::make(corners).value();
+  const grid::GridGeometry geometry{40, 40, 0.05, -1.0, -1.0};
+  EXPECT_EQ(raster(one, {0.1, 0.2, 0.3}, geometry), raster(other, {0.1, 0.2, 0.3}, geometry));
+}
+
+TEST(PolygonRaster, LeavesOutTheInsideOfAConcavity) {
+  // A horseshoe open to +x around the origin.
+  const Footprint horseshoe = Footprint::make({{0.5, 0.5},
+                                               {-0.5, 0.5},
+                                               {-0.5, -0.5},
+                                               {0.5, -0.5},
+                                               {0.5, -0.3},
+                                               {-0.3, -0.3},
+                                               {-0.3, 0.3},
+                                               {0.5, 0.3}})
+                                  .value();
+  grid::Grid<std::uint8_t> costs({40, 40, 0.05, -1.0, -1.0}, kFreeCost);
+  costs.at(costs.geometry().cell_at(0.1, 0.0)) = kLethalCost;
+  EXPECT_EQ(footprint_reading(costs, horseshoe, {0.01, 0.01, 0.0}).highest_cost, kFreeCost);
+  EXPECT_EQ(footprint_reading(costs, horseshoe, {0.41, 0.01, 0.0}).highest_cost, kLethalCost);
+}
+
+TEST(FootprintReading, ReportsCostUnknownAndOutside) {
+  grid::Grid<std::uint8_t> costs({40, 40, 0.05, 0.0, 0.0}, kFreeCost);
+  const Footprint footprint = square(0.2);
+  EXPECT_EQ(footprint_reading(costs, footprint, {1.0, 1.0, 0.3}),
+            (FootprintReading{0, false, false}));
+  costs.at(costs.geometry().cell_at(1.01, 1.01)) = 77;
+  costs.at(costs.geometry().cell_at(1.07, 1.01)) = kUnknownCost;
+  EXPECT_EQ(footprint_reading(costs, footprint, {1.0, 1.0, 0.3}),
+            (FootprintReading{77, true, false}));
+  EXPECT_EQ(footprint_reading(costs, footprint, {0.1, 1.0, 0.0}),
+            (FootprintReading{0, false, true}));
+  EXPECT_EQ(footprint_reading(costs, footprint, {1e9, -1e300, 0.0}),
+            (FootprintReading{0, false, true}));
+  EXPECT_EQ(footprint_reading(costs, footprint, {std::nan(""), 1.0, 0.0}),
+            (FootprintReading{0, false, true}));
+}
+
+}  // namespace
+}  // namespace usher::costmap
