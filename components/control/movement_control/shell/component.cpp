@@ -1,0 +1,191 @@
+#include "control/movement_control/shell/component.hpp"
+
+#include "wire/conversions.hpp"
+
+namespace usher::movement_control {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr auto kEnableAge = milliseconds(120);
+constexpr auto kCommandAge = milliseconds(250);
+constexpr auto kSensorAge = milliseconds(300);
+constexpr auto kBaseAge = milliseconds(150);
+constexpr auto kLocalizationAge = milliseconds(1000);
+
+float single(double value) { return static_cast<float>(value); }
+float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
+
+}  // namespace
+
+Parameters MovementControlComponent::read_parameters(runtime::Parameters& parameters) {
+  Parameters p;
+  const auto limit = [&](VelocityLimit& value, const std::string& name, const std::string& when) {
+    value.linear = parameters.number(name + "_v", "m/s", {0, 1.5}, value.linear,
+                                     "Greatest speed " + when + ".");
+    value.angular = parameters.number(name + "_w", "rad/s", {0, 2}, value.angular,
+                                      "Greatest turn rate " + when + ".");
+  };
+  limit(p.open, "open", "in open space (4 x 4 m, corridors of 2.5 m)");
+  limit(p.corridor, "corridor", "in corridors of 1.4 m and rooms of 3 x 3 m");
+  limit(p.confined, "confined", "in confined places");
+  limit(p.person_ahead, "person_ahead", "with a person ahead");
+  limit(p.localization_degraded, "localization_degraded", "while the pose is uncertain");
+  limit(p.localization_lost, "localization_lost", "of the navigation while the pose is lost");
+  limit(p.low_battery, "low_battery", "with a low battery");
+  p.reverse = parameters.number("reverse_v", "m/s", {0, 1}, p.reverse,
+                                "Greatest speed backwards, where nothing sees.");
+  const auto acceleration = [&](AccelerationLimit& value, const std::string& name,
+                                const std::string& unit) {
+    value.speed_up = parameters.number(name + "_speed_up", unit, {0, 10}, value.speed_up,
+                                       "Acceleration away from zero; 0 = at once.");
+    value.slow_down = parameters.number(name + "_slow_down", unit, {0, 10}, value.slow_down,
+                                        "Deceleration to a smaller speed; 0 = at once.");
+    value.stop = parameters.number(name + "_stop", unit, {0, 10}, value.stop,
+                                   "Deceleration to zero; 0 = at once.");
+  };
+  acceleration(p.linear, "linear", "m/s2");
+  acceleration(p.angular, "angular", "rad/s2");
+  p.whiskers_required =
+      parameters.flag("whiskers_required", p.whiskers_required, "Without whiskers nothing moves.");
+  return p;
+}
+
+MovementControlComponent::MovementControlComponent(runtime::Host& host)
+    : host_(host),
+      core_(read_parameters(host.parameters())),
+      rejected_(host.health().counter("cmd_vel: rejected")) {
+  auto& parameters = host.parameters();
+  free_space_.half_width =
+      parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  assume_person_ = parameters.flag("assume_person_ahead", true,
+                                   "Without a people detector, drive as if a person were ahead.");
+  low_battery_ = parameters.number("low_battery_percent", "%", {0, 100}, 15.0,
+                                   "Below this the battery is low.");
+
+  const auto wake = [this](const auto&, const auto&) { decide(); };
+  enable_ =
+      host.input(topics::kMovementEnable, {.max_age = kEnableAge, .on_loss = "commands zero"});
+  manual_ = host.input(
+      topics::kCmdVelManual,
+      {.max_age = kCommandAge, .on_loss = "passes to the next source, or zero", .optional = true},
+      wake);
+  interaction_ = host.input(
+      topics::kCmdVelInteraction,
+      {.max_age = kCommandAge, .on_loss = "passes to the next source, or zero", .optional = true},
+      wake);
+  navigation_ = host.input(topics::kCmdVelNavigation,
+                           {.max_age = kCommandAge, .on_loss = "commands zero"}, wake);
+  whiskers_ =
+      host.input(topics::kWhiskers,
+                 {.max_age = kSensorAge, .on_loss = "commands zero where whiskers are required"});
+  base_ = host.input(topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "commands zero"});
+  scan_ = host.input(
+      topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "drives as in a confined place"},
+      [this](const auto& scan, const auto&) { take_scan(scan); },
+      [this] { situation_.update(std::nullopt, host_.now().time_since_epoch()); });
+  localization_ = host.input(topics::kLocalizationStatus,
+                             {.max_age = kLocalizationAge, .on_loss = "drives as if lost"});
+  command_ = host.output(topics::kDriveCommand);
+  status_ = host.output(topics::kMovementStatus);
+  command_timer_ = host.timer("command", milliseconds(20), [this](auto) { decide(); });
+  status_timer_ = host.timer("status", milliseconds(100), [this](auto) { publish_status(); });
+}
+
+std::optional<geometry::Twist2> MovementControlComponent::velocity(
+    const runtime::Input<geometry_msgs::msg::TwistStamped>& source) {
+  const auto* message = source.fresh();
+  if (message == nullptr) return std::nullopt;
+  // Not checked here: the core turns what is not finite into zero and says who sent it.
+  return geometry::Twist2{message->twist().linear().x(), message->twist().angular().z()};
+}
+
+Inputs MovementControlComponent::gather() {
+  Inputs inputs;
+  if (const auto* enable = enable_.fresh()) {
+    inputs.enables = Enables{enable->movement(), enable->manual(), enable->interaction(),
+                             enable->navigation(), enable->speed_factor()};
+  }
+  inputs.manual = velocity(manual_);
+  inputs.interaction = velocity(interaction_);
+  inputs.navigation = velocity(navigation_);
+  if (const auto* w = whiskers_.fresh()) {
+    inputs.whiskers = Whiskers{w->front_left(), w->front_right(), w->back_left(), w->back_right()};
+  }
+  if (!assume_person_) inputs.person_ahead = false;
+  inputs.situation = situation_.situation();
+  if (const auto* localization = localization_.fresh()) {
+    inputs.localization =
+        static_cast<Localization>(std::min<std::uint8_t>(localization->state(), 2));
+  }
+  if (const auto* base = base_.fresh()) {
+    inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
+    if (base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING) {
+      inputs.measured = geometry::Twist2{base->v(), base->w()};
+    }
+  }
+  return inputs;
+}
+
+void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan) {
+  std::optional<FreeSpace> space;
+  if (wire::check(scan))
+    space = free_space(scan.ranges(), scan.angle_min(), scan.angle_increment(), free_space_);
+  situation_.update(space, host_.now().time_since_epoch());
+}
+
+void MovementControlComponent::decide() {
+  const Decision decision = core_.decide(gather(), host_.now().time_since_epoch());
+  rejected_ = core_.rejected();
+  const auto* enable = enable_.fresh();
+  usher_msgs::msg::DriveCommand command;
+  command.stamp(wire::to_message(host_.now()));
+  command.epoch(enable != nullptr ? enable->epoch() : 0);
+  command.number(++number_);
+  command.v(decision.twist.v);
+  command.w(decision.twist.w);
+  command_.publish(command);
+}
+
+void MovementControlComponent::publish_status() {
+  const auto& s = core_.status();
+  usher_msgs::msg::MovementStatus m;
+  m.header(wire::header(host_.now(), "base_footprint"));
+  m.enable_movement(s.enables.movement);
+  m.enable_manual(s.enables.manual);
+  m.enable_interaction(s.enables.interaction);
+  m.enable_navigation(s.enables.navigation);
+  m.velocity_linear_max_human(single(s.max_human.linear));
+  m.velocity_angular_max_human(single(s.max_human.angular));
+  m.velocity_linear_max_normal(single(s.max_normal.linear));
+  m.velocity_angular_max_normal(single(s.max_normal.angular));
+  m.velocity_threshold_linear(single(s.threshold_linear.threshold));
+  m.velocity_threshold_angular(single(s.threshold_angular.threshold));
+  m.velocity_threshold_linear_time(in_seconds(s.threshold_linear.patience));
+  m.velocity_threshold_angular_time(in_seconds(s.threshold_angular.patience));
+  m.velocity_current_linear_max(single(s.max_current.linear));
+  m.velocity_current_angular_max(single(s.max_current.angular));
+  m.velocity_current_linear(single(s.current.v));
+  m.velocity_current_angular(single(s.current.w));
+  m.velocity_measured_linear(single(s.measured.v));
+  m.velocity_measured_angular(single(s.measured.w));
+  m.velocity_error_linear(single(s.error_linear.error));
+  m.velocity_error_angular(single(s.error_angular.error));
+  m.velocity_error_linear_time(in_seconds(s.error_linear.lasting));
+  m.velocity_error_angular_time(in_seconds(s.error_angular.lasting));
+  m.front_left(s.whiskers.front_left);
+  m.front_right(s.whiskers.front_right);
+  m.back_left(s.whiskers.back_left);
+  m.back_right(s.whiskers.back_right);
+  m.segway_connected(s.base_connected);
+  m.ok(s.ok);
+  m.source(static_cast<std::uint8_t>(s.source));
+  m.situation(static_cast<std::uint8_t>(s.situation));
+  m.limit_reason(std::string(text(s.limit)));
+  status_.publish(m);
+  host_.health().set(s.ok ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
+                     s.ok ? "" : std::string(text(s.limit)));
+}
+
+}  // namespace usher::movement_control

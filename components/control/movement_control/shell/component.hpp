@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "control/movement_control/core/movement_control.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+
+namespace usher::movement_control {
+
+/// The one component that writes drive/command. Decides whenever the driving source speaks, and at
+/// 50 Hz.
+class MovementControlComponent final : public runtime::Component {
+ public:
+  explicit MovementControlComponent(runtime::Host& host);
+
+ private:
+  static Parameters read_parameters(runtime::Parameters& parameters);
+  std::optional<geometry::Twist2> velocity(
+      const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
+  Inputs gather();
+  void take_scan(const sensor_msgs::msg::LaserScan& scan);
+  void decide();
+  void publish_status();
+
+  runtime::Host& host_;
+  FreeSpaceParameters free_space_;
+  bool assume_person_;
+  double low_battery_;
+  MovementControl core_;
+  SituationFilter situation_;
+  std::uint64_t number_ = 0;
+  std::uint64_t& rejected_;
+
+  runtime::Input<usher_msgs::msg::MovementEnable> enable_;
+  runtime::Input<geometry_msgs::msg::TwistStamped> manual_;
+  runtime::Input<geometry_msgs::msg::TwistStamped> interaction_;
+  runtime::Input<geometry_msgs::msg::TwistStamped> navigation_;
+  runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
+  runtime::Input<usher_msgs::msg::BaseStatus> base_;
+  runtime::Input<sensor_msgs::msg::LaserScan> scan_;
+  runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
+  runtime::Output<usher_msgs::msg::DriveCommand> command_;
+  runtime::Output<usher_msgs::msg::MovementStatus> status_;
+  runtime::Timer command_timer_;
+  runtime::Timer status_timer_;
+};
+
+}  // namespace usher::movement_control

@@ -1,0 +1,287 @@
+#include "control/supervisor/shell/component.hpp"
+
+#include "wire/conversions.hpp"
+
+namespace usher::supervisor {
+
+namespace {
+
+using runtime::HealthState;
+using runtime::ParameterKind;
+using std::chrono::milliseconds;
+
+constexpr auto kPeriod = milliseconds(20);
+constexpr int kStatusEvery = 5;        // of those periods: 10 Hz
+constexpr int kDiagnosticsEvery = 50;  // 1 Hz
+constexpr auto kBaseAge = milliseconds(150);
+constexpr const char* kMemoryKey = "supervisor";
+constexpr int kMostComponents = 64;
+
+float single(double value) { return static_cast<float>(value); }
+float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
+Time time_from(double seconds) { return runtime::from_seconds(seconds); }
+
+Criticality criticality_from(const std::string& word) {
+  if (word == "degrade") return Criticality::kDegrade;
+  if (word == "notify") return Criticality::kNotify;
+  return Criticality::kStop;  // whatever else it says: the safe one
+}
+
+}  // namespace
+
+Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
+  auto& parameters = host.parameters();
+  Parameters p;
+  p.idl_digest = USHER_IDL_DIGEST;
+  const auto components = parameters.records(
+      "manifest.components",
+      {{"name", ParameterKind::kText, "-", {}, "Name in the manifest."},
+       {"type", ParameterKind::kText, "-", {}, "Its type."},
+       {"host", ParameterKind::kText, "-", {}, "Where it runs."},
+       {"criticality", ParameterKind::kText, "-", {}, "stop, degrade or notify."},
+       {"timeout", ParameterKind::kNumber, "s", {0.05, 60}, "Silence that counts as loss."}},
+      "Every component of the manifest, from the launcher.");
+  for (const auto& record : components) {
+    if (record.text("name") == host.name()) continue;  // who grants is alive
+    p.components.push_back({record.text("name"), criticality_from(record.text("criticality")),
+                            time_from(record.number("timeout"))});
+  }
+  p.names.movement = parameters.text("movement_name", p.names.movement,
+                                     "The component that may write drive/command.");
+  p.names.interaction = parameters.text("interaction_name", p.names.interaction,
+                                        "The component that poses the robot.");
+  p.names.power =
+      parameters.text("power_name", p.names.power, "The component that reads the power board.");
+  p.names.gui =
+      parameters.text("gui_name", p.names.gui, "The component with the visitor's screen.");
+  p.names.navigation =
+      parameters.text("navigation_name", p.names.navigation, "The component that takes goals.");
+  p.names.base = parameters.text("base_name", p.names.base, "The base driver.");
+  p.dwell = time_from(parameters.number("dwell", "s", {0.05, 5}, 0.25,
+                                        "Least time in Inactive between two behaviors."));
+  p.degraded_speed_factor =
+      parameters.number("degraded_speed_factor", "-", {0, 1}, p.degraded_speed_factor,
+                        "Factor on all speeds while something is degraded.");
+  p.movement_on_at_start =
+      parameters.flag("movement_on_at_start", p.movement_on_at_start,
+                      "Whether the robot may move without being told so first.");
+  p.emergency_stop_when_disobeying =
+      parameters.flag("emergency_stop_when_disobeying", p.emergency_stop_when_disobeying,
+                      "Switch the motors of a base off that does not do as it is told.");
+  p.response.response =
+      time_from(parameters.number("response_time", "s", {0.2, 10}, in_seconds(p.response.response),
+                                  "Within this time the base gets from any command to any other."));
+  p.response.linear.threshold =
+      parameters.number("linear_threshold", "m/s", {0.05, 2}, p.response.linear.threshold,
+                        "Velocity error above which the base disobeys.");
+  p.response.linear.patience = time_from(parameters.number("linear_patience", "s", {0.1, 10},
+                                                           in_seconds(p.response.linear.patience),
+                                                           "How long that error may last."));
+  p.response.angular.threshold =
+      parameters.number("angular_threshold", "rad/s", {0.05, 3}, p.response.angular.threshold,
+                        "Turn rate error above which the base disobeys.");
+  p.response.angular.patience = time_from(parameters.number("angular_patience", "s", {0.1, 10},
+                                                            in_seconds(p.response.angular.patience),
+                                                            "How long that error may last."));
+  return p;
+}
+
+/// An unreadable memory must not be taken for none: latched faults would be forgotten.
+Memory SupervisorComponent::remembered(runtime::Host& host) {
+  const auto bytes = host.kept(kMemoryKey);
+  if (!bytes || bytes->empty()) return {};
+  auto memory = memory_from_text(*bytes);
+  if (!memory) host.fault("what was kept over the restart cannot be read: " + memory.error());
+  return std::move(memory).value();
+}
+
+SupervisorComponent::SupervisorComponent(runtime::Host& host)
+    : host_(host),
+      grant_valid_for_(host.parameters().number("grant_valid_for", "s", {0.04, 0.12}, 0.12,
+                                                "Life of a grant without renewal.")),
+      core_(read_parameters(host), remembered(host)) {
+  heartbeat_ = host.input(
+      topics::kHeartbeat, {.depth = 4 * kMostComponents},
+      [this](const auto& message, const auto& info) {
+        core_.heartbeat(
+            {message.component_name(), info.writer, message.idl_digest(),
+             static_cast<Reported>(std::min<std::uint8_t>(message.state(), 3)), message.reason()},
+            now());
+      });
+  command_ = host.input(topics::kDriveCommand, {.optional = true},
+                        [this](const auto& message, const auto& info) {
+                          core_.drive_command(info.writer, {message.v(), message.w()}, now());
+                        });
+  base_ = host.input(
+      topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "withdraws the right to drive"},
+      [this](const auto& message, const auto&) {
+        core_.base({message.state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY,
+                    {message.v(), message.w()},
+                    message.epoch()},
+                   now());
+      });
+  navigation_ = host.input(
+      topics::kNavigateStatus, {.optional = true}, [this](const auto& message, const auto&) {
+        core_.navigation(message.id(),
+                         static_cast<NavigationState>(std::min<std::uint8_t>(message.state(), 6)));
+      });
+  request_ = host.input(topics::kSupervisorRequest, {.optional = true},
+                        [this](const auto& message, const auto&) { take_request(message); });
+  host.watch_writers(
+      std::string(topics::kDriveCommand.name), [this](const runtime::WriterInfo& writer) {
+        if (writer.alive) {
+          core_.writer_appeared({writer.guid, writer.participant, writer.host}, now());
+        } else {
+          core_.writer_gone(writer.guid);
+        }
+        step();
+      });
+  grant_ = host.output(topics::kDriveGrant);
+  enable_ = host.output(topics::kMovementEnable);
+  base_requests_ = host.output(topics::kBaseRequest);
+  status_ = host.output(topics::kSupervisorStatus);
+  diagnostics_ = host.output(topics::kDiagnostics);
+  timer_ = host.timer("step", kPeriod, [this](auto) {
+    step();
+    if (++status_share_ % kStatusEvery == 0) publish_status();
+    if (status_share_ % kDiagnosticsEvery == 0) publish_diagnostics(core_.status());
+  });
+}
+
+void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message) {
+  core_.request(
+      {message.id(), message.client(), static_cast<Command>(message.command()), message.goal()},
+      now());
+  step();
+  publish_status();
+}
+
+void SupervisorComponent::step() {
+  const Decision& decision = core_.step(now());
+  publish_grant(decision);
+  publish_enable(decision);
+  ask_base(decision);
+  keep_memory();
+  const bool fault = decision.state == State::kFault;
+  host_.health().set(fault ? HealthState::kDegraded : HealthState::kOk,
+                     fault ? std::string(decision.reason) : "");
+}
+
+void SupervisorComponent::publish_grant(const Decision& decision) {
+  usher_msgs::msg::DriveGrant message;
+  message.stamp(wire::to_message(host_.now()));
+  message.epoch(decision.grant.epoch);
+  message.granted(decision.grant.writer != drive::kNobody);
+  message.writer(decision.grant.writer);
+  message.valid_for(single(grant_valid_for_));
+  message.reason(std::string(decision.reason));
+  grant_.publish(message);
+}
+
+void SupervisorComponent::publish_enable(const Decision& decision) {
+  usher_msgs::msg::MovementEnable message;
+  message.header(wire::header(host_.now(), ""));
+  message.movement(decision.enables.movement);
+  message.manual(decision.enables.manual);
+  message.interaction(decision.enables.interaction);
+  message.navigation(decision.enables.navigation);
+  message.speed_factor(single(decision.speed_factor));
+  message.epoch(decision.grant.epoch);
+  enable_.publish(message);
+}
+
+void SupervisorComponent::ask_base(const Decision& decision) {
+  using namespace usher_msgs::msg::BaseRequest_Constants;
+  const std::uint8_t wanted = decision.emergency_stop ? COMMAND_EMERGENCY_STOP
+                              : decision.reset_base   ? COMMAND_RESET
+                                                      : COMMAND_NONE;
+  if (wanted != base_request_) ++base_request_id_;
+  base_request_ = wanted;
+  if (wanted == COMMAND_NONE) return;
+  usher_msgs::msg::BaseRequest message;
+  // Unique over restarts, so that a request after one is not taken for a repetition.
+  message.id(static_cast<std::uint64_t>(decision.grant.epoch) << 20 | base_request_id_);
+  message.client(host_.name());
+  message.command(wanted);
+  base_requests_.publish(message);
+}
+
+void SupervisorComponent::keep_memory() {
+  const std::string text = to_text(core_.memory());
+  if (text == kept_) return;
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()),
+                                            text.size());
+  if (const auto status = host_.keep(kMemoryKey, bytes); !status) {
+    host_.fault("cannot keep the epoch over a restart: " + status.error());
+  }
+  kept_ = text;
+}
+
+void SupervisorComponent::publish_status() {
+  const SupervisorStatus s = core_.status();
+  usher_msgs::msg::SupervisorStatus m;
+  m.header(wire::header(host_.now(), ""));
+  m.timeout_movement(in_seconds(s.timeout_movement));
+  m.timeout_interaction(in_seconds(s.timeout_interaction));
+  m.timeout_power(in_seconds(s.timeout_power));
+  m.process_rate(single(s.process_rate));
+  m.kinect_angle_default(single(s.camera_angle_default));
+  m.kinect_angle_interaction(single(s.camera_angle_interaction));
+  m.kinect_angle_navigation(single(s.camera_angle_navigation));
+  m.state(static_cast<std::uint8_t>(s.state));
+  m.current_goal(s.current_goal);
+  m.navigation_status(static_cast<std::uint8_t>(s.navigation));
+  m.ok_movement(s.ok_movement);
+  m.ok_interaction(s.ok_interaction);
+  m.ok_power(s.ok_power);
+  m.connected_movement(s.connected_movement);
+  m.connected_interaction(s.connected_interaction);
+  m.connected_power(s.connected_power);
+  m.connected_gui(s.connected_gui);
+  m.connected_navigation(s.connected_navigation);
+  m.enable_movement(s.enables.movement);
+  m.enable_manual(s.enables.manual);
+  m.enable_interaction(s.enables.interaction);
+  m.enable_navigation(s.enables.navigation);
+  m.granted(s.granted);
+  m.epoch(s.epoch);
+  m.reason(s.reason);
+  for (const auto& component : s.components) {
+    auto& entry = m.components().emplace_back();
+    entry.name(component.name);
+    entry.criticality(static_cast<std::uint8_t>(component.criticality));
+    entry.health(static_cast<std::uint8_t>(component.health));
+    entry.age(component.heard_at ? in_seconds(now() - *component.heard_at) : -1.0F);
+    entry.reason(component.reason);
+  }
+  for (const auto& fault : s.faults) {
+    auto& entry = m.faults().emplace_back();
+    entry.id(fault.id);
+    entry.stamp(wire::to_message(runtime::Time(fault.at)));
+    entry.component_name(fault.component);
+    entry.cause(std::string(text(fault.cause)) + (fault.detail.empty() ? "" : ": " + fault.detail));
+    entry.latched(fault.latched());
+    entry.active(fault.active);
+  }
+  m.last_request(s.last_request.id);
+  m.last_request_done(s.last_request.done);
+  m.last_request_reason(s.last_request.reason);
+  status_.publish(m);
+}
+
+void SupervisorComponent::publish_diagnostics(const SupervisorStatus& status) {
+  if (diagnostics_.reader_count() == 0) return;
+  diagnostic_msgs::msg::DiagnosticArray message;
+  message.header(wire::header(host_.now(), ""));
+  for (const auto& component : status.components) {
+    auto& entry = message.status().emplace_back();
+    const bool well = component.health == Health::kOk;
+    entry.level(static_cast<std::uint8_t>(well ? 0 : component.able() ? 1 : 2));
+    entry.name("usher: " + component.name);
+    entry.message(well ? "OK" : component.reason);
+    entry.hardware_id("usher");
+  }
+  diagnostics_.publish(message);
+}
+
+}  // namespace usher::supervisor

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "control/supervisor/core/supervisor.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+
+namespace usher::supervisor {
+
+/// Grants the right to drive, enables the sources of motion, watches everybody's heartbeats and who
+/// writes drive/command.
+class SupervisorComponent final : public runtime::Component {
+ public:
+  explicit SupervisorComponent(runtime::Host& host);
+
+ private:
+  static Parameters read_parameters(runtime::Host& host);
+  static Memory remembered(runtime::Host& host);
+  Time now() const { return host_.now().time_since_epoch(); }
+  void take_request(const usher_msgs::msg::SupervisorRequest& message);
+  void step();
+  void publish_grant(const Decision& decision);
+  void publish_enable(const Decision& decision);
+  void ask_base(const Decision& decision);
+  void publish_status();
+  void publish_diagnostics(const SupervisorStatus& status);
+  void keep_memory();
+
+  runtime::Host& host_;
+  double grant_valid_for_;
+  Supervisor core_;
+  std::string kept_;
+  std::uint64_t base_request_id_ = 0;
+  std::uint8_t base_request_ = 0;
+  int status_share_ = 0;
+
+  runtime::Input<usher_msgs::msg::Heartbeat> heartbeat_;
+  runtime::Input<usher_msgs::msg::DriveCommand> command_;
+  runtime::Input<usher_msgs::msg::BaseStatus> base_;
+  runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
+  runtime::Input<usher_msgs::msg::SupervisorRequest> request_;
+  runtime::Output<usher_msgs::msg::DriveGrant> grant_;
+  runtime::Output<usher_msgs::msg::MovementEnable> enable_;
+  runtime::Output<usher_msgs::msg::BaseRequest> base_requests_;
+  runtime::Output<usher_msgs::msg::SupervisorStatus> status_;
+  runtime::Output<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;
+  runtime::Timer timer_;
+};
+
+}  // namespace usher::supervisor
