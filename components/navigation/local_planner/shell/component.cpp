@@ -38,13 +38,16 @@ navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::
     if (!footprint) host.fault("robot.footprint: " + footprint.error());
     c.footprint = std::move(footprint).value();
   }
-  const auto stopping =
-      p.numbers("robot.stopping", "-", {0, 20}, 2, 40, {1.0, 1.48, 1.4, 2.08},
-                "Measured stopping distances: speed in m/s, distance in m, speed, distance, ...");
+  const auto speeds = p.numbers("robot.stopping.speeds", "m/s", {0, 5}, 1, 20, {1.0, 1.4},
+                                "Speeds at which the stopping distance was measured, rising.");
+  const auto distances = p.numbers("robot.stopping.distances", "m", {0, 20}, 1, 20, {1.48, 2.08},
+                                   "Measured stopping distances, one for each speed.");
   std::vector<kinematics::StoppingPoint> points;
-  for (std::size_t i = 0; i + 1 < stopping.size(); i += 2)
-    points.push_back({stopping[i], stopping[i + 1]});
+  for (std::size_t i = 0; i < std::min(speeds.size(), distances.size()); ++i) {
+    points.push_back({speeds[i], distances[i]});
+  }
   auto measured = kinematics::StoppingDistance::make(points);
+  if (speeds.size() != distances.size()) host.fault("robot.stopping: as many speeds as distances");
   if (!measured) host.fault("robot.stopping: " + measured.error());
   c.stopping = std::move(measured).value();
 
