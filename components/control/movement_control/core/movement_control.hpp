@@ -99,7 +99,7 @@ enum class Limit : std::uint8_t {
 std::string_view text(Limit limit);
 
 /// Appendix A.1 of the thesis, without its topic and frame names.
-struct Status {
+struct MovementStatus {
   Enables enables;
   VelocityLimit max_human;
   VelocityLimit max_normal;
@@ -141,7 +141,7 @@ class MovementControl {
   Decision decide(const Inputs& inputs, Time now);
 
   /// About the last decision.
-  const Status& status() const { return status_; }
+  const MovementStatus& status() const { return status_; }
 
   /// How often a source with the right to drive sent something that is not finite.
   std::uint64_t rejected() const { return rejected_; }
@@ -168,7 +168,7 @@ class MovementControl {
   geometry::Twist2 last_;
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;
-  Status status_;
+  MovementStatus status_;
 };
 
 }  // namespace usher::movement_control

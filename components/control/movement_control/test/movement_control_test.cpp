@@ -387,7 +387,7 @@ TEST(MovementControl, ReportsAppendixA1) {
   inputs.measured = Twist2{2.0, 0.0};
   inputs.whiskers->back_left = true;
   for (int ms = 0; ms <= 600; ms += 10) control.decide(inputs, milliseconds(ms));
-  const Status& status = control.status();
+  const MovementStatus& status = control.status();
   EXPECT_TRUE(status.enables.movement && status.enables.navigation);
   EXPECT_EQ(status.max_human.linear, 1.0);
   EXPECT_EQ(status.max_human.angular, 0.5);

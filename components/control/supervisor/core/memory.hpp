@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "control/supervisor/core/fault_log.hpp"
+#include "foundation/result/result.hpp"
+
+namespace usher::supervisor {
+
+/// What a supervisor must not forget when it is restarted: a lower epoch would be ignored by the
+/// base, and a restart must not clear what only an operator may clear.
+struct Memory {
+  std::uint64_t epoch = 0;     ///< the highest that was ever granted
+  std::vector<Fault> latched;  ///< active latched faults
+};
+
+/// One line for the epoch, one for each fault; tabs between the fields.
+std::string to_text(const Memory& memory);
+
+/// The inverse. Refuses anything else with the line and what was expected there.
+Result<Memory> memory_from_text(std::span<const std::uint8_t> bytes);
+
+}  // namespace usher::supervisor

@@ -1,0 +1,283 @@
+#include "control/supervisor/core/supervisor.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace usher::supervisor {
+
+namespace {
+
+/// Higher epochs are not believed: no robot makes so many decisions, and the next one must fit.
+constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
+
+/// A crash may have lost the last epochs that were granted; a restart begins safely above them.
+constexpr std::uint64_t kUnsavedEpochs = 1024;
+
+bool over(NavigationState state) {
+  return state == NavigationState::kSucceeded || state == NavigationState::kFailed ||
+         state == NavigationState::kCancelled;
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const Parameters& parameters, Memory memory)
+    : parameters_(parameters),
+      table_(parameters.components, parameters.idl_digest),
+      right_(parameters.names.movement, parameters.claim_slack),
+      behavior_(parameters.dwell),
+      watch_(parameters.response),
+      epoch_(std::min(memory.epoch, kHighestEpoch) + (memory.epoch > 0 ? kUnsavedEpochs : 0)),
+      movement_on_(parameters.movement_on_at_start) {
+  assert(parameters.degraded_speed_factor >= 0.0 && parameters.degraded_speed_factor <= 1.0);
+  faults_.restore(std::move(memory.latched));
+  decision_.grant.epoch = epoch_;
+}
+
+void Supervisor::heartbeat(const Heartbeat& heartbeat, Time now) {
+  if (!table_.hear(heartbeat, now)) ++unknown_heartbeats_;
+  right_.alive(heartbeat.writer, now);
+}
+
+void Supervisor::writer_appeared(const WriterSighting& sighting, Time now) {
+  right_.appeared(sighting, now);
+}
+
+void Supervisor::writer_gone(const WriterId& writer) {
+  right_.gone(writer);
+  commanded_.reset();
+}
+
+void Supervisor::drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now) {
+  right_.alive(writer, now);
+  if (right_.holder() == writer && twist.finite()) commanded_ = Commanded{twist, now};
+}
+
+void Supervisor::base(const BaseReport& report, Time now) {
+  if (!report.measured.finite()) {
+    ++rejected_reports_;
+    return;
+  }
+  base_ = report;
+  if (!report.emergency) reset_until_.reset();
+  const bool driven = decision_.grant.writer != drive::kNobody && commanded_ &&
+                      now - commanded_->at < parameters_.command_expiry;
+  watch_.observe(driven ? commanded_->twist : geometry::Twist2{}, report.measured, now);
+  // Another supervisor's epochs, or ours of before the memory was lost: continue above them.
+  if (report.epoch > epoch_ && report.epoch < kHighestEpoch) {
+    epoch_ = report.epoch;
+    decision_.grant = {drive::kNobody, epoch_, drive::kNobody};
+  }
+}
+
+void Supervisor::navigation(std::uint64_t id, NavigationState state) {
+  navigation_id_ = id;
+  navigation_ = state;
+  if (!behavior_.navigation_wanted()) return;
+  const bool active = state == NavigationState::kActive || state == NavigationState::kWaiting;
+  if (active && behavior_.navigation_going()) seen_active_ = true;
+  if (over(state) && (id != id_before_goal_ || seen_active_)) behavior_.navigation_end();
+}
+
+Answer Supervisor::request(const Request& request, Time now) {
+  for (const Handled& handled : handled_) {
+    if (handled.answer.id == request.id && handled.client == request.client &&
+        !handled.client.empty()) {
+      return handled.answer;
+    }
+  }
+  Answer answer{request.id, false, carry_out(request, now)};
+  answer.done = answer.reason.empty();
+  handled_[next_handled_] = {request.client, answer};
+  next_handled_ = (next_handled_ + 1) % handled_.size();
+  last_request_ = answer;
+  return answer;
+}
+
+std::string Supervisor::carry_out(const Request& request, Time now) {
+  const Fault* latched = faults_.latched();
+  const auto not_now = [&]() -> std::string {
+    if (latched) return "a fault must be cleared first: " + latched->detail;
+    if (behavior_.state() == State::kInitialise) return "still initialising: " + reason_;
+    return {};
+  };
+  switch (request.command) {
+    case Command::kStop:
+      movement_on_ = false;
+      return {};
+    case Command::kMovementOn:
+      movement_on_ = true;
+      return {};
+    case Command::kManualOn: {
+      std::string refusal = not_now();
+      if (refusal.empty()) behavior_.manual(true);
+      return refusal;
+    }
+    case Command::kManualOff:
+      behavior_.manual(false);
+      return {};
+    case Command::kNavigationStart: {
+      if (request.goal.empty()) return "a goal's name was expected";
+      if (behavior_.manual_wanted()) return "an operator drives";
+      std::string refusal = not_now();
+      if (!refusal.empty()) return refusal;
+      behavior_.navigation_start();
+      goal_ = request.goal;
+      id_before_goal_ = navigation_id_;
+      seen_active_ = false;
+      return {};
+    }
+    case Command::kNavigationGo:
+      if (!behavior_.navigation_wanted()) return "no goal was chosen";
+      behavior_.navigation_go();
+      return {};
+    case Command::kNavigationEnd:
+      behavior_.navigation_end();
+      return {};
+    case Command::kEmergencyStop:
+      faults_.raise(Cause::kEmergencyStop, request.client.empty() ? "operator" : request.client,
+                    "an emergency stop was requested", now);
+      return {};
+    case Command::kClear:
+      if (const WriterSighting* foreign = right_.foreign()) {
+        return "'" + foreign->participant + "' still writes drive/command";
+      }
+      faults_.clear();
+      watch_.reset();
+      if (base_ && base_->emergency) reset_until_ = now + parameters_.reset_patience;
+      return {};
+    case Command::kNone:
+      break;
+  }
+  return "unknown command " + std::to_string(static_cast<int>(request.command));
+}
+
+void Supervisor::note_faults(Time now) {
+  for (const ComponentHealth& component : table_.components()) {
+    if (component.able()) {
+      faults_.settle(Cause::kComponentLost, component.name);
+    } else if (component.heard_at) {
+      faults_.raise(Cause::kComponentLost, component.name, component.reason, now);
+    }
+  }
+  if (const WriterSighting* foreign = right_.foreign()) {
+    faults_.raise(Cause::kForeignWriter,
+                  foreign->participant.empty() ? "unnamed participant" : foreign->participant,
+                  "writes drive/command as " + drive::to_string(foreign->writer) + " on host '" +
+                      foreign->host + "'",
+                  now);
+  }
+  const drive::ResponseWatch::Verdict verdict = watch_.verdict();
+  if (verdict == drive::ResponseWatch::Verdict::kDisobeys) {
+    faults_.raise(Cause::kDisobeyingBase, parameters_.names.base,
+                  "moves other than commanded: linear error " +
+                      std::to_string(watch_.linear().error) + " m/s, angular error " +
+                      std::to_string(watch_.angular().error) + " rad/s",
+                  now);
+  } else if (verdict == drive::ResponseWatch::Verdict::kFallsShort) {
+    faults_.raise(Cause::kBaseFallsShort, parameters_.names.base, "moves less than commanded", now);
+  } else {
+    faults_.settle(Cause::kBaseFallsShort, parameters_.names.base);
+  }
+  if (base_ && base_->emergency && !resetting(now)) {
+    faults_.raise(Cause::kEmergencyStop, parameters_.names.base,
+                  "the base's motors are off after an emergency stop", now);
+  }
+}
+
+void Supervisor::explain() {
+  if (const Fault* latched = faults_.latched()) {
+    reason_.assign(text(latched->cause)).append(": ").append(latched->component);
+    reason_.append(": ").append(latched->detail);
+  } else if (const ComponentHealth* missing = table_.missing_critical()) {
+    reason_.assign(missing->name).append(": ").append(missing->reason);
+  } else if (!right_.holder()) {
+    reason_.assign(parameters_.names.movement).append(": writes no drive/command yet");
+  } else if (base_ && base_->emergency) {
+    reason_.assign("the base leaves its emergency stop");
+  } else {
+    reason_.clear();
+  }
+}
+
+void Supervisor::grant(bool able) {
+  const bool may = able && !faults_.latched() && decision_.state != State::kInitialise &&
+                   decision_.state != State::kFault;
+  const drive::WriterId writer = may ? *right_.holder() : drive::kNobody;
+  if (may && writer != decision_.grant.writer) ++epoch_;
+  decision_.grant = {writer, epoch_, drive::kNobody};
+}
+
+const Decision& Supervisor::step(Time now) {
+  table_.judge(now);
+  note_faults(now);
+  const bool able = !table_.missing_critical() && right_.holder() && !(base_ && base_->emergency);
+  const bool fault = faults_.latched() != nullptr;
+  decision_.state = behavior_.step(able, fault, now);
+  grant(able);
+
+  decision_.enables = enables_of(decision_.state);
+  if (!movement_on_) decision_.enables.movement = false;
+  decision_.speed_factor = table_.degraded() ? parameters_.degraded_speed_factor : 1.0;
+  decision_.emergency_stop =
+      faults_.active(Cause::kEmergencyStop) ||
+      (parameters_.emergency_stop_when_disobeying && faults_.active(Cause::kDisobeyingBase));
+  decision_.reset_base = resetting(now) && !fault;
+  decision_.camera_angle =
+      decision_.state == State::kInteraction        ? parameters_.camera_angle_interaction
+      : decision_.state == State::kNavigationActive ? parameters_.camera_angle_navigation
+                                                    : parameters_.camera_angle_default;
+  explain();
+  decision_.reason = reason_;
+  if (!behavior_.navigation_wanted()) goal_.clear();
+  return decision_;
+}
+
+SupervisorStatus Supervisor::status() const {
+  const Names& names = parameters_.names;
+  const auto able = [this](const std::string& name) {
+    const ComponentHealth* component = table_.find(name);
+    return component && component->able();
+  };
+  const auto connected = [this](const std::string& name) {
+    const ComponentHealth* component = table_.find(name);
+    return component && component->health != Health::kMissing;
+  };
+  SupervisorStatus status;
+  status.timeout_movement = table_.timeout(names.movement);
+  status.timeout_interaction = table_.timeout(names.interaction);
+  status.timeout_power = table_.timeout(names.power);
+  status.process_rate = parameters_.process_rate;
+  status.camera_angle_default = parameters_.camera_angle_default;
+  status.camera_angle_interaction = parameters_.camera_angle_interaction;
+  status.camera_angle_navigation = parameters_.camera_angle_navigation;
+  status.state = decision_.state;
+  status.current_goal = goal_;
+  status.navigation = navigation_;
+  status.ok_movement = able(names.movement);
+  status.ok_interaction = able(names.interaction);
+  status.ok_power = able(names.power);
+  status.connected_movement = connected(names.movement);
+  status.connected_interaction = connected(names.interaction);
+  status.connected_power = connected(names.power);
+  status.connected_gui = connected(names.gui);
+  status.connected_navigation = connected(names.navigation);
+  status.enables = decision_.enables;
+  status.granted = decision_.grant.writer != drive::kNobody;
+  status.epoch = epoch_;
+  status.reason = reason_;
+  status.components = table_.components();
+  status.faults = faults_.faults();
+  status.last_request = last_request_;
+  return status;
+}
+
+Memory Supervisor::memory() const {
+  Memory memory;
+  memory.epoch = epoch_;
+  for (const Fault& fault : faults_.faults()) {
+    if (fault.active && fault.latched()) memory.latched.push_back(fault);
+  }
+  return memory;
+}
+
+}  // namespace usher::supervisor

@@ -1,0 +1,218 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "control/supervisor/core/behavior.hpp"
+#include "control/supervisor/core/drive_right.hpp"
+#include "control/supervisor/core/fault_log.hpp"
+#include "control/supervisor/core/heartbeat_table.hpp"
+#include "control/supervisor/core/memory.hpp"
+#include "drivers/base_obedience/core/base_obedience.hpp"
+#include "drivers/base_obedience/core/response_watch.hpp"
+#include "foundation/geometry/pose2.hpp"
+
+namespace usher::supervisor {
+
+/// Names in the manifest that the supervisor has a field or a rule for.
+struct Names {
+  std::string movement = "movement_control";  ///< the one that may write drive/command
+  std::string interaction = "interaction_control";
+  std::string power = "power_board";
+  std::string gui = "tablet";
+  std::string navigation = "navigator";
+  std::string base = "segway_rmp";
+};
+
+struct Parameters {
+  std::vector<WatchedComponent> components;  ///< from the manifest
+  std::uint64_t idl_digest = 0;              ///< of the supervisor's own build
+  Names names;
+  Time dwell = std::chrono::milliseconds(250);  ///< least time in Inactive; outlasts old commands
+  double degraded_speed_factor = 0.5;           ///< {0..1}
+  bool movement_on_at_start = true;
+  Time claim_slack = std::chrono::milliseconds(50);      ///< see DriveRight
+  Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
+  Time reset_patience = std::chrono::seconds(5);         ///< for a base that leaves its emergency
+  bool emergency_stop_when_disobeying = true;
+  drive::ResponseWatch::Parameters response;
+  double process_rate = 50.0;                             ///< [Hz] reported only
+  double camera_angle_default = 0.0;                      ///< [rad] up is positive
+  double camera_angle_interaction = 0.17453292519943295;  ///< [rad] 10 deg
+  double camera_angle_navigation = -0.08726646259971647;  ///< [rad] -5 deg
+};
+
+/// The numbers are those of SupervisorRequest on the wire.
+enum class Command : std::uint8_t {
+  kNone = 0,
+  kStop = 1,  ///< movement off until kMovementOn; the state stays
+  kMovementOn = 2,
+  kManualOn = 3,
+  kManualOff = 4,
+  kNavigationStart = 5,  ///< a goal is chosen
+  kNavigationGo = 6,     ///< the visitor is ready
+  kNavigationEnd = 7,    ///< given up
+  kEmergencyStop = 8,    ///< motors off, latched
+  kClear = 9,            ///< ends latched faults whose cause is gone
+};
+
+struct Request {
+  std::uint64_t id = 0;
+  std::string client;
+  Command command = Command::kNone;
+  std::string goal;  ///< for kNavigationStart
+};
+
+/// What became of a request.
+struct Answer {
+  std::uint64_t id = 0;
+  bool done = false;
+  std::string reason;  ///< why it was refused; empty when done
+};
+
+/// As in GoalStatus on the wire.
+enum class NavigationState : std::uint8_t {
+  kIdle = 0,
+  kActive = 1,
+  kWaiting = 2,
+  kSucceeded = 3,
+  kFailed = 4,
+  kCancelled = 5,
+  kReplaced = 6,
+};
+
+struct BaseReport {
+  bool emergency = false;     ///< its motors are off after an emergency stop
+  geometry::Twist2 measured;  ///< what it does
+  std::uint64_t epoch = 0;    ///< the highest that it ever heard
+};
+
+/// What is to be published, at 50 Hz and after each event.
+struct Decision {
+  State state = State::kInitialise;
+  drive::Grant grant;  ///< the writer is kNobody while nobody may drive
+  Enables enables;
+  double speed_factor = 1.0;    ///< {0..1}
+  bool emergency_stop = false;  ///< the base shall switch its motors off
+  bool reset_base = false;      ///< the base shall leave its emergency
+  double camera_angle = 0.0;    ///< [rad]
+  std::string_view reason;      ///< why nobody may drive; valid until the next call
+};
+
+/// Appendix A.3 of the thesis, without its topic names, and what an operator wants to know besides.
+struct SupervisorStatus {
+  Time timeout_movement{};
+  Time timeout_interaction{};
+  Time timeout_power{};
+  double process_rate = 0.0;
+  double camera_angle_default = 0.0;
+  double camera_angle_interaction = 0.0;
+  double camera_angle_navigation = 0.0;
+  State state = State::kInitialise;
+  std::string current_goal;
+  NavigationState navigation = NavigationState::kIdle;
+  bool ok_movement = false;
+  bool ok_interaction = false;
+  bool ok_power = false;
+  bool connected_movement = false;
+  bool connected_interaction = false;
+  bool connected_power = false;
+  bool connected_gui = false;
+  bool connected_navigation = false;
+  Enables enables;
+  bool granted = false;
+  std::uint64_t epoch = 0;
+  std::string reason;                       ///< why nobody may drive
+  std::vector<ComponentHealth> components;  ///< in the manifest's order
+  std::vector<Fault> faults;                ///< newest last
+  Answer last_request;
+};
+
+/// Decides who may drive and what is enabled.
+///
+/// The right to drive is granted while every critical component is able, exactly one writer of
+/// drive/command is there and it is the right one, the base is in no emergency, and no latched
+/// fault is active. Everything else is withheld at once; each new grant has a higher epoch.
+///
+/// Latched, until an operator clears them: a foreign writer, a disobeying base, an emergency stop.
+/// The loss of a component ends by itself.
+///
+/// Feed it what is heard, then call step(). `now` must not go back.
+class Supervisor {
+ public:
+  Supervisor(const Parameters& parameters, Memory memory);
+
+  void heartbeat(const Heartbeat& heartbeat, Time now);
+  /// Discovery of writers on drive/command.
+  void writer_appeared(const WriterSighting& sighting, Time now);
+  void writer_gone(const WriterId& writer);
+  /// A sample of drive/command.
+  void drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now);
+  void base(const BaseReport& report, Time now);
+  /// The navigator's status; `id` names the goal that it speaks of.
+  void navigation(std::uint64_t id, NavigationState state);
+
+  /// Carries out or refuses. The same id of the same client gets the same answer and acts once.
+  Answer request(const Request& request, Time now);
+
+  const Decision& step(Time now);
+  const Decision& decision() const { return decision_; }
+
+  SupervisorStatus status() const;
+  /// To be kept over restarts whenever it differs from the last one.
+  Memory memory() const;
+
+  std::uint64_t unknown_heartbeats() const { return unknown_heartbeats_; }
+  std::uint64_t rejected_reports() const { return rejected_reports_; }
+
+ private:
+  struct Handled {
+    std::string client;
+    Answer answer;
+  };
+  struct Commanded {
+    geometry::Twist2 twist;
+    Time at{};
+  };
+
+  /// Why the request cannot be carried out; empty when it was.
+  std::string carry_out(const Request& request, Time now);
+  void note_faults(Time now);
+  bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
+  void grant(bool able);
+  void explain();
+
+  Parameters parameters_;
+  HeartbeatTable table_;
+  DriveRight right_;
+  FaultLog faults_;
+  Behavior behavior_;
+  drive::ResponseWatch watch_;
+
+  std::uint64_t epoch_;
+  bool movement_on_;
+  std::optional<BaseReport> base_;
+  std::optional<Commanded> commanded_;
+  std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
+
+  std::string goal_;
+  std::uint64_t navigation_id_ = 0;
+  NavigationState navigation_ = NavigationState::kIdle;
+  std::uint64_t id_before_goal_ = 0;  ///< the navigator's goal when the present one was chosen
+  bool seen_active_ = false;          ///< that one was active while the navigation drove
+
+  std::array<Handled, 16> handled_;  ///< the last requests, a ring
+  std::size_t next_handled_ = 0;
+  Answer last_request_;
+
+  Decision decision_;
+  std::string reason_;
+  std::uint64_t unknown_heartbeats_ = 0;
+  std::uint64_t rejected_reports_ = 0;
+};
+
+}  // namespace usher::supervisor

@@ -1,0 +1,532 @@
+#include "control/supervisor/core/supervisor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+
+namespace usher::supervisor {
+namespace {
+
+using geometry::Twist2;
+using std::chrono::milliseconds;
+
+constexpr std::uint64_t kDigest = 5;
+constexpr WriterId kMovement{1};
+constexpr WriterId kMovementHeartbeat{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 9};
+constexpr WriterId kReplacement{2};
+constexpr WriterId kRogue{66};
+
+Parameters parameters() {
+  Parameters parameters;
+  parameters.components = {
+      {"movement_control", Criticality::kStop, milliseconds(100)},
+      {"segway_rmp", Criticality::kStop, milliseconds(100)},
+      {"amcl", Criticality::kStop, milliseconds(100)},
+      {"people_detector", Criticality::kDegrade, milliseconds(300)},
+      {"interaction_control", Criticality::kNotify, milliseconds(300)},
+      {"tablet", Criticality::kNotify, milliseconds(300)},
+  };
+  parameters.idl_digest = kDigest;
+  return parameters;
+}
+
+/// A supervisor whose robot is well unless a test says otherwise.
+class Robot {
+ public:
+  explicit Robot(const Parameters& given = parameters(), Memory memory = {})
+      : supervisor(given, std::move(memory)) {}
+
+  Supervisor supervisor;
+  std::set<std::string> silent;
+  std::set<std::string> starting;
+  std::set<std::string> other_idl;
+  BaseReport base;
+  Twist2 command;
+  int now_ms = 0;
+
+  Time now() const { return milliseconds(now_ms); }
+  void appear(const WriterId& writer = kMovement, const char* name = "movement_control") {
+    supervisor.writer_appeared({writer, name, "nuc"}, now());
+  }
+  /// Runs for a while at 50 Hz.
+  const Decision& run(int ms) {
+    for (const int end = now_ms + ms; now_ms < end;) {
+      now_ms += 20;
+      for (const WatchedComponent& component : parameters().components) {
+        if (silent.contains(component.name)) continue;
+        const WriterId writer =
+            component.name == "movement_control" ? kMovementHeartbeat : WriterId{99};
+        const Reported state =
+            starting.contains(component.name) ? Reported::kStarting : Reported::kOk;
+        supervisor.heartbeat({component.name, writer,
+                              kDigest + (other_idl.contains(component.name) ? 1U : 0U), state, ""},
+                             now());
+      }
+      if (!silent.contains("movement_control")) {
+        supervisor.drive_command(kMovement, command, now());
+      }
+      if (!silent.contains("segway_rmp")) supervisor.base(base, now());
+      supervisor.step(now());
+    }
+    return supervisor.decision();
+  }
+  Answer ask(Command what, const char* goal = "") {
+    const Answer answer = supervisor.request({++request_id, "operator", what, goal}, now());
+    supervisor.step(now());
+    return answer;
+  }
+  bool granted() const { return supervisor.decision().grant.writer != drive::kNobody; }
+  State state() const { return supervisor.decision().state; }
+  std::string reason() const { return std::string(supervisor.decision().reason); }
+
+  std::uint64_t request_id = 0;
+};
+
+Robot ready() {
+  Robot robot;
+  robot.appear();
+  robot.run(400);
+  return robot;
+}
+
+Robot guiding() {
+  Robot robot = ready();
+  EXPECT_TRUE(robot.ask(Command::kNavigationStart, "am218").done);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kNavigationStart);
+  EXPECT_TRUE(robot.ask(Command::kNavigationGo).done);
+  robot.supervisor.navigation(41, NavigationState::kActive);
+  robot.run(100);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  return robot;
+}
+
+TEST(Supervisor, GrantsWhenAllIsThere) {
+  const Robot robot = ready();
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_EQ(robot.supervisor.decision().grant.writer, kMovement);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 1U);
+  EXPECT_EQ(robot.reason(), "");
+  EXPECT_TRUE(robot.supervisor.decision().enables.interaction);
+  EXPECT_EQ(robot.supervisor.decision().speed_factor, 1.0);
+}
+
+TEST(Supervisor, WaitsForTheWriter) {
+  Robot robot;
+  robot.run(1000);
+  EXPECT_EQ(robot.state(), State::kInitialise);
+  EXPECT_FALSE(robot.granted());
+  EXPECT_EQ(robot.reason(), "movement_control: writes no drive/command yet");
+}
+
+struct Loss {
+  const char* name;
+  void (*lose)(Robot&);
+  void (*regain)(Robot&);
+  bool stops;
+  double speed_factor;
+  const char* reason;
+};
+
+TEST(Supervisor, EveryLossMeansWhatTheManifestSays) {
+  const Loss losses[] = {
+      {"critical component silent", [](Robot& r) { r.silent.insert("amcl"); },
+       [](Robot& r) { r.silent.clear(); }, true, 0.5, "amcl: silent"},
+      {"movement_control silent", [](Robot& r) { r.silent.insert("movement_control"); },
+       [](Robot& r) { r.silent.clear(); }, true, 0.5, "movement_control: silent"},
+      {"base driver silent", [](Robot& r) { r.silent.insert("segway_rmp"); },
+       [](Robot& r) { r.silent.clear(); }, true, 0.5, "segway_rmp: silent"},
+      {"critical component starts anew", [](Robot& r) { r.starting.insert("amcl"); },
+       [](Robot& r) { r.starting.clear(); }, true, 0.5, "amcl: starting"},
+      {"critical component of another IDL", [](Robot& r) { r.other_idl.insert("amcl"); },
+       [](Robot& r) { r.other_idl.clear(); }, true, 0.5,
+       "amcl: built from another IDL than the supervisor"},
+      {"writer of drive/command gone", [](Robot& r) { r.supervisor.writer_gone(kMovement); },
+       [](Robot& r) { r.appear(); }, true, 1.0, "movement_control: writes no drive/command yet"},
+      {"degrading component silent", [](Robot& r) { r.silent.insert("people_detector"); },
+       [](Robot& r) { r.silent.clear(); }, false, 0.5, ""},
+      {"degrading component of another IDL",
+       [](Robot& r) { r.other_idl.insert("people_detector"); },
+       [](Robot& r) { r.other_idl.clear(); }, false, 0.5, ""},
+      {"notifying component silent", [](Robot& r) { r.silent.insert("tablet"); },
+       [](Robot& r) { r.silent.clear(); }, false, 1.0, ""},
+  };
+  for (const Loss& loss : losses) {
+    SCOPED_TRACE(loss.name);
+    Robot robot = guiding();
+    loss.lose(robot);
+    robot.run(400);
+    EXPECT_EQ(robot.granted(), !loss.stops);
+    EXPECT_EQ(robot.state(), loss.stops ? State::kInactive : State::kNavigationActive);
+    EXPECT_EQ(robot.reason(), loss.reason);
+    EXPECT_EQ(robot.supervisor.decision().speed_factor, loss.speed_factor);
+    EXPECT_EQ(robot.supervisor.decision().enables.movement, !loss.stops);
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+    loss.regain(robot);
+    robot.run(20);
+    EXPECT_EQ(robot.state(), loss.stops ? State::kInactive : State::kNavigationActive);
+    robot.run(300);
+    EXPECT_TRUE(robot.granted()) << robot.reason();
+    EXPECT_EQ(robot.state(), State::kNavigationActive) << "resumes by itself";
+    EXPECT_EQ(robot.supervisor.decision().speed_factor, 1.0);
+    EXPECT_EQ(robot.supervisor.decision().grant.epoch, loss.stops ? 2U : 1U);
+  }
+}
+
+TEST(Supervisor, LossIsNoticedWithinItsTimeout) {
+  Robot robot = ready();
+  robot.silent.insert("amcl");
+  robot.run(80);
+  EXPECT_TRUE(robot.granted());
+  robot.run(20);
+  EXPECT_FALSE(robot.granted());
+}
+
+TEST(Supervisor, LossIsLoggedWithCauseTimeAndComponent) {
+  Robot robot = ready();
+  robot.silent.insert("amcl");
+  robot.run(200);
+  SupervisorStatus status = robot.supervisor.status();
+  ASSERT_EQ(status.faults.size(), 1U);
+  EXPECT_EQ(status.faults[0].cause, Cause::kComponentLost);
+  EXPECT_EQ(status.faults[0].component, "amcl");
+  EXPECT_EQ(status.faults[0].at, milliseconds(500));
+  EXPECT_TRUE(status.faults[0].active);
+  EXPECT_FALSE(status.faults[0].latched());
+  robot.silent.clear();
+  robot.run(100);
+  status = robot.supervisor.status();
+  ASSERT_EQ(status.faults.size(), 1U);
+  EXPECT_FALSE(status.faults[0].active);
+}
+
+TEST(Supervisor, GuidesByRequestsAndNavigatorStatus) {
+  Robot robot = guiding();
+  EXPECT_EQ(robot.supervisor.status().current_goal, "am218");
+  robot.supervisor.navigation(41, NavigationState::kWaiting);
+  robot.run(1000);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  robot.supervisor.navigation(41, NavigationState::kSucceeded);
+  robot.run(20);
+  EXPECT_EQ(robot.state(), State::kNavigationEnd);
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+  robot.run(600);
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_EQ(robot.supervisor.status().current_goal, "");
+}
+
+TEST(Supervisor, AnOldNavigatorStatusEndsNothing) {
+  Robot robot = ready();
+  robot.supervisor.navigation(40, NavigationState::kSucceeded);  // the goal of before, latched
+  robot.ask(Command::kNavigationStart, "am218");
+  robot.run(300);
+  robot.ask(Command::kNavigationGo);
+  robot.supervisor.navigation(40, NavigationState::kSucceeded);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  robot.supervisor.navigation(41, NavigationState::kFailed);  // refused before it was ever active
+  robot.run(20);
+  EXPECT_EQ(robot.state(), State::kNavigationEnd);
+}
+
+TEST(Supervisor, AReplacedGoalIsNoEnd) {
+  Robot robot = guiding();
+  robot.supervisor.navigation(41, NavigationState::kReplaced);
+  robot.supervisor.navigation(42, NavigationState::kActive);
+  robot.run(100);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  robot.supervisor.navigation(42, NavigationState::kCancelled);
+  robot.run(20);
+  EXPECT_EQ(robot.state(), State::kNavigationEnd);
+}
+
+TEST(Supervisor, StopHoldsUntilMovementOn) {
+  Robot robot = guiding();
+  EXPECT_TRUE(robot.ask(Command::kStop).done);
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+  robot.run(5000);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+  robot.ask(Command::kNavigationEnd);
+  robot.run(1000);
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement) << "in every state";
+  EXPECT_TRUE(robot.ask(Command::kMovementOn).done);
+  EXPECT_TRUE(robot.supervisor.decision().enables.movement);
+}
+
+TEST(Supervisor, ManualEndsTheGuidance) {
+  Robot robot = guiding();
+  EXPECT_TRUE(robot.ask(Command::kManualOn).done);
+  EXPECT_EQ(robot.state(), State::kInactive);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kManual);
+  EXPECT_EQ(robot.ask(Command::kNavigationStart, "am218").reason, "an operator drives");
+  EXPECT_TRUE(robot.ask(Command::kManualOff).done);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kInteraction);
+}
+
+TEST(Supervisor, RefusesWithAReason) {
+  Robot robot;
+  EXPECT_EQ(robot.ask(Command::kManualOn).reason.rfind("still initialising", 0), 0U);
+  robot = ready();
+  EXPECT_EQ(robot.ask(Command::kNavigationStart).reason, "a goal's name was expected");
+  EXPECT_EQ(robot.ask(Command::kNavigationGo).reason, "no goal was chosen");
+  EXPECT_EQ(robot.ask(Command::kNone).reason, "unknown command 0");
+  EXPECT_EQ(robot.ask(static_cast<Command>(77)).reason, "unknown command 77");
+  robot.ask(Command::kEmergencyStop);
+  EXPECT_FALSE(robot.ask(Command::kManualOn).done);
+  EXPECT_FALSE(robot.ask(Command::kNavigationStart, "am218").done);
+}
+
+TEST(Supervisor, ARepeatedRequestActsOnce) {
+  Robot robot = ready();
+  const Request request{7, "guide", Command::kNavigationStart, "am218"};
+  EXPECT_TRUE(robot.supervisor.request(request, robot.now()).done);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kNavigationStart);
+  robot.ask(Command::kNavigationEnd);
+  robot.run(600);
+  EXPECT_TRUE(robot.supervisor.request(request, robot.now()).done);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_TRUE(
+      robot.supervisor.request({7, "tablet", Command::kNavigationStart, "x"}, robot.now()).done)
+      << "another client's 7 is another request";
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kNavigationStart);
+  EXPECT_EQ(robot.supervisor.status().last_request.id, 7U);
+}
+
+struct Latched {
+  const char* name;
+  void (*cause)(Robot&);
+  void (*heal)(Robot&);
+  Cause expected;
+  const char* component;
+  bool emergency_stop;
+  bool clearable_before_healing;
+};
+
+TEST(Supervisor, LatchesUntilAnOperatorClears) {
+  const Latched cases[] = {
+      {"foreign writer", [](Robot& r) { r.appear(kRogue, "teleop_of_bob"); },
+       [](Robot& r) { r.supervisor.writer_gone(kRogue); }, Cause::kForeignWriter, "teleop_of_bob",
+       false, false},
+      {"second live claimer", [](Robot& r) { r.appear(kReplacement); },
+       [](Robot& r) { r.supervisor.writer_gone(kReplacement); }, Cause::kForeignWriter,
+       "movement_control", false, false},
+      {"emergency request", [](Robot& r) { r.ask(Command::kEmergencyStop); }, [](Robot&) {},
+       Cause::kEmergencyStop, "operator", true, true},
+      {"emergency at the base", [](Robot& r) { r.base.emergency = true; },
+       [](Robot& r) { r.base.emergency = false; }, Cause::kEmergencyStop, "segway_rmp", true, true},
+      {"disobeying base",
+       [](Robot& r) {
+         r.base.measured = {1.0, 0.0}, r.run(2000);
+       },
+       [](Robot& r) { r.base.measured = {}; }, Cause::kDisobeyingBase, "segway_rmp", true, true},
+  };
+  for (const Latched& test : cases) {
+    SCOPED_TRACE(test.name);
+    Robot robot = guiding();
+    test.cause(robot);
+    robot.run(100);
+    EXPECT_EQ(robot.state(), State::kFault);
+    EXPECT_FALSE(robot.granted());
+    EXPECT_EQ(robot.supervisor.decision().enables, Enables{});
+    EXPECT_EQ(robot.supervisor.decision().emergency_stop, test.emergency_stop);
+    const SupervisorStatus status = robot.supervisor.status();
+    ASSERT_EQ(status.faults.size(), 1U);
+    EXPECT_EQ(status.faults[0].cause, test.expected);
+    EXPECT_EQ(status.faults[0].component, test.component);
+    EXPECT_TRUE(status.faults[0].latched() && status.faults[0].active);
+    EXPECT_NE(robot.reason().find(test.component), std::string::npos);
+
+    EXPECT_EQ(robot.ask(Command::kClear).done, test.clearable_before_healing);
+    test.heal(robot);
+    robot.run(5000);
+    if (!test.clearable_before_healing) {
+      EXPECT_EQ(robot.state(), State::kFault) << "healing alone does not clear";
+      EXPECT_TRUE(robot.ask(Command::kClear).done);
+    }
+    robot.run(300);
+    EXPECT_EQ(robot.state(), State::kInteraction) << robot.reason();
+    EXPECT_TRUE(robot.granted());
+    EXPECT_GT(robot.supervisor.decision().grant.epoch, 1U);
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+  }
+}
+
+TEST(Supervisor, ReportsAForeignWriterWithinOneStepAndByName) {
+  Robot robot = guiding();
+  robot.appear(kRogue, "teleop_of_bob");
+  robot.supervisor.step(robot.now());
+  EXPECT_FALSE(robot.granted());
+  EXPECT_NE(robot.reason().find("teleop_of_bob"), std::string::npos);
+  EXPECT_NE(robot.reason().find(drive::to_string(kRogue)), std::string::npos);
+}
+
+TEST(Supervisor, ASecondLiveClaimerIsFoundWithin100Milliseconds) {
+  Robot robot = guiding();
+  robot.appear(kReplacement);
+  robot.run(80);
+  EXPECT_EQ(robot.state(), State::kFault);
+}
+
+TEST(Supervisor, ClearsABaseOutOfItsEmergency) {
+  Robot robot = ready();
+  robot.base.emergency = true;
+  robot.run(100);
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+  EXPECT_FALSE(robot.granted()) << "not before the base stands again";
+  robot.run(1000);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  robot.base.emergency = false;
+  robot.run(300);
+  EXPECT_FALSE(robot.supervisor.decision().reset_base);
+  EXPECT_TRUE(robot.granted());
+}
+
+TEST(Supervisor, LatchesAnewWhenTheBaseStaysInItsEmergency) {
+  Robot robot = ready();
+  robot.base.emergency = true;
+  robot.run(100);
+  robot.ask(Command::kClear);
+  robot.run(5100);
+  EXPECT_EQ(robot.state(), State::kFault);
+}
+
+TEST(Supervisor, TrustsABaseThatTakesTwoSecondsToStop) {
+  Robot robot = guiding();
+  robot.command = {1.4, 0.0};
+  robot.base.measured = {1.4, 0.0};
+  robot.run(100);
+  robot.command = {};
+  for (int ms = 0; ms < 6000; ms += 20) {
+    const double t = ms * 0.001;
+    const double slow = 1.4 - 0.2 * t;
+    robot.base.measured.v = t < 1.5 ? slow : std::max(1.1 - 2.8 * (t - 1.5), -0.3 * (t < 3.0));
+    robot.run(20);
+    ASSERT_EQ(robot.state(), State::kNavigationActive) << "after " << t << " s";
+  }
+}
+
+TEST(Supervisor, ABaseThatStandsIsNoFault) {
+  Robot robot = guiding();
+  robot.command = {1.0, 0.0};
+  robot.run(10000);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  const SupervisorStatus status = robot.supervisor.status();
+  ASSERT_EQ(status.faults.size(), 1U);
+  EXPECT_EQ(status.faults[0].cause, Cause::kBaseFallsShort);
+  EXPECT_FALSE(status.faults[0].latched());
+}
+
+TEST(Supervisor, WithoutAGrantTheBaseShallStand) {
+  Robot robot = ready();
+  robot.command = {1.0, 0.0};
+  robot.base.measured = {1.0, 0.0};
+  robot.run(2000);
+  ASSERT_EQ(robot.state(), State::kInteraction) << "it drives as commanded";
+  robot.silent.insert("amcl");
+  robot.run(6000);
+  EXPECT_EQ(robot.state(), State::kFault) << "it drives without the right";
+  EXPECT_TRUE(robot.supervisor.decision().emergency_stop);
+}
+
+TEST(Supervisor, ReplacesAWriterOnlyAfterTheOldOneIsSeenDead) {
+  Robot robot = guiding();
+  robot.silent.insert("movement_control");  // killed
+  robot.run(40);
+  robot.appear(kReplacement);  // its restart
+  robot.run(800);
+  EXPECT_FALSE(robot.granted());
+  EXPECT_NE(robot.state(), State::kFault);
+  robot.supervisor.writer_gone(kMovement);
+  robot.silent.clear();
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.writer, kReplacement);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 2U);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+}
+
+TEST(Supervisor, EpochsGrowOverARestart) {
+  Robot first = ready();
+  first.ask(Command::kEmergencyStop);
+  const Memory memory = first.supervisor.memory();
+  EXPECT_EQ(memory.epoch, 1U);
+  ASSERT_EQ(memory.latched.size(), 1U);
+
+  Robot second(parameters(), memory);
+  second.appear();
+  second.run(1000);
+  EXPECT_EQ(second.state(), State::kFault) << "a restart clears nothing";
+  EXPECT_TRUE(second.supervisor.decision().emergency_stop);
+  EXPECT_TRUE(second.ask(Command::kClear).done);
+  second.run(300);
+  EXPECT_TRUE(second.granted());
+  EXPECT_GT(second.supervisor.decision().grant.epoch, memory.epoch + 1);
+}
+
+TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
+  Robot robot;
+  robot.base.epoch = 5000;
+  robot.appear();
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+  robot.base.epoch = 5001;
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+  robot.base.epoch = std::numeric_limits<std::uint64_t>::max();  // nonsense is not believed
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+}
+
+TEST(Supervisor, RejectsAnOdometryThatIsNotANumber) {
+  Robot robot = ready();
+  robot.base.measured.v = std::numeric_limits<double>::quiet_NaN();
+  robot.run(100);
+  EXPECT_EQ(robot.supervisor.rejected_reports(), 5U);
+}
+
+TEST(Supervisor, CountsHeartbeatsThatTheManifestDoesNotKnow) {
+  Robot robot = ready();
+  robot.supervisor.heartbeat({"rogue", {}, kDigest, Reported::kOk, ""}, robot.now());
+  EXPECT_EQ(robot.supervisor.unknown_heartbeats(), 1U);
+}
+
+TEST(Supervisor, ReportsAppendixA3) {
+  Robot robot = guiding();
+  robot.silent.insert("tablet");
+  robot.run(400);
+  const SupervisorStatus status = robot.supervisor.status();
+  EXPECT_EQ(status.timeout_movement, milliseconds(100));
+  EXPECT_EQ(status.timeout_interaction, milliseconds(300));
+  EXPECT_EQ(status.timeout_power, milliseconds(0)) << "not in this manifest";
+  EXPECT_EQ(status.process_rate, 50.0);
+  EXPECT_NEAR(status.camera_angle_interaction, 0.1745, 1e-4);
+  EXPECT_NEAR(robot.supervisor.decision().camera_angle, -0.0873, 1e-4);
+  EXPECT_EQ(status.state, State::kNavigationActive);
+  EXPECT_EQ(status.current_goal, "am218");
+  EXPECT_EQ(status.navigation, NavigationState::kActive);
+  EXPECT_TRUE(status.ok_movement && status.connected_movement);
+  EXPECT_TRUE(status.ok_interaction && status.connected_interaction);
+  EXPECT_FALSE(status.ok_power || status.connected_power);
+  EXPECT_FALSE(status.connected_gui);
+  EXPECT_TRUE(status.enables.movement && status.enables.navigation);
+  EXPECT_FALSE(status.enables.manual || status.enables.interaction);
+  EXPECT_TRUE(status.granted);
+  EXPECT_EQ(status.epoch, 1U);
+  EXPECT_EQ(status.components.size(), 6U);
+  EXPECT_EQ(status.components[5].name, "tablet");
+  EXPECT_EQ(status.components[5].health, Health::kMissing);
+}
+
+}  // namespace
+}  // namespace usher::supervisor
