@@ -1,6 +1,7 @@
 #pragma once
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/random/random.hpp"
 
 namespace usher::world {
 
@@ -21,14 +22,19 @@ struct BaseTruth {
 
 /// What the base's own sensors say.
 struct BaseReadings {
-  double distance = 0.0;         ///< [m] forward travel by the wheel encoders since start, signed
-  double yaw = 0.0;              ///< [rad] turned by the wheel encoders since start, not wrapped
-  Twist2 twist;                  ///< from the encoders
-  double pitch = 0.0;            ///< [rad] positive leans forward
-  double pitch_rate = 0.0;       ///< [rad/s]
-  double battery_voltage = 0.0;  ///< [V]
-  bool motors_on = true;         ///< false from an emergency stop until the base stands again
-  bool emergency = false;        ///< latched from emergency_stop() to reset()
+  double left_travel = 0.0;        ///< [m] rolled by the left wheel against the body since start
+  double right_travel = 0.0;       ///< [m] the same of the right wheel
+  double left_velocity = 0.0;      ///< [m/s] by the encoders
+  double right_velocity = 0.0;     ///< [m/s]
+  double yaw_rate = 0.0;           ///< [rad/s] gyroscope
+  double pitch = 0.0;              ///< [rad] positive leans forward
+  double pitch_rate = 0.0;         ///< [rad/s]
+  double battery_percent = 100.0;  ///< [%] {0..100}
+  bool motors_on = true;           ///< false from an emergency stop until the base stands again
+  bool emergency = false;          ///< latched from emergency_stop() to reset()
+
+  double travel() const { return 0.5 * (left_travel + right_travel); }        ///< [m] of the middle
+  double velocity() const { return 0.5 * (left_velocity + right_velocity); }  ///< [m/s]
 };
 
 /// A mobile base: takes velocity commands, moves in the world, reports what its encoders measure.
@@ -56,6 +62,19 @@ class Base {
   const BaseReadings& readings() const { return readings_; }
 
  protected:
+  /// How the wheels of one kind of base tell distance and turns; drawn once for a robot's life.
+  struct Encoders {
+    double track = 0.47;          ///< [m] between the wheels
+    double distance_scale = 1.0;  ///< measured over real
+    double turn_scale = 1.0;      ///< measured over real
+    double curl = 0.0;            ///< [rad/m] measured turn of a straight way: unequal wheels
+    double slip = 0.0;            ///< [m/sqrt(m)] noise of each wheel
+  };
+  /// Adds what the encoders see of one step: `distance` [m] rolled, `turned` [rad].
+  void count_wheels(const Encoders& encoders, double distance, double turned, Random& random);
+  /// One step's use of the battery, which lasts `hours` standing and half of that at 1 m/s.
+  void drain_battery(double hours);
+
   BaseTruth truth_;
   BaseReadings readings_;
 };

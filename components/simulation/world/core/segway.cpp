@@ -34,11 +34,12 @@ Segway::Segway(const SegwayConfig& config, std::uint64_t seed)
     : config_(config),
       motion_(stream_seed(seed, "segway/motion")),
       sensing_(stream_seed(seed, "segway/sensing")),
-      distance_scale_(draw(sensing_, 1.0, config.odometry_scale_spread)),
-      turn_scale_(draw(sensing_, 1.0, config.odometry_turn_spread)),
-      curl_(draw(sensing_, 0.0, config.odometry_curl_spread)) {
+      encoders_{.track = config.track,
+                .distance_scale = draw(sensing_, 1.0, config.odometry_scale_spread),
+                .turn_scale = draw(sensing_, 1.0, config.odometry_turn_spread),
+                .curl = draw(sensing_, 0.0, config.odometry_curl_spread),
+                .slip = config.odometry_slip} {
   assert(config.dead_time >= 0.0 && config.dead_time <= (kDelaySlots - 2) * kStep);
-  readings_.battery_voltage = config.battery_voltage;
 }
 
 void Segway::place(const Pose2& pose) {
@@ -242,19 +243,12 @@ void Segway::turn(double target, double h) {
   yaw_offset_ = offset;
 }
 
-void Segway::measure(double distance, double turned) {
-  const double slip = std::sqrt(std::abs(distance)) * config_.odometry_noise;
-  const double left = slip * sensing_.gaussian();
-  const double right = slip * sensing_.gaussian();
-  const double forward = distance * distance_scale_ + 0.5 * (left + right);
-  const double turn = turned * turn_scale_ + curl_ * distance + (right - left) / config_.track;
-  readings_.distance += forward;
-  readings_.yaw += turn;
-  readings_.twist = {distance * distance_scale_ / kStep, turned * turn_scale_ / kStep};
+void Segway::measure(double rolled, double turned) {
+  count_wheels(encoders_, rolled, turned, sensing_);
+  drain_battery(config_.battery_hours);
+  readings_.yaw_rate = truth_.twist.w + config_.yaw_rate_noise * sensing_.gaussian();
   readings_.pitch = truth_.pitch + config_.pitch_noise * sensing_.gaussian();
   readings_.pitch_rate = truth_.pitch_rate + config_.pitch_rate_noise * sensing_.gaussian();
-  readings_.battery_voltage -=
-      config_.battery_volts_per_hour * kStep / 3600.0 * (1.0 + std::abs(truth_.twist.v));
 }
 
 }  // namespace usher::world

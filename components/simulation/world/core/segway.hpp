@@ -63,12 +63,12 @@ struct SegwayConfig {
   double odometry_scale_spread = 0.003;  ///< relative error of distance
   double odometry_turn_spread = 0.01;    ///< relative error of turns (track)
   double odometry_curl_spread = 0.003;   ///< [rad/m] unequal wheels
-  double odometry_noise = 0.0015;        ///< [m/sqrt(m)] and, over the track, [rad]: slip
+  double odometry_slip = 0.0015;         ///< [m/sqrt(m)] noise of each wheel
   double track = 0.47;                   ///< [m]
   double pitch_noise = 0.0009;           ///< [rad]
   double pitch_rate_noise = 0.005;       ///< [rad/s]
-  double battery_voltage = 76.0;         ///< [V] when full
-  double battery_volts_per_hour = 1.2;   ///< [V/h] standing; twice that when driving at 1 m/s
+  double yaw_rate_noise = 0.005;         ///< [rad/s] of the gyroscope
+  double battery_hours = 8.0;            ///< [h] standing; half of that at 1 m/s
 };
 
 /// A self-balancing Segway RMP200 as section 8.1 of the MARVIN thesis measured it.
@@ -126,14 +126,12 @@ class Segway final : public Base {
   void fall(double h);
   void rise(double h);
   void turn(double target, double h);
-  void measure(double distance, double turned);
+  void measure(double rolled, double turned);
 
   SegwayConfig config_;
   Random motion_;
   Random sensing_;
-  double distance_scale_;
-  double turn_scale_;
-  double curl_;
+  Encoders encoders_;
 
   static constexpr int kDelaySlots = 32;
   std::array<Twist2, kDelaySlots> commands_{};

@@ -53,13 +53,13 @@ StopRun run_stop(double target, bool emergency, std::uint64_t seed) {
     if (stop < 0 && kept >= 20) {
       stop = i;
       from = base.truth().pose.x;
-      odometry_from = base.readings().distance;
+      odometry_from = base.readings().travel();
       if (emergency) base.emergency_stop();
     }
     if (i > 1500) break;  // never got there
     base.command({stop < 0 ? target : 0.0, 0.0});
     base.step();
-    const double speed = base.readings().twist.v;
+    const double speed = base.readings().velocity();
     kept = speed >= 0.98 * target ? kept + 1 : 0;
     seen.push_back(speed);
     real.push_back(base.truth().twist.v);
@@ -74,7 +74,7 @@ StopRun run_stop(double target, bool emergency, std::uint64_t seed) {
     if (stop >= 0) {
       run.distance = std::max(run.distance, base.truth().pose.x - from);
       run.odometry_distance =
-          std::max(run.odometry_distance, base.readings().distance - odometry_from);
+          std::max(run.odometry_distance, base.readings().travel() - odometry_from);
     }
   }
   const auto at = [&](double seconds) {
@@ -198,7 +198,7 @@ TEST(SegwayPhases, OnlyTheOdometryRollsBackAtTheStart) {
   for (int i = 0; i < 100; ++i) {
     base.command({1.0, 0.0});
     base.step();
-    lowest_seen = std::min(lowest_seen, base.readings().twist.v);
+    lowest_seen = std::min(lowest_seen, base.readings().velocity());
     lowest_real = std::min(lowest_real, base.truth().twist.v);
   }
   EXPECT_LT(lowest_seen, -0.2);
@@ -330,15 +330,15 @@ TEST(SegwayObstruct, LosesTheSpeedButNotTheEncoders) {
   base.place({});
   for (int i = 0; i < 300; ++i) base.command({0.8, 0.0}), base.step();
   const Pose2 wall = base.truth().pose;
-  const double before = base.readings().distance;
+  const double before = base.readings().travel();
   for (int i = 0; i < 50; ++i) {
     base.command({0.8, 0.0});
     base.step();
     base.obstruct(wall);
   }
   EXPECT_EQ(base.truth().pose, wall);
-  EXPECT_TRUE(std::isfinite(base.readings().distance));
-  EXPECT_NE(base.readings().distance, before);
+  EXPECT_TRUE(std::isfinite(base.readings().travel()));
+  EXPECT_NE(base.readings().travel(), before);
 }
 
 TEST(SegwaySeed, RepeatsEveryBit) {
