@@ -1,0 +1,187 @@
+#include "runtime/dds/dds_transport.hpp"
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <set>
+
+#include "runtime/dds/bytes_type.hpp"
+#include "runtime/dds/participant.hpp"
+
+namespace usher::runtime {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+Guid to_guid(const rtps::InstanceHandle_t& handle) {
+  return usher::runtime::to_guid(rtps::iHandle2GUID(handle));
+}
+
+/// Ports are declared by the component's code and checked by its tests, and the wire types are our
+/// own: that one cannot be made is a programming error or an exhausted machine, and a component
+/// without its ports is of no use.
+template <class T>
+T* require(Result<T*> result) {
+  if (result) return result.value();
+  std::fprintf(stderr, "fatal: %s\n", result.error().c_str());
+  std::abort();
+}
+
+class DdsReader final : public Transport::Reader,
+                        private dds::DataReaderListener,
+                        private PayloadSink {
+ public:
+  DdsReader(Participant& participant, const InputDeclaration& declaration,
+            Transport::Deliver deliver)
+      : participant_(participant), type_(*declaration.type), deliver_(std::move(deliver)) {
+    require(participant.create_reader("rt/" + declaration.topic, std::string(type_.name),
+                                      declaration.qos, this));
+  }
+
+  std::vector<WriterInfo> writers() const override {
+    std::set<Guid> matched;
+    {
+      const std::scoped_lock lock(mutex_);
+      matched = matched_;
+    }
+    std::vector<WriterInfo> result;
+    for (const Guid& guid : matched) result.push_back(participant_.book().writer(guid));
+    return result;
+  }
+
+ private:
+  void on_data_available(dds::DataReader* reader) override {
+    dds::SampleInfo info;
+    while (reader->take_next_sample(static_cast<PayloadSink*>(this), &info) ==
+           ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      const Guid writer = to_guid(info.publication_handle);
+      const auto number = info.sample_identity.sequence_number().to64long();
+      deliver_(std::move(message_), writer, number > 0 ? static_cast<std::uint64_t>(number) : 0,
+               participant_.book().same_host(writer, participant_.guid()));
+    }
+  }
+  void take(std::span<const std::uint8_t> cdr) override { message_ = type_.deserialize(cdr); }
+
+  void on_subscription_matched(dds::DataReader*,
+                               const dds::SubscriptionMatchedStatus& status) override {
+    const Guid writer = to_guid(status.last_publication_handle);
+    const std::scoped_lock lock(mutex_);
+    if (status.current_count_change > 0) {
+      matched_.insert(writer);
+    } else {
+      matched_.erase(writer);
+    }
+  }
+
+  Participant& participant_;
+  const MessageType& type_;
+  const Transport::Deliver deliver_;
+  std::shared_ptr<const void>
+      message_;  // between take() and deliver_, which the library serialises per reader
+  mutable std::mutex mutex_;
+  std::set<Guid> matched_;
+};
+
+class DdsWriter final : public Transport::Writer, private dds::DataWriterListener {
+ public:
+  DdsWriter(Participant& participant, const OutputDeclaration& declaration)
+      : topic_(declaration.topic),
+        writer_(require(participant.create_writer("rt/" + declaration.topic,
+                                                  std::string(declaration.type->name),
+                                                  declaration.qos, this))),
+        guid_(usher::runtime::to_guid(writer_->guid())) {}
+
+  void write(std::shared_ptr<const Bytes> cdr) override {
+    std::span<const std::uint8_t> payload(*cdr);
+    if (!writer_->write(&payload) && !failed_) {
+      failed_ = true;
+      std::fprintf(stderr, "warning: %zu bytes on rt/%s could not be written\n", payload.size(),
+                   topic_.c_str());
+    }
+  }
+  std::size_t reader_count() const override { return readers_.load(std::memory_order_relaxed); }
+  Guid guid() const override { return guid_; }
+
+  void wait_for_readers(Duration limit) {
+    const auto count = limit.count();
+    if (count <= 0) return;
+    writer_->wait_for_acknowledgments({static_cast<std::int32_t>(count / 1'000'000'000),
+                                       static_cast<std::uint32_t>(count % 1'000'000'000)});
+  }
+
+ private:
+  void on_publication_matched(dds::DataWriter*,
+                              const dds::PublicationMatchedStatus& status) override {
+    readers_.store(static_cast<std::size_t>(status.current_count), std::memory_order_relaxed);
+  }
+
+  const std::string topic_;
+  std::atomic<std::size_t> readers_{
+      0};  // before writer_: the listener may be called while it is being made
+  dds::DataWriter* writer_;
+  Guid guid_;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+class DdsTransport::Implementation {
+ public:
+  MonotonicClock clock;
+  // The participant goes first: it ends the callbacks into the ports.
+  std::vector<std::unique_ptr<DdsReader>> readers;
+  std::vector<std::unique_ptr<DdsWriter>> writers;
+  std::unique_ptr<Participant> participant;
+};
+
+DdsTransport::DdsTransport(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+DdsTransport::~DdsTransport() = default;
+
+Result<std::unique_ptr<DdsTransport>> DdsTransport::create(const Options& options,
+                                                           const MonotonicClock& clock) {
+  auto participant =
+      Participant::create({options.name, options.host, options.domain, options.peers}, clock);
+  if (!participant) return Error{participant.error()};
+  auto implementation = std::make_unique<Implementation>(
+      Implementation{clock, {}, {}, std::move(participant).value()});
+  return std::unique_ptr<DdsTransport>(new DdsTransport(std::move(implementation)));
+}
+
+Transport::Reader& DdsTransport::open_reader(const InputDeclaration& declaration, Deliver deliver) {
+  implementation_->readers.push_back(
+      std::make_unique<DdsReader>(*implementation_->participant, declaration, std::move(deliver)));
+  return *implementation_->readers.back();
+}
+
+Transport::Writer& DdsTransport::open_writer(const OutputDeclaration& declaration) {
+  implementation_->writers.push_back(
+      std::make_unique<DdsWriter>(*implementation_->participant, declaration));
+  return *implementation_->writers.back();
+}
+
+void DdsTransport::watch_writers(const std::string& topic,
+                                 std::function<void(const WriterInfo&)> event) {
+  const MonotonicClock clock = implementation_->clock;
+  implementation_->participant->book().observe(
+      {}, [topic = "rt/" + topic, event = std::move(event), clock](const EndpointInfo& endpoint,
+                                                                   bool alive) {
+        if (!endpoint.writer || endpoint.topic != topic) return;
+        event({endpoint.guid, topic.substr(3), endpoint.participant, endpoint.host, alive,
+               alive ? endpoint.since : clock.now()});
+      });
+}
+
+void DdsTransport::flush(Duration limit) {
+  const Time end = implementation_->clock.now() + limit;
+  for (const auto& writer : implementation_->writers) {
+    writer->wait_for_readers(end - implementation_->clock.now());
+  }
+}
+
+}  // namespace usher::runtime

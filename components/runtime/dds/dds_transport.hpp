@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+#include "runtime/dds/host_clock.hpp"
+#include "runtime/engine/transport.hpp"
+
+namespace usher::runtime {
+
+/// Carries the samples of one component over Fast DDS: one participant with the component's name.
+/// Received samples are decoded and delivered in the middleware's threads. A topic that the
+/// catalogue calls "scan" is "rt/scan" on the wire.
+class DdsTransport final : public Transport {
+ public:
+  struct Options {
+    std::string name;
+    std::string host;
+    std::uint32_t domain = 0;
+    std::vector<std::string> peers;  ///< numeric IPv4 addresses besides multicast
+  };
+  /// Fails when the domain is not 0..232, a peer is no address, or the machine has no network at
+  /// all.
+  static Result<std::unique_ptr<DdsTransport>> create(const Options& options,
+                                                      const MonotonicClock& clock);
+  ~DdsTransport() override;
+
+  Reader& open_reader(const InputDeclaration& declaration, Deliver deliver) override;
+  Writer& open_writer(const OutputDeclaration& declaration) override;
+  void watch_writers(const std::string& topic,
+                     std::function<void(const WriterInfo&)> event) override;
+
+  /// Waits until all readers have what was written, at most `limit` in all; for the last heartbeat.
+  void flush(Duration limit);
+
+ private:
+  class Implementation;
+  explicit DdsTransport(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace usher::runtime

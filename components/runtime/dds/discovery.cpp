@@ -1,0 +1,151 @@
+#include "runtime/dds/discovery.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+namespace usher::runtime {
+
+std::string Identity::user_data() const {
+  std::array<char, 17> digest{};
+  std::snprintf(digest.data(), digest.size(), "%016llx",
+                static_cast<unsigned long long>(idl_digest));
+  return "usher;name=" + name + ";host=" + host + ";idl=" + digest.data();
+}
+
+std::optional<Identity> Identity::parse(std::string_view user_data) {
+  constexpr std::string_view kMark = "usher;";
+  if (!user_data.starts_with(kMark)) return std::nullopt;
+  Identity identity;
+  for (std::string_view rest = user_data.substr(kMark.size()); !rest.empty();) {
+    const std::size_t end = std::min(rest.find(';'), rest.size());
+    const std::string_view entry = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (entry.starts_with("name=")) identity.name = entry.substr(5);
+    if (entry.starts_with("host=")) identity.host = entry.substr(5);
+    if (entry.starts_with("idl=")) {
+      std::from_chars(entry.data() + 4, entry.data() + entry.size(), identity.idl_digest, 16);
+    }
+  }
+  return identity;
+}
+
+DiscoveryBook::DiscoveryBook(std::string host, std::function<Time()> clock)
+    : host_(std::move(host)), clock_(std::move(clock)) {}
+
+DiscoveryBook::Prefix DiscoveryBook::prefix_of(const Guid& guid) {
+  Prefix prefix;
+  std::copy_n(guid.begin(), prefix.size(), prefix.begin());
+  return prefix;
+}
+
+void DiscoveryBook::participant_seen(const Guid& guid, const Identity& identity) {
+  const std::scoped_lock event_lock(event_mutex_);
+  ParticipantInfo info{guid, identity, clock_()};
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!participants_.emplace(prefix_of(guid), info).second) return;
+  }
+  for (const auto& event : participant_events_) event(info, true);
+}
+
+void DiscoveryBook::participant_gone(const Guid& guid) {
+  const std::scoped_lock event_lock(event_mutex_);
+  std::vector<EndpointInfo> lost;
+  std::optional<ParticipantInfo> info;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = participants_.find(prefix_of(guid));
+    if (found != participants_.end()) {
+      info = std::move(found->second);
+      participants_.erase(found);
+    }
+    std::erase_if(endpoints_, [&](const auto& entry) {
+      if (prefix_of(entry.first) != prefix_of(guid)) return false;
+      lost.push_back(entry.second);
+      return true;
+    });
+  }
+  for (const EndpointInfo& endpoint : lost) notify(endpoint, false);
+  if (!info) return;
+  for (const auto& event : participant_events_) event(*info, false);
+}
+
+void DiscoveryBook::endpoint_seen(EndpointInfo endpoint) {
+  const std::scoped_lock event_lock(event_mutex_);
+  endpoint.since = clock_();
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto owner = participants_.find(prefix_of(endpoint.guid));
+    if (owner != participants_.end()) {
+      endpoint.participant = owner->second.identity.name;
+      endpoint.host = owner->second.identity.host;
+    }
+    if (!endpoints_.emplace(endpoint.guid, endpoint).second) return;
+  }
+  notify(endpoint, true);
+}
+
+void DiscoveryBook::endpoint_gone(const Guid& guid) {
+  const std::scoped_lock event_lock(event_mutex_);
+  EndpointInfo endpoint;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = endpoints_.find(guid);
+    if (found == endpoints_.end()) return;
+    endpoint = std::move(found->second);
+    endpoints_.erase(found);
+  }
+  notify(endpoint, false);
+}
+
+void DiscoveryBook::notify(const EndpointInfo& endpoint, bool alive) const {
+  for (const auto& event : endpoint_events_) event(endpoint, alive);
+}
+
+void DiscoveryBook::observe(ParticipantEvent participant, EndpointEvent endpoint) {
+  const std::scoped_lock event_lock(event_mutex_);
+  if (participant) {
+    for (const ParticipantInfo& info : participants()) participant(info, true);
+    participant_events_.push_back(std::move(participant));
+  }
+  if (endpoint) {
+    for (const EndpointInfo& info : endpoints()) endpoint(info, true);
+    endpoint_events_.push_back(std::move(endpoint));
+  }
+}
+
+std::vector<ParticipantInfo> DiscoveryBook::participants() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<ParticipantInfo> result;
+  for (const auto& [prefix, info] : participants_) result.push_back(info);
+  return result;
+}
+
+std::vector<EndpointInfo> DiscoveryBook::endpoints() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<EndpointInfo> result;
+  for (const auto& [guid, info] : endpoints_) result.push_back(info);
+  return result;
+}
+
+WriterInfo DiscoveryBook::writer(const Guid& guid) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = endpoints_.find(guid);
+  if (found == endpoints_.end())
+    return {.guid = guid, .topic = {}, .participant = {}, .host = {}, .alive = true};
+  const EndpointInfo& info = found->second;
+  return {guid, info.topic, info.participant, info.host, true, info.since};
+}
+
+bool DiscoveryBook::same_host(const Guid& writer, const Guid& own) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = participants_.find(prefix_of(writer));
+  if (found != participants_.end() && !found->second.identity.host.empty()) {
+    return found->second.identity.host == host_;
+  }
+  return std::equal(writer.begin(), writer.begin() + 4, own.begin());
+}
+
+}  // namespace usher::runtime

@@ -1,0 +1,267 @@
+#include "runtime/dds/participant.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "runtime/dds/bytes_type.hpp"
+#include "runtime/dds/socket_buffers.hpp"
+
+namespace usher::runtime {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+constexpr std::uint32_t kSocketBuffer = 4U << 20;
+/// Participants per host that an initial peer is asked for; Fast DDS asks 4.
+constexpr std::uint32_t kPeerRange = 64;
+/// A received sample stays in the history only until the listener has taken it, but reliable ones
+/// wait there for an earlier one that was lost; the depth that a component asked for is kept by its
+/// mailbox.
+constexpr int kReaderHistory = 32;
+
+Duration_t milliseconds(std::uint32_t count) {
+  return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
+}
+
+/// Errors of the library on standard error, where they do not mix with what a program prints.
+class ErrorLog : public dds::LogConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    std::fprintf(stderr, "fast dds: %s: %s\n", entry.context.category, entry.message.c_str());
+  }
+};
+
+/// The library reads profiles and discovery settings from the environment and the working
+/// directory; what runs on a robot is decided by its manifest alone. Must happen before the factory
+/// exists.
+void isolate_library() {
+  static const bool once = [] {
+    for (const char* name :
+         {"FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE", "ROS_DISCOVERY_SERVER",
+          "FASTDDS_ENVIRONMENT_FILE", "FASTDDS_STATISTICS", "FASTDDS_BUILTIN_TRANSPORTS"}) {
+      unsetenv(name);
+    }
+    setenv("SKIP_DEFAULT_XML_FILE", "1", 1);
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::make_unique<ErrorLog>());
+    dds::Log::SetVerbosity(dds::Log::Error);
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
+Status add_peers(const ParticipantOptions& options, dds::DomainParticipantQos& qos) {
+  if (options.peers.empty()) return {};
+  rtps::LocatorList_t& peers = qos.wire_protocol().builtin.initialPeersList;
+  rtps::Locator_t multicast;  // a list that leaves it out would end discovery by multicast
+  multicast.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(multicast, "239.255.0.1");
+  peers.push_back(multicast);
+  for (const std::string& address : options.peers) {
+    rtps::Locator_t locator;
+    locator.kind = LOCATOR_KIND_UDPv4;
+    if (!rtps::IPLocator::isIPv4(address) || !rtps::IPLocator::setIPv4(locator, address)) {
+      return Error{"peers of " + options.name + ": expected IPv4 addresses like 10.0.0.2, found '" +
+                   address + "'"};
+    }
+    peers.push_back(locator);
+  }
+  return {};
+}
+
+Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& options) {
+  dds::DomainParticipantQos qos;
+  qos.name(options.name.c_str());
+  const std::string user_data = Identity{options.name, options.host, USHER_IDL_DIGEST}.user_data();
+  qos.user_data() = std::vector<rtps::octet>(user_data.begin(), user_data.end());
+
+  auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  udp->sendBufferSize = kSocketBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
+  udp->maxInitialPeersRange = kPeerRange;
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  qos.transport().send_socket_buffer_size = kSocketBuffer;
+  qos.transport().listen_socket_buffer_size = kSocketBuffer;
+
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
+  discovery.leaseDuration = milliseconds(1000);
+  discovery.leaseDuration_announcementperiod = milliseconds(200);
+  // Announcements are lost while the other side is still opening its sockets: several soon after
+  // the start.
+  discovery.initial_announcements.count = 10;
+  discovery.initial_announcements.period = milliseconds(20);
+  if (const Status status = add_peers(options, qos); !status) return Error{status.error()};
+  return qos;
+}
+
+template <class ProxyData>
+EndpointInfo endpoint_info(const ProxyData& data, bool writer) {
+  EndpointInfo info;
+  info.guid = to_guid(data.guid());
+  info.writer = writer;
+  info.topic = data.topicName().to_string();
+  info.type = data.typeName().to_string();
+  info.reliable = data.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
+  info.latched = data.m_qos.m_durability.kind != dds::VOLATILE_DURABILITY_QOS;
+  return info;
+}
+
+}  // namespace
+
+Guid to_guid(const rtps::GUID_t& guid) {
+  Guid result{};
+  std::copy_n(guid.guidPrefix.value, 12, result.begin());
+  std::copy_n(guid.entityId.value, 4, result.begin() + 12);
+  return result;
+}
+
+/// Runs on the library's threads.
+class Participant::Listener : public dds::DomainParticipantListener {
+ public:
+  explicit Listener(DiscoveryBook& book) : book_(book) {}
+
+  void on_participant_discovery(dds::DomainParticipant*,
+                                rtps::ParticipantDiscoveryInfo&& event) override {
+    using Event = rtps::ParticipantDiscoveryInfo;
+    const Guid guid = to_guid(event.info.m_guid);
+    if (event.status == Event::REMOVED_PARTICIPANT || event.status == Event::DROPPED_PARTICIPANT) {
+      book_.participant_gone(guid);
+    } else if (event.status == Event::DISCOVERED_PARTICIPANT) {
+      const auto& data = event.info.m_userData;
+      auto identity = Identity::parse({reinterpret_cast<const char*>(data.data()), data.size()});
+      if (!identity) identity = Identity{event.info.m_participantName.to_string(), {}, 0};
+      book_.participant_seen(guid, *identity);
+    }
+  }
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& event) override {
+    if (event.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+      book_.endpoint_gone(to_guid(event.info.guid()));
+    } else {
+      book_.endpoint_seen(endpoint_info(event.info, true));
+    }
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*,
+                               rtps::ReaderDiscoveryInfo&& event) override {
+    if (event.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+      book_.endpoint_gone(to_guid(event.info.guid()));
+    } else {
+      book_.endpoint_seen(endpoint_info(event.info, false));
+    }
+  }
+
+ private:
+  DiscoveryBook& book_;
+};
+
+Participant::Participant(const ParticipantOptions& options, const MonotonicClock& clock)
+    : book_(options.host, [clock] { return clock.now(); }),
+      listener_(std::make_unique<Listener>(book_)) {}
+
+Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
+                                                         const MonotonicClock& clock) {
+  isolate_library();
+  const auto qos = participant_qos(options);
+  if (!qos) return Error{qos.error()};
+  std::unique_ptr<Participant> self(new Participant(options, clock));
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  self->participant_ = factory->create_participant(options.domain, *qos, self->listener_.get(),
+                                                   dds::StatusMask::none());
+  if (self->participant_ == nullptr) {
+    return Error{"no participant '" + options.name + "' in DDS domain " +
+                 std::to_string(options.domain) +
+                 " (0..232, needs a network interface and free UDP ports)"};
+  }
+  self->guid_ = to_guid(self->participant_->guid());
+  self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});
+  self->publisher_ = self->participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  self->subscriber_ = self->participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  warn_of_small_socket_buffers(options.domain, kSocketBuffer);
+  return self;
+}
+
+Participant::~Participant() {
+  if (participant_ == nullptr) return;
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+Result<dds::Topic*> Participant::topic(const std::string& name, const std::string& type) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto found = topics_.find(name); found != topics_.end()) {
+    if (found->second->get_type_name() == type) return found->second;
+    return Error{"topic " + name + " is used here with type " + found->second->get_type_name() +
+                 ", not " + type};
+  }
+  if (participant_->find_type(type).empty()) {
+    participant_->register_type(dds::TypeSupport(new BytesType(type)), type);
+  }
+  dds::Topic* created = participant_->create_topic(name, type, dds::TOPIC_QOS_DEFAULT);
+  if (created == nullptr) return Error{"topic " + name + " of type " + type + " could not be made"};
+  return topics_.emplace(name, created).first->second;
+}
+
+Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_name,
+                                                    const std::string& type, const Qos& qos,
+                                                    dds::DataWriterListener* listener) {
+  const auto made = topic(topic_name, type);
+  if (!made) return Error{made.error()};
+  dds::DataWriterQos writer;
+  writer.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  writer.durability().kind =
+      qos.latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  writer.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  writer.history().depth = qos.depth;
+  writer.resource_limits().allocated_samples = qos.depth;
+  writer.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+  writer.data_sharing().off();
+  // A sample that the network lost is noticed by the next one or by the next heartbeat; 3 s would
+  // be too late.
+  writer.reliable_writer_qos().times.heartbeatPeriod = milliseconds(100);
+  writer.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
+  dds::DataWriter* created = publisher_->create_datawriter(*made, writer, listener);
+  if (created == nullptr) return Error{"no writer of " + topic_name + " could be made"};
+  return created;
+}
+
+Result<dds::DataReader*> Participant::create_reader(const std::string& topic_name,
+                                                    const std::string& type, const Qos& qos,
+                                                    dds::DataReaderListener* listener) {
+  const auto made = topic(topic_name, type);
+  if (!made) return Error{made.error()};
+  dds::DataReaderQos reader;
+  reader.reliability().kind =
+      qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  reader.durability().kind =
+      qos.latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  reader.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  reader.history().depth = std::max(qos.depth, kReaderHistory);
+  reader.resource_limits().allocated_samples = reader.history().depth;
+  reader.data_sharing().off();
+  reader.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+  reader.reliable_reader_qos().times.initialAcknackDelay = milliseconds(10);
+  dds::DataReader* created = subscriber_->create_datareader(*made, reader, listener);
+  if (created == nullptr) return Error{"no reader of " + topic_name + " could be made"};
+  return created;
+}
+
+void Participant::delete_writer(dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }
+void Participant::delete_reader(dds::DataReader* reader) { subscriber_->delete_datareader(reader); }
+
+}  // namespace usher::runtime

@@ -1,0 +1,70 @@
+#pragma once
+
+// Private to this folder: includes Fast DDS.
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+#include "runtime/dds/discovery.hpp"
+#include "runtime/dds/host_clock.hpp"
+
+namespace usher::runtime {
+
+struct ParticipantOptions {
+  std::string name;
+  std::string host;
+  std::uint32_t domain = 0;
+  std::vector<std::string> peers;  ///< numeric IPv4 addresses besides multicast
+};
+
+/// A DomainParticipant with the settings that hold everywhere (README.md says why), its discovery
+/// book, and topics and endpoints by wire name. Everything it made goes with it. Thread-safe.
+class Participant {
+ public:
+  static Result<std::unique_ptr<Participant>> create(const ParticipantOptions& options,
+                                                     const MonotonicClock& clock);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// Listeners must outlive the participant or the endpoint. Writers are RELIABLE; both KEEP_LAST.
+  /// Fails when this participant already has the topic with another type.
+  Result<eprosima::fastdds::dds::DataWriter*> create_writer(
+      const std::string& topic, const std::string& type, const Qos& qos,
+      eprosima::fastdds::dds::DataWriterListener* listener);
+  Result<eprosima::fastdds::dds::DataReader*> create_reader(
+      const std::string& topic, const std::string& type, const Qos& qos,
+      eprosima::fastdds::dds::DataReaderListener* listener);
+  void delete_writer(eprosima::fastdds::dds::DataWriter* writer);
+  void delete_reader(eprosima::fastdds::dds::DataReader* reader);
+
+  DiscoveryBook& book() { return book_; }
+  Guid guid() const { return guid_; }
+
+ private:
+  class Listener;
+  Participant(const ParticipantOptions& options, const MonotonicClock& clock);
+  Result<eprosima::fastdds::dds::Topic*> topic(const std::string& name, const std::string& type);
+
+  DiscoveryBook book_;
+  std::unique_ptr<Listener> listener_;
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  Guid guid_{};
+  std::mutex mutex_;
+  std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+};
+
+Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
+
+}  // namespace usher::runtime
