@@ -1,0 +1,309 @@
+#include "localization/amcl/core/amcl.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "foundation/estimation/pose_statistics.hpp"
+#include "foundation/estimation/resampling.hpp"
+#include "localization/amcl/core/beam_model.hpp"
+
+namespace usher::amcl {
+namespace {
+
+constexpr double kRecoveryRatio =
+    2.0;  // [gutmann2002]: how far the likelihood must fall before hypotheses are drawn
+constexpr double kSearchShare = 0.1;    // of hypotheses among the particles during a global start
+constexpr double kWonWeight = 0.95;     // the cluster of this share ends a global start
+constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
+
+bool finite(const LaserBeams& scan) {
+  return scan.base_T_laser.finite() && std::isfinite(scan.angle_min) &&
+         std::isfinite(scan.angle_increment) && !std::isnan(scan.range_min) && scan.range_max > 0.0;
+}
+
+std::size_t most_particles(const AmclConfig& config) {
+  return std::max(config.max_particles, config.global_particles);
+}
+
+}  // namespace
+
+Amcl::Amcl(const AmclConfig& config, std::uint64_t seed, cpu::Simd simd)
+    : config_(config),
+      simd_(simd),
+      random_(seed),
+      histogram_(config.bin_position, config.bin_yaw, most_particles(config)) {
+  assert(config.validate().ok());
+  const std::size_t most = most_particles(config);
+  for (Particles* particles : {&particles_, &next_}) particles->reserve(most);
+  candidates_.reserve(config.search_candidates);
+  likelihood_.reserve(std::max(most, config.search_candidates));
+  for (auto* indices : {&bin_, &picked_}) indices->reserve(most);
+  beams_.reserve(config.max_beams);
+  dense_beams_.reserve(std::max<std::size_t>(config.refine_beams, 2));
+}
+
+Status Amcl::set_map(const grid::OccupancyGrid& map) {
+  std::vector<std::uint32_t> free_cells;
+  bool occupied = false;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (map[i] == grid::kFree) free_cells.push_back(static_cast<std::uint32_t>(i));
+    occupied = occupied || map[i] == grid::kOccupied;
+  }
+  if (free_cells.empty()) return Error{"a map for localization needs free cells (0), found none"};
+  if (!occupied) return Error{"a map for localization needs occupied cells (100), found none"};
+  map_ = map.geometry();
+  free_cells_ = std::move(free_cells);
+  field_.build(map, config_.sensor, simd_);
+  force_update_ = true;
+  return {};
+}
+
+Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
+                              const Eigen::Matrix3d& covariance) {
+  const auto gaussian = estimation::GaussianPose::make(map_T_base, covariance);
+  if (!gaussian) return Error{"initial pose: " + gaussian.error()};
+  const std::size_t count = config_.max_particles;
+  particles_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    particles_.set(i, gaussian->sample(random_), 1.0 / static_cast<double>(count));
+  }
+  spread_pending_ = searching_ = false;
+  force_update_ = true;
+  slow_likelihood_ = fast_likelihood_ = 0.0;
+  estimate_ = Estimate{map_T_base, last_odom_T_base_.value_or(geometry::Pose2{}), covariance, {}};
+  return {};
+}
+
+void Amcl::start_globally() {
+  particles_.resize(0);
+  spread_pending_ = force_update_ = true;
+  slow_likelihood_ = fast_likelihood_ = 0.0;
+  estimate_.reset();
+}
+
+geometry::Pose2 Amcl::random_free_pose() {
+  const grid::Cell cell = map_.cell(free_cells_[random_.below(free_cells_.size())]);
+  const double x = map_.origin_x + (cell.x + random_.uniform()) * map_.resolution;
+  const double y = map_.origin_y + (cell.y + random_.uniform()) * map_.resolution;
+  return {x, y, random_.uniform(-geometry::kPi, geometry::kPi)};
+}
+
+void Amcl::spread_over_free_space() {
+  const std::size_t count = config_.global_particles;
+  particles_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    particles_.set(i, random_free_pose(), 1.0 / static_cast<double>(count));
+  }
+  spread_pending_ = false;
+  searching_ = true;
+}
+
+bool Amcl::due(const geometry::Pose2& base0_T_base1) const {
+  return force_update_ || std::hypot(base0_T_base1.x, base0_T_base1.y) >= config_.update_distance ||
+         std::abs(base0_T_base1.yaw) >= config_.update_angle;
+}
+
+UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& scan) {
+  UpdateResult result;
+  if (field_.empty()) return result;
+  result.outcome = Outcome::kNoPose;
+  if (particles_.size() == 0 && !spread_pending_) return result;
+  result.outcome = Outcome::kOdometryRejected;
+  if (!odom_T_base.finite()) return result;
+
+  geometry::Pose2 step =
+      last_odom_T_base_ ? inverse(*last_odom_T_base_) * odom_T_base : geometry::Pose2{};
+  result.odometry_restarted = std::hypot(step.x, step.y) > config_.max_step;
+  if (result.odometry_restarted) {
+    step = {};
+    force_update_ = true;
+  }
+  result.outcome = Outcome::kNotMoved;
+  if (!due(step)) return result;
+
+  move(particles_, step, config_.noise, random_);
+  last_odom_T_base_ = odom_T_base;
+  result.outcome = Outcome::kScanRejected;
+  if (!finite(scan)) return result;
+  result.beams = choose_beams(scan, config_.max_beams, config_.sensor.max_range,
+                              config_.sensor_model == SensorModel::kBeam, beams_);
+  if (beams_.size() < kLeastBeams) return result;
+  choose_beams(scan, std::max<std::size_t>(config_.refine_beams, 2), config_.sensor.max_range,
+               false, dense_beams_);
+
+  if (spread_pending_) spread_over_free_space();
+  scan_likelihood(scan, particles_);
+  const double likelihood = weigh();
+  find_bins();
+  const Cluster cluster = heaviest_cluster();
+  searching_ = searching_ && cluster.weight < kWonWeight;
+  make_estimate(cluster, odom_T_base);
+  result.injected = recovery_share(likelihood);
+  if (++updates_since_resampling_ >= config_.resample_interval || result.injected > 0.0) {
+    resample(scan, result.injected);
+    result.resampled = true;
+    updates_since_resampling_ = 0;
+  }
+  force_update_ = false;
+  result.outcome = Outcome::kUpdated;
+  return result;
+}
+
+void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {
+  likelihood_.resize(particles.size());
+  if (config_.sensor_model == SensorModel::kLikelihoodField) {
+    field_.likelihood(particles, beams_, likelihood_, simd_);
+  } else {
+    beam_model_likelihood(field_.distances(), config_.sensor,
+                          std::min(config_.sensor.max_range, scan.range_max), particles,
+                          scan.base_T_laser, beams_, likelihood_);
+  }
+}
+
+/// Multiplies the weights with the scan's likelihood and normalizes them; returns the belief's mean
+/// likelihood.
+double Amcl::weigh() {
+  const auto beams = static_cast<double>(beams_.size());
+  double mean = 0.0;
+  double total = 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    mean += particles_.weight[i] * likelihood_[i];
+    particles_.weight[i] *= 1.0 + beams * likelihood_[i];
+    total += particles_.weight[i];
+  }
+  for (double& weight : particles_.weight) weight /= total;
+  return mean;
+}
+
+/// Augmented MCL: the share of new hypotheses [thrun2005, table 8.3].
+double Amcl::recovery_share(double likelihood) {
+  if (searching_) return kSearchShare;
+  if (config_.recovery_slow <= 0.0) return 0.0;
+  if (slow_likelihood_ <= 0.0) slow_likelihood_ = fast_likelihood_ = likelihood;
+  slow_likelihood_ += config_.recovery_slow * (likelihood - slow_likelihood_);
+  fast_likelihood_ += config_.recovery_fast * (likelihood - fast_likelihood_);
+  return std::max(0.0, 1.0 - kRecoveryRatio * fast_likelihood_ / slow_likelihood_);
+}
+
+void Amcl::find_bins() {
+  histogram_.clear();
+  bin_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) bin_[i] = histogram_.add(particles_.pose(i));
+}
+
+Amcl::Cluster Amcl::heaviest_cluster() {
+  const auto cluster_of = histogram_.clusters();
+  cluster_weight_.assign(histogram_.cluster_count(), 0.0);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    cluster_weight_[cluster_of[bin_[i]]] += particles_.weight[i];
+  const auto best = static_cast<std::size_t>(
+      std::max_element(cluster_weight_.begin(), cluster_weight_.end()) - cluster_weight_.begin());
+  const auto statistics = estimation::pose_statistics(
+      particles_.size(), [&](std::size_t i) { return particles_.pose(i); },
+      [&](std::size_t i) { return cluster_of[bin_[i]] == best ? particles_.weight[i] : 0.0; });
+  return {statistics.mean, statistics.covariance, cluster_weight_[best]};
+}
+
+void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base) {
+  geometry::Pose2 pose = cluster.mean;
+  if (config_.refine_beams > 0) {
+    // A floor of a millimetre keeps the prior finite when all particles agree.
+    const Eigen::Matrix3d prior =
+        (cluster.covariance + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
+    pose = refine(field_.distances(), dense_beams_, pose, prior, config_.refinement).pose;
+  }
+  estimate_ = Estimate{pose, odom_T_base, cluster.covariance, quality_of(pose, cluster)};
+}
+
+Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster) const {
+  Quality quality;
+  std::size_t with_return = 0;
+  for (const Beam& beam : dense_beams_) {
+    const double distance =
+        field_.distances().interpolated(pose * geometry::Point2(beam.x, beam.y)).distance;
+    quality.explained += distance < config_.confidence.explained_distance ? 1.0 : 0.0;
+    quality.likelihood += field_.beam_likelihood(distance);
+    ++with_return;
+  }
+  const double share = with_return > 0 ? 1.0 / static_cast<double>(with_return) : 0.0;
+  quality.explained *= share;
+  quality.likelihood *= share;
+  quality.cluster_weight = cluster.weight;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+      cluster.covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
+  quality.sigma = std::sqrt(std::max(0.0, axes.eigenvalues().maxCoeff()));
+  const ConfidenceLimits& limits = config_.confidence;
+  if (quality.explained < limits.lost_explained) {
+    quality.confidence = Confidence::kLost;
+  } else if (quality.explained < limits.good_explained ||
+             quality.cluster_weight < limits.good_weight || quality.sigma > limits.good_sigma) {
+    quality.confidence = Confidence::kDegraded;
+  } else {
+    quality.confidence = Confidence::kGood;
+  }
+  return quality;
+}
+
+/// KLD: as many particles as the bins that the belief really occupies ask for. They are counted on
+/// a resampling of the present size, since bins with particles of no weight do not count.
+std::size_t Amcl::adapted_count() {
+  picked_.resize(std::min(particles_.size(), config_.max_particles));
+  estimation::low_variance_resample(particles_.weight, random_.uniform(), picked_);
+  bin_used_.assign(histogram_.bins(), 0);
+  for (const std::uint32_t i : picked_) bin_used_[bin_[i]] = 1;
+  const auto bins =
+      static_cast<std::size_t>(std::accumulate(bin_used_.begin(), bin_used_.end(), std::size_t{0}));
+  const double bound =
+      estimation::kld_sample_bound(bins, config_.kld_epsilon, config_.kld_quantile);
+  return std::clamp(static_cast<std::size_t>(bound), config_.min_particles, config_.max_particles);
+}
+
+void Amcl::resample(const LaserBeams& scan, double injected_share) {
+  const std::size_t count = adapted_count();
+  const auto injected =
+      std::min<std::size_t>(config_.search_hypotheses,
+                            static_cast<std::size_t>(injected_share * static_cast<double>(count)));
+  picked_.resize(count - injected);
+  estimation::low_variance_resample(particles_.weight, random_.uniform(), picked_);
+  next_.resize(count);
+  const double weight = 1.0 / static_cast<double>(count);
+  for (std::size_t i = 0; i < picked_.size(); ++i)
+    next_.set(i, particles_.pose(picked_[i]), weight);
+  if (injected > 0) {
+    search(scan, injected);
+    for (std::size_t i = 0; i < injected; ++i)
+      next_.set(picked_.size() + i, candidates_.pose(order_[i]), weight);
+  }
+  std::swap(particles_, next_);
+}
+
+/// Tries random poses against the scan and leaves the best `count`, refined, as
+/// candidates_[order_[0 .. count - 1]].
+void Amcl::search(const LaserBeams& scan, std::size_t count) {
+  candidates_.resize(config_.search_candidates);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) candidates_.set(i, random_free_pose(), 1.0);
+  scan_likelihood(scan, candidates_);
+  order_.resize(candidates_.size());
+  std::iota(order_.begin(), order_.end(), 0U);
+  const auto better = [&](std::uint32_t a, std::uint32_t b) {
+    return likelihood_[a] != likelihood_[b] ? likelihood_[a] > likelihood_[b] : a < b;
+  };
+  std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
+                    order_.end(), better);
+  RefinementParameters wide = config_.refinement;
+  wide.sigma = std::max(wide.sigma, config_.sensor.sigma_hit);
+  wide.max_shift = config_.sensor.field_radius;
+  wide.max_turn = 0.5;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = order_[k];
+    const auto refined =
+        refine(field_.distances(), beams_, candidates_.pose(i), Eigen::Matrix3d::Zero(), wide);
+    candidates_.set(i, refined.pose, 1.0);
+  }
+}
+
+}  // namespace usher::amcl
