@@ -1,0 +1,308 @@
+#include "operations/launcher/launcher.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace usher::operations {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr auto kBudgetWindow = seconds(60);
+constexpr auto kShortestPause = milliseconds(100);
+constexpr auto kLongestPause = seconds(5);
+constexpr auto kGrace = seconds(2);
+constexpr int kWrongParameters = 2;  // exit code of a component program
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+/// The same for all components of this host, so that their stamps agree.
+std::int64_t clock_anchor() {
+  timespec wall{};
+  timespec monotonic{};
+  clock_gettime(CLOCK_REALTIME, &wall);
+  clock_gettime(CLOCK_MONOTONIC, &monotonic);
+  return (wall.tv_sec - monotonic.tv_sec) * std::int64_t{1'000'000'000} +
+         (wall.tv_nsec - monotonic.tv_nsec);
+}
+
+std::string words_for(int status) {
+  if (WIFSIGNALED(status)) return std::string("killed by ") + strsignal(WTERMSIG(status));
+  const int code = WEXITSTATUS(status);
+  if (code == 0) return "ended by itself";
+  if (code == kWrongParameters) return "refused its parameters";
+  if (code == 3) return "ended with a fault";
+  if (code == 127) return "could not be started";
+  return "ended with code " + std::to_string(code);
+}
+
+/// The last lines of a log, to say why something ended.
+std::string tail(const std::string& path, std::size_t bytes) {
+  std::ifstream file(path, std::ios::ate | std::ios::binary);
+  if (!file) return {};
+  const auto size = static_cast<std::size_t>(file.tellg());
+  file.seekg(static_cast<std::streamoff>(size > bytes ? size - bytes : 0));
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const auto line = text.rfind('\n');
+  return line == std::string::npos ? text : text.substr(line + 1);
+}
+
+}  // namespace
+
+std::string to_yaml(const runtime::ParameterFile& file) {
+  std::ostringstream out;
+  out << "component: " << file.component << "\nname: " << file.name << "\nhost: " << file.host
+      << "\ndomain: " << file.domain << "\nseed: " << file.seed
+      << "\ncritical: " << (file.critical ? "true" : "false")
+      << "\nclock_anchor: " << file.clock_anchor << "\n";
+  if (!file.run_directory.empty()) out << "run_directory: " << quoted(file.run_directory) << "\n";
+  if (!file.peers.empty()) {
+    out << "peers: [";
+    for (std::size_t i = 0; i < file.peers.size(); ++i)
+      out << (i > 0 ? ", " : "") << quoted(file.peers[i]);
+    out << "]\n";
+  }
+  out << (file.values.empty() ? "parameters: {}\n" : "parameters:\n");
+  for (const auto& value : file.values) {
+    out << "  " << value.name << ": {value: " << value.yaml << ", origin: " << quoted(value.origin)
+        << "}\n";
+  }
+  return out.str();
+}
+
+Result<Launcher> Launcher::create(const Deployment& deployment, const LaunchOptions& options) {
+  if (!deployment.findings.empty()) {
+    const auto& first = deployment.findings.front();
+    return Error{to_string(first.verdict) + ": " + first.text + " (" + first.origin + ")"};
+  }
+  if (!options.host.empty() && deployment.manifest.host(options.host) == nullptr) {
+    std::string known;
+    for (const auto& host : deployment.manifest.hosts)
+      known += (known.empty() ? "" : ", ") + host.name;
+    return Error{"unknown host '" + options.host + "', expected one of " + known + " (" +
+                 deployment.manifest.path + ")"};
+  }
+  Launcher launcher(options);
+  if (auto status = launcher.lock(); !status) return Error{status.error()};
+  if (auto status = launcher.prepare(deployment); !status) return Error{status.error()};
+  return launcher;
+}
+
+Launcher::Launcher(Launcher&& other) noexcept
+    : options_(std::move(other.options_)),
+      processes_(std::move(other.processes_)),
+      events_(std::move(other.events_)),
+      lock_(std::exchange(other.lock_, -1)) {
+  other.processes_.clear();
+}
+
+Launcher::~Launcher() {
+  stop();
+  if (lock_ >= 0) close(lock_);
+}
+
+Status Launcher::lock() {
+  std::error_code error;
+  std::filesystem::create_directories(options_.run_directory, error);
+  const std::string path = options_.run_directory + "/lock";
+  lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) return Error{"cannot write " + path + ": " + std::strerror(errno)};
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    std::ifstream holder(path);
+    std::string pid;
+    holder >> pid;
+    return Error{"this robot is already launched here, by process " + pid + " (" + path + ")"};
+  }
+  const std::string pid = std::to_string(getpid()) + "\n";
+  if (ftruncate(lock_, 0) != 0 ||
+      write(lock_, pid.data(), pid.size()) != static_cast<ssize_t>(pid.size())) {
+    return Error{"cannot write " + path + ": " + std::strerror(errno)};
+  }
+  return {};
+}
+
+Status Launcher::prepare(const Deployment& deployment) {
+  const std::int64_t anchor = clock_anchor();
+  for (std::size_t i = 0; i < deployment.files.size(); ++i) {
+    const auto& component = deployment.manifest.components[i];
+    if (!options_.host.empty() && component.host != options_.host) continue;
+    auto file = deployment.files[i];
+    file.clock_anchor = anchor;
+    file.run_directory = options_.run_directory;
+    const std::string path = options_.run_directory + "/" + component.name + ".yaml";
+    std::ofstream out(path, std::ios::trunc);
+    out << to_yaml(file);
+    out.close();
+    if (!out) return Error{"cannot write " + path};
+
+    const bool grouped = !component.group.empty();
+    const std::string name = grouped ? component.group : component.name;
+    auto process = std::find_if(processes_.begin(), processes_.end(),
+                                [&](const Process& p) { return p.name == name; });
+    if (process == processes_.end()) {
+      const std::string program =
+          options_.program_directory + "/usher-" + (grouped ? "group" : component.type);
+      if (access(program.c_str(), X_OK) != 0)
+        return Error{"program " + program + " is missing (" + component.origin + ")"};
+      process = processes_.emplace(processes_.end());
+      process->name = name;
+      process->arguments = {program};
+      process->restart = component.restart;
+      process->budget = component.restart_budget;
+      process->log = options_.run_directory + "/" + name + ".log";
+      std::error_code ignored;
+      std::filesystem::remove(process->log, ignored);
+    }
+    process->components.push_back(component.name);
+    process->arguments.push_back("--parameters");
+    process->arguments.push_back(path);
+  }
+  if (processes_.empty())
+    return Error{"nothing runs on host '" + options_.host + "' (" + deployment.manifest.path + ")"};
+  return {};
+}
+
+void Launcher::start(Process& process) {
+  std::vector<char*> arguments;
+  for (auto& argument : process.arguments) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    // Only async-signal-safe calls from here to execv. Nobody outlives the launcher.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(127);
+    setpgid(0, 0);  // a Ctrl-C at the terminal reaches the launcher alone, which stops in order
+    const int log = open(process.log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    const int null = open("/dev/null", O_RDONLY);
+    if (log >= 0) dup2(log, STDOUT_FILENO), dup2(log, STDERR_FILENO);
+    if (null >= 0) dup2(null, STDIN_FILENO);
+    execv(arguments[0], arguments.data());
+    _exit(127);
+  }
+  process.pid = pid;
+  process.state = pid > 0 ? Process::State::kRunning : Process::State::kGaveUp;
+  ++process.starts;
+  process.recent_starts.push_back(Clock::now());
+  events_.push_back(process.name + (process.starts == 1 ? ": started" : ": started again"));
+}
+
+void Launcher::ended(Process& process, int status) {
+  process.pid = 0;
+  process.last_end = words_for(status);
+  if (process.state == Process::State::kStopping) {
+    process.state = Process::State::kStopped;
+    return;
+  }
+  const bool clean = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const bool hopeless =
+      WIFEXITED(status) && (WEXITSTATUS(status) == kWrongParameters || WEXITSTATUS(status) == 127);
+  const auto now = Clock::now();
+  std::erase_if(process.recent_starts, [&](auto start) { return now - start > kBudgetWindow; });
+  std::string event = process.name + ": " + process.last_end;
+  if (const auto why = tail(process.log, 2000); !why.empty() && !clean) event += " (" + why + ")";
+  if (hopeless || process.restart == RestartPolicy::kNever ||
+      (clean && process.restart == RestartPolicy::kOnFailure)) {
+    process.state = hopeless || !clean ? Process::State::kGaveUp : Process::State::kStopped;
+  } else if (static_cast<int>(process.recent_starts.size()) > process.budget) {
+    process.state = Process::State::kGaveUp;
+    event += ", more than " + std::to_string(process.budget) + " starts within a minute: given up";
+  } else {
+    // At once the first time; each further end within the window doubles the pause.
+    const auto repeats = static_cast<int>(process.recent_starts.size()) - 1;
+    const auto pause = repeats <= 0
+                           ? Clock::duration::zero()
+                           : std::min<Clock::duration>(
+                                 kShortestPause * (1 << std::min(repeats - 1, 10)), kLongestPause);
+    process.state = Process::State::kWaiting;
+    process.start_at = now + pause;
+  }
+  events_.push_back(event);
+}
+
+bool Launcher::reap(Process& process) {
+  if (process.pid == 0) return false;
+  int status = 0;
+  if (waitpid(process.pid, &status, WNOHANG) != process.pid) return false;
+  ended(process, status);
+  return true;
+}
+
+void Launcher::poll() {
+  for (auto& process : processes_) reap(process);
+  for (auto& process : processes_) {
+    if (process.state == Process::State::kWaiting && Clock::now() >= process.start_at)
+      start(process);
+  }
+}
+
+void Launcher::stop() {
+  for (auto process = processes_.rbegin(); process != processes_.rend(); ++process) {
+    if (process->pid == 0) {
+      if (process->state == Process::State::kWaiting) process->state = Process::State::kStopped;
+      continue;
+    }
+    process->state = Process::State::kStopping;
+    kill(process->pid, SIGCONT);  // a stopped process would not hear the next one
+    kill(process->pid, SIGTERM);
+  }
+  const auto deadline = Clock::now() + kGrace;
+  const auto running = [this] {
+    return std::any_of(processes_.begin(), processes_.end(),
+                       [](const Process& p) { return p.pid != 0; });
+  };
+  bool killed = false;
+  while (running()) {
+    for (auto& process : processes_) reap(process);
+    if (!killed && Clock::now() > deadline) {
+      killed = true;
+      for (const auto& process : processes_) {
+        if (process.pid == 0) continue;
+        events_.push_back(process.name + ": did not stop within 2 s, killed");
+        kill(process.pid, SIGKILL);
+      }
+    }
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+}
+
+const Process* Launcher::find(const std::string& component) const {
+  const auto found =
+      std::find_if(processes_.begin(), processes_.end(), [&](const Process& process) {
+        return std::find(process.components.begin(), process.components.end(), component) !=
+               process.components.end();
+      });
+  return found == processes_.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Launcher::events() { return std::exchange(events_, {}); }
+
+bool Launcher::broken() const {
+  return std::any_of(processes_.begin(), processes_.end(),
+                     [](const Process& p) { return p.state == Process::State::kGaveUp; });
+}
+
+}  // namespace usher::operations

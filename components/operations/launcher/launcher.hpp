@@ -1,0 +1,94 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+#include "operations/manifest/resolve.hpp"
+
+namespace usher::operations {
+
+struct LaunchOptions {
+  std::string host;  ///< start only this host's part; empty = everything on this machine
+  std::string program_directory;  ///< where usher-<type> lie
+  std::string
+      run_directory;  ///< parameter files, logs and what components keep; made when it is not there
+};
+
+/// One process of a deployment: a component, or a group of them.
+struct Process {
+  enum class State {
+    kWaiting,  ///< to be started at `start_at`
+    kRunning,
+    kStopping,
+    kStopped,  ///< asked to
+    kGaveUp,   ///< restarts are not wanted or used up, or its parameters are wrong
+  };
+
+  std::string name;                     ///< of the component, or of the group
+  std::vector<std::string> components;  ///< names
+  std::vector<std::string> arguments;   ///< program first
+  RestartPolicy restart = RestartPolicy::kAlways;
+  int budget = 0;  ///< starts within a minute
+  std::string log;
+
+  State state = State::kWaiting;
+  pid_t pid = 0;
+  int starts = 0;
+  std::string last_end;  ///< how it ended the last time, in words; empty before the first
+  std::chrono::steady_clock::time_point start_at{};
+  std::deque<std::chrono::steady_clock::time_point> recent_starts;
+};
+
+/// Runs one host's part of a deployment as child processes: starts them in the manifest's order,
+/// restarts the ones that end (the first time at once, then with growing pauses inside a budget),
+/// stops them in reverse order. Not thread-safe.
+class Launcher {
+ public:
+  /// Writes the parameter files. Fails when the deployment has findings, the host is unknown, a
+  /// program is missing, or the same robot is already launched from this run directory.
+  static Result<Launcher> create(const Deployment& deployment, const LaunchOptions& options);
+  /// Stops what still runs.
+  ~Launcher();
+  Launcher(Launcher&& other) noexcept;
+  Launcher& operator=(Launcher&&) = delete;
+  Launcher(const Launcher&) = delete;
+
+  /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.
+  /// What happened since the last call is in events().
+  void poll();
+  /// SIGTERM in reverse order, SIGKILL after two seconds. Blocks until all are gone.
+  void stop();
+
+  const std::vector<Process>& processes() const { return processes_; }
+  const Process* find(const std::string& component) const;
+  /// Sentences for an operator, in order; cleared by the call.
+  std::vector<std::string> events();
+  /// A process gave up: the deployment is not what the manifest says.
+  bool broken() const;
+  const std::string& run_directory() const { return options_.run_directory; }
+
+ private:
+  explicit Launcher(LaunchOptions options) : options_(std::move(options)) {}
+  Status lock();
+  Status prepare(const Deployment& deployment);
+  void start(Process& process);
+  void ended(Process& process, int status);
+  bool reap(Process& process);
+
+  LaunchOptions options_;
+  std::vector<Process> processes_;
+  std::vector<std::string> events_;
+  int lock_ = -1;
+};
+
+/// The file that a component gets with --parameters.
+std::string to_yaml(const runtime::ParameterFile& file);
+
+}  // namespace usher::operations
