@@ -17,27 +17,30 @@
 
 namespace usher::runtime {
 
-/// One component and everything that the host laws promise it: mailboxes, turns, ages, timers, staged outputs, health,
-/// heartbeats, parameters, random streams. Shared by all hosts; they add a clock (Platform) and a network (Transport).
+/// One component and everything that the host laws promise it: mailboxes, turns, ages, timers,
+/// staged outputs, health, heartbeats, parameters, random streams. Shared by all hosts; they add a
+/// clock (Platform) and a network (Transport).
 ///
 /// A host does:
 ///
 ///     Engine engine(file, platform, transport);
-///     const Status status = engine.construct(factory);   // failed: exit code engine.faulted() ? 3 : 2
-///     while (!asked_to_stop) {
+///     const Status status = engine.construct(factory);   // failed: exit code engine.faulted() ? 3
+///     : 2 while (!asked_to_stop) {
 ///       wait until engine.has_work() or engine.next_due();
-///       if (!engine.run_turn()) break;                    // exit code 3, engine.fault_reason() says why
+///       if (!engine.run_turn()) break;                    // exit code 3, engine.fault_reason()
+///       says why
 ///     }
 ///     engine.stop();
 ///
-/// Threads: one dispatcher thread calls construct, next_due, run_turn, fail, stop and the destructor; what the engine
-/// gave to the transport and the platform (Deliver, StreamSink, `finished`), post and has_work may be called on any
-/// thread, also after stop and after the engine's end, when they do nothing.
+/// Threads: one dispatcher thread calls construct, next_due, run_turn, fail, stop and the
+/// destructor; what the engine gave to the transport and the platform (Deliver, StreamSink,
+/// `finished`), post and has_work may be called on any thread, also after stop and after the
+/// engine's end, when they do nothing.
 ///
-/// A turn takes what has arrived when it begins, at most `depth` samples per input and writer, and reads the clock
-/// once. It runs samples and posted events in order of arrival (ties: posted events first, then inputs by
-/// declaration), then what is due: timers, losses of freshness and the heartbeat, in order of time, ties by
-/// declaration, each at most once.
+/// A turn takes what has arrived when it begins, at most `depth` samples per input and writer, and
+/// reads the clock once. It runs samples and posted events in order of arrival (ties: posted events
+/// first, then inputs by declaration), then what is due: timers, losses of freshness and the
+/// heartbeat, in order of time, ties by declaration, each at most once.
 class Engine final : public Host {
  public:
   /// Events waiting for a turn (discovery, streams, offloaded jobs); one more is a fault.
@@ -55,14 +58,17 @@ class Engine final : public Host {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Makes the component. Only when that succeeded, the ports are opened in order of declaration (output
-  /// "heartbeat" last), what the constructor published leaves, and timers and ages start to count.
-  /// An error lists every wrong parameter, one a line, or says why the constructor ended the component (then faulted()).
+  /// Makes the component. Only when that succeeded, the ports are opened in order of declaration
+  /// (output "heartbeat" last), what the constructor published leaves, and timers and ages start to
+  /// count. An error lists every wrong parameter, one a line, or says why the constructor ended the
+  /// component (then faulted()).
   Status construct(const ComponentFactory& factory);
 
-  /// A turn would run a sample or a posted event now. Samples of inputs without handler wait for the next turn.
+  /// A turn would run a sample or a posted event now. Samples of inputs without handler wait for
+  /// the next turn.
   bool has_work() const;
-  /// When the next turn is needed without new work; Time::max() after the end. Valid until the next turn.
+  /// When the next turn is needed without new work; Time::max() after the end. Valid until the next
+  /// turn.
   Time next_due() const;
   /// False when the component has ended: by a fault or by stop().
   bool run_turn();
@@ -92,12 +98,13 @@ class Engine final : public Host {
   Stream& open_stream(const std::string& uri, StreamHandlers handlers) override;
   Status keep(const std::string& key, std::span<const std::uint8_t> bytes) override;
   Result<Bytes> kept(const std::string& key) override;
-  void watch_writers(const std::string& topic, std::function<void(const WriterInfo&)> handler) override;
+  void watch_writers(const std::string& topic,
+                     std::function<void(const WriterInfo&)> handler) override;
   [[noreturn]] void fault(const std::string& reason) override;
 
  protected:
-  /// Ports and timers are declared in the component's constructor only; later ones are a fault. An output's guid is
-  /// zero until the constructor has returned.
+  /// Ports and timers are declared in the component's constructor only; later ones are a fault. An
+  /// output's guid is zero until the constructor has returned.
   InputPort& declare(InputDeclaration declaration) override;
   OutputPort& declare(OutputDeclaration declaration) override;
   TimerPort& declare(TimerDeclaration declaration) override;

@@ -15,27 +15,30 @@ struct ParameterValue {
   std::string origin;  ///< "config/robots/marvin.yaml:12"
 };
 
-/// The file that the launcher writes for one component (`--parameters FILE`): who it is, where it lives, its values.
+/// The file that the launcher writes for one component (`--parameters FILE`): who it is, where it
+/// lives, its values.
 struct ParameterFile {
-  std::string component;            ///< type = name of the component's folder
-  std::string name;                 ///< in the manifest = name of the DDS participant
-  std::string host;                 ///< in the manifest
-  std::uint32_t domain = 0;         ///< DDS domain, 0..232
-  std::uint64_t seed = 1;           ///< of the world
-  bool critical = false;            ///< heartbeat at 50 Hz instead of 10 Hz
-  std::string run_directory;        ///< empty = nothing is kept over restarts
-  std::int64_t clock_anchor = 0;    ///< [ns] added to CLOCK_MONOTONIC gives stamps
-  std::vector<std::string> peers;   ///< addresses of further initial peers
+  std::string component;           ///< type = name of the component's folder
+  std::string name;                ///< in the manifest = name of the DDS participant
+  std::string host;                ///< in the manifest
+  std::uint32_t domain = 0;        ///< DDS domain, 0..232
+  std::uint64_t seed = 1;          ///< of the world
+  bool critical = false;           ///< heartbeat at 50 Hz instead of 10 Hz
+  std::string run_directory;       ///< empty = nothing is kept over restarts
+  std::int64_t clock_anchor = 0;   ///< [ns] added to CLOCK_MONOTONIC gives stamps
+  std::vector<std::string> peers;  ///< addresses of further initial peers
   std::vector<ParameterValue> values;
 };
 
-/// Errors name file and line: unknown or repeated key, wrong type, missing `component`, `name` or `host`.
+/// Errors name file and line: unknown or repeated key, wrong type, missing `component`, `name` or
+/// `host`.
 Result<ParameterFile> read_parameter_file(const std::string& path);
 /// The same from text; `where` stands for the file in origins and errors.
 Result<ParameterFile> parse_parameter_file(const std::string& text, const std::string& where);
 
-/// The values of a robot's, site's or manifest's mapping under dotted names: maps nest, everything else stays one
-/// value. For the launcher. A repeated key, a key with a dot that another one spells out, or an empty key is an error.
+/// The values of a robot's, site's or manifest's mapping under dotted names: maps nest, everything
+/// else stays one value. For the launcher. A repeated key, a key with a dot that another one spells
+/// out, or an empty key is an error.
 Result<std::vector<ParameterValue>> flatten(const std::string& yaml, const std::string& where);
 Result<std::vector<ParameterValue>> flatten_file(const std::string& path);
 

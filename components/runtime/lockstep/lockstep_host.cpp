@@ -1,0 +1,230 @@
+#include "runtime/lockstep/lockstep_host.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace usher::runtime {
+
+/// There are no devices in simulation: every opening ends with a close.
+class LockstepHost::DeadStream final : public Stream {
+ public:
+  DeadStream(std::string uri, StreamSink sink,
+             std::function<void(Duration, std::function<void()>)> later)
+      : uri_(std::move(uri)), sink_(std::move(sink)), later_(std::move(later)) {}
+
+  void close() { sink_.closed("there are no devices in simulation: " + uri_); }
+
+  bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
+  bool open() const override { return false; }
+  void reopen(Duration delay) override {
+    constexpr Duration kShortest = std::chrono::milliseconds(1);
+    later_(std::max(delay, kShortest), [this] { close(); });
+  }
+
+ private:
+  std::string uri_;
+  StreamSink sink_;
+  std::function<void(Duration, std::function<void()>)> later_;
+};
+
+/// Everything that a kill -9 takes away.
+class LockstepHost::Life final : public Platform, public Transport {
+ public:
+  Life(LockstepHost& host, Network::ParticipantId participant)
+      : id(participant),
+        engine(host.file_, *this, *this),
+        host_(host),
+        clock_(host.network_.clock_of(participant)) {}
+
+  // --- Platform
+  Time now() const override { return host_.schedule_.now() + clock_; }
+  /// The engine asks before and after each handler.
+  Duration work_time() const override { return host_.options_.handler_cost * (asked_++); }
+  void wake() override {
+    if (!host_.in_turn_) host_.plan_turn(host_.schedule_.now());
+  }
+  Resources resources() override { return {}; }
+  void offload(Duration declared, std::function<void()> job,
+               std::function<void()> finished) override {
+    worker_free_ = std::max(worker_free_, host_.schedule_.now()) + declared;
+    add_action(worker_free_, [job = std::move(job), finished = std::move(finished)] {
+      job();
+      finished();
+    });
+  }
+  Stream& open_stream(const std::string& uri, StreamSink sink) override {
+    auto later = [this](Duration delay, std::function<void()> action) {
+      add_action(host_.schedule_.now() + delay, std::move(action));
+    };
+    DeadStream& stream = streams_.emplace_back(uri, std::move(sink), std::move(later));
+    stream.close();
+    return stream;
+  }
+  Status keep(const std::string& key, std::span<const std::uint8_t> bytes) override {
+    host_.kept_[key].assign(bytes.begin(), bytes.end());
+    return {};
+  }
+  Result<Bytes> kept(const std::string& key) override {
+    const auto found = host_.kept_.find(key);
+    if (found == host_.kept_.end()) return Error{"nothing is kept under " + key};
+    return found->second;
+  }
+
+  // --- Transport
+  Reader& open_reader(const InputDeclaration& declaration, Deliver deliver) override {
+    return host_.network_.open_reader(id, declaration, std::move(deliver));
+  }
+  Writer& open_writer(const OutputDeclaration& declaration) override {
+    return writers_.emplace_back(*this, host_.network_.open_writer(id, declaration));
+  }
+  void watch_writers(const std::string& topic,
+                     std::function<void(const WriterInfo&)> event) override {
+    host_.network_.watch_writers(id, topic, std::move(event));
+  }
+
+  /// What this life asked for later and that dies with it.
+  void add_action(Time at, std::function<void()> action) {
+    host_.schedule_.add_action(at,
+                               [alive = std::weak_ptr<int>(alive_), action = std::move(action)] {
+                                 if (!alive.expired()) action();
+                               });
+  }
+  void begin_turn() { asked_at_turn_ = asked_; }
+  /// How long the handlers of this turn took so far, the running one included.
+  Duration spent() const {
+    return host_.options_.handler_cost * ((asked_ - asked_at_turn_ + 1) / 2);
+  }
+  Time host_time(Time world) const { return world + clock_; }
+  Time world_time(Time host) const { return host == Time::max() ? host : host - clock_; }
+
+  const Network::ParticipantId id;
+
+ private:
+  /// Samples leave when the handler that wrote them returns.
+  class LeavingWriter final : public Transport::Writer {
+   public:
+    LeavingWriter(Life& life, Transport::Writer& writer) : life_(&life), writer_(&writer) {}
+    void write(std::shared_ptr<const Bytes> cdr) override {
+      const Time now = life_->host_.schedule_.now();
+      life_->host_.network_.set_departure(life_->id, now + life_->spent());
+      writer_->write(std::move(cdr));
+    }
+    std::size_t reader_count() const override { return writer_->reader_count(); }
+    Guid guid() const override { return writer_->guid(); }
+
+   private:
+    Life* life_;
+    Transport::Writer* writer_;
+  };
+
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);
+  std::deque<LeavingWriter> writers_;
+  std::deque<DeadStream> streams_;
+  Time worker_free_{};
+  mutable std::int64_t asked_ = 0;
+  std::int64_t asked_at_turn_ = 0;
+
+ public:
+  Engine engine;  // after what it uses
+
+ private:
+  LockstepHost& host_;
+  const Duration clock_;
+};
+
+LockstepHost::LockstepHost(std::uint32_t index, Schedule& schedule, Network& network,
+                           ComponentFactory factory, ParameterFile file, Options options)
+    : index_(index),
+      schedule_(schedule),
+      network_(network),
+      factory_(std::move(factory)),
+      file_(std::move(file)),
+      options_(options) {}
+
+LockstepHost::~LockstepHost() = default;
+
+Engine* LockstepHost::engine() { return life_ ? &life_->engine : nullptr; }
+
+Status LockstepHost::start() {
+  if (life_) return Error{file_.name + " is already running"};
+  ++lives_;
+  busy_until_ = hung_until_ = Time{};
+  life_ = std::make_unique<Life>(*this, network_.join(file_.name, file_.host, false));
+  in_turn_ = true;
+  Status status = life_->engine.construct(factory_);
+  in_turn_ = false;
+  if (!status.ok()) {
+    fault_reason_ = status.error();
+    end(true);
+    return status;
+  }
+  network_.announce(life_->id);
+  plan_turn(schedule_.now());
+  return status;
+}
+
+void LockstepHost::end(bool politely) {
+  planned_ = Time::max();
+  if (politely) {
+    network_.leave(life_->id);
+  } else {
+    network_.vanish(life_->id);
+  }
+  life_.reset();
+}
+
+void LockstepHost::kill() {
+  if (!life_) return;
+  end(false);
+  restart_later();
+}
+
+void LockstepHost::stop() {
+  if (!life_) return;
+  life_->engine.stop();
+  end(true);
+}
+
+void LockstepHost::restart_later() {
+  if (!options_.restart_after) return;
+  schedule_.add_action(schedule_.now() + *options_.restart_after, [this] {
+    if (!life_) static_cast<void>(start());  // the reason is kept in fault_reason_
+  });
+}
+
+void LockstepHost::hang(Time until) { hung_until_ = std::max(hung_until_, until); }
+
+Time LockstepHost::earliest() const {
+  return std::max({schedule_.now(), busy_until_, hung_until_});
+}
+
+void LockstepHost::plan_turn(Time at) {
+  at = std::max(at, earliest());
+  if (at >= planned_) return;
+  planned_ = at;
+  schedule_.add_turn(at, index_);
+}
+
+void LockstepHost::turn() {
+  if (!life_ || planned_ != schedule_.now()) return;  // overtaken by an earlier one
+  planned_ = Time::max();
+  if (earliest() > schedule_.now()) {
+    plan_turn(earliest());
+    return;
+  }
+  in_turn_ = true;
+  life_->begin_turn();
+  const bool alive = life_->engine.run_turn();
+  in_turn_ = false;
+  if (!alive) {
+    fault_reason_ = life_->engine.fault_reason();
+    end(true);
+    restart_later();
+    return;
+  }
+  busy_until_ = schedule_.now() + life_->spent();
+  const Time due = life_->world_time(life_->engine.next_due());
+  plan_turn(life_->engine.has_work() ? schedule_.now() : due);
+}
+
+}  // namespace usher::runtime

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/engine/engine.hpp"
+#include "runtime/lockstep/network.hpp"
+#include "runtime/lockstep/schedule.hpp"
+
+namespace usher::runtime {
+
+/// One component in a lockstep world, over all its lives: what is kept survives a crash, as the
+/// launcher's run directory does; everything else starts anew.
+class LockstepHost {
+ public:
+  struct Options {
+    Duration handler_cost{};                ///< how long each handler takes
+    std::optional<Duration> restart_after;  ///< after a fault or a kill; nothing = stays dead
+  };
+
+  LockstepHost(std::uint32_t index, Schedule& schedule, Network& network, ComponentFactory factory,
+               ParameterFile file, Options options);
+  ~LockstepHost();
+  LockstepHost(const LockstepHost&) = delete;
+  LockstepHost& operator=(const LockstepHost&) = delete;
+
+  /// A new life. An error names the wrong parameters or says why the constructor ended it.
+  Status start();
+  void kill();  ///< as kill -9: the others notice when the lease ends
+  void stop();  ///< as SIGTERM
+  /// No turn until then, while samples go on to arrive: a handler that does not return.
+  void hang(Time until);
+
+  const ParameterFile& file() const { return file_; }
+  bool running() const { return life_ != nullptr; }
+  bool in_turn() const { return in_turn_; }
+  /// Of the last life that ended with one; empty = none.
+  const std::string& fault_reason() const { return fault_reason_; }
+  std::uint64_t lives() const { return lives_; }
+  std::map<std::string, Bytes>& kept() { return kept_; }
+  /// Null while it is dead.
+  Engine* engine();
+
+  /// The schedule's turn for this component is due.
+  void turn();
+
+ private:
+  class Life;
+  class DeadStream;
+
+  Time earliest() const;
+  void plan_turn(Time at);
+  void end(bool politely);
+  void restart_later();
+
+  const std::uint32_t index_;
+  Schedule& schedule_;
+  Network& network_;
+  const ComponentFactory factory_;
+  const ParameterFile file_;
+  const Options options_;
+  std::map<std::string, Bytes> kept_;
+  std::string fault_reason_;
+  std::uint64_t lives_ = 0;
+  bool in_turn_ = false;
+  Time planned_ =
+      Time::max();  ///< of the turn that counts; earlier entries of the schedule are stale
+  Time busy_until_{}, hung_until_{};
+  std::unique_ptr<Life> life_;
+};
+
+}  // namespace usher::runtime

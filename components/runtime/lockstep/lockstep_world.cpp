@@ -1,0 +1,122 @@
+#include "runtime/lockstep/lockstep_world.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace usher::runtime {
+
+LockstepWorld::LockstepWorld() : LockstepWorld(Options{}) {}
+
+LockstepWorld::LockstepWorld(const Options& options)
+    : start_(options.start), schedule_(options.start), network_(schedule_, options.network) {}
+
+LockstepWorld::~LockstepWorld() = default;
+
+Status LockstepWorld::add(ComponentFactory factory, ParameterFile file,
+                          LockstepHost::Options options) {
+  const bool known = std::any_of(hosts_.begin(), hosts_.end(),
+                                 [&](const auto& each) { return each->file().name == file.name; });
+  if (known) return Error{"the name " + file.name + " is given twice"};
+  hosts_.push_back(std::make_unique<LockstepHost>(static_cast<std::uint32_t>(hosts_.size()),
+                                                  schedule_, network_, std::move(factory),
+                                                  std::move(file), options));
+  return hosts_.back()->start();
+}
+
+LockstepHost& LockstepWorld::host(const std::string& name) const {
+  for (const auto& each : hosts_) {
+    if (each->file().name == name) return *each;
+  }
+  throw std::out_of_range("no component " + name + " in this world");
+}
+
+std::vector<std::string> LockstepWorld::components() const {
+  std::vector<std::string> names;
+  for (const auto& each : hosts_) names.push_back(each->file().name);
+  return names;
+}
+
+void LockstepWorld::when_idle(std::function<void()> action) {
+  if (turning_) {
+    schedule_.add_action(now(), std::move(action));
+  } else {
+    action();
+  }
+}
+
+void LockstepWorld::kill(const std::string& name) {
+  when_idle([&its_host = host(name)] { its_host.kill(); });
+}
+
+void LockstepWorld::stop(const std::string& name) {
+  when_idle([&its_host = host(name)] { its_host.stop(); });
+}
+
+void LockstepWorld::start(const std::string& name) {
+  // A failed start is told by running() and fault_reason().
+  when_idle([&its_host = host(name)] { static_cast<void>(its_host.start()); });
+}
+
+void LockstepWorld::hang(const std::string& name, Duration duration) {
+  host(name).hang(now() + duration);
+}
+
+void LockstepWorld::run_until(Time time) {
+  Schedule::Event event;
+  while (schedule_.next(time, event)) {
+    switch (event.rank) {
+      case Schedule::Rank::kAction:
+        schedule_.take_action(event.index)();
+        break;
+      case Schedule::Rank::kDelivery:
+        network_.deliver(event.index);
+        break;
+      case Schedule::Rank::kTurn:
+        turning_ = true;
+        hosts_[event.index]->turn();
+        turning_ = false;
+        break;
+    }
+  }
+  schedule_.advance_to(std::max(time, now()));
+}
+
+Transport::Writer& LockstepWorld::outsider_writer(const OutputDeclaration& declaration,
+                                                  const std::string& participant,
+                                                  const std::string& host_name) {
+  auto found = outsiders_.find(participant);
+  if (found == outsiders_.end()) {
+    // Without a host it lives beside the first component, so that its stamps count there.
+    const std::string fallback = hosts_.empty() ? "localhost" : hosts_.front()->file().host;
+    const auto id = network_.join(participant, host_name.empty() ? fallback : host_name, true);
+    network_.announce(id);
+    found = outsiders_.emplace(participant, Outsider{id, {}}).first;
+  }
+  auto& writer =
+      found->second.writers[declaration.topic + ' ' + std::string(declaration.type->name)];
+  if (writer == nullptr) writer = &network_.open_writer(found->second.id, declaration);
+  return *writer;
+}
+
+void LockstepWorld::publish(const OutputDeclaration& declaration, const void* message,
+                            const std::string& participant, const std::string& host_name) {
+  Bytes cdr;
+  if (!declaration.type->serialize(message, cdr)) throw std::bad_alloc();
+  write_bytes(declaration, std::move(cdr), participant, host_name);
+}
+
+void LockstepWorld::write_bytes(const OutputDeclaration& declaration, Bytes cdr,
+                                const std::string& participant, const std::string& host_name) {
+  outsider_writer(declaration, participant, host_name)
+      .write(std::make_shared<const Bytes>(std::move(cdr)));
+}
+
+void LockstepWorld::leave(const std::string& participant) {
+  const auto found = outsiders_.find(participant);
+  if (found == outsiders_.end()) return;
+  network_.leave(found->second.id);
+  outsiders_.erase(found);
+}
+
+}  // namespace usher::runtime
