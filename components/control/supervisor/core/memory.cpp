@@ -38,6 +38,9 @@ bool read(std::optional<std::string_view> field, Number& number) {
 
 std::string to_text(const Memory& memory) {
   std::string text = std::string(kHeader) + "\nepoch\t" + std::to_string(memory.epoch) + "\n";
+  for (const std::string& client : memory.stopped_by) {
+    text += "stop\t" + on_one_line(client) + "\n";
+  }
   for (const Fault& fault : memory.latched) {
     text += "fault\t" + std::to_string(fault.id) + "\t" + std::to_string(fault.at.count()) + "\t" +
             std::to_string(static_cast<int>(fault.cause)) + "\t" + on_one_line(fault.component) +
@@ -57,16 +60,25 @@ Result<Memory> memory_from_text(std::span<const std::uint8_t> bytes) {
     return refuse(2, "epoch and its number");
   }
   for (int line = 3; !rest.empty(); ++line) {
+    const auto kind = take(rest, '\t');
+    if (kind == "stop") {
+      const auto client = take(rest, '\n');
+      if (!client || memory.stopped_by.size() >= kMostStops) {
+        return refuse(line, "stop and a client, at most 32 times");
+      }
+      memory.stopped_by.emplace_back(*client);
+      continue;
+    }
     Fault fault;
     std::int64_t at = 0;
     int cause = 0;
-    const bool numbers = take(rest, '\t') == "fault" && read(take(rest, '\t'), fault.id) &&
+    const bool numbers = kind == "fault" && read(take(rest, '\t'), fault.id) &&
                          read(take(rest, '\t'), at) && read(take(rest, '\t'), cause);
     const auto component = numbers ? take(rest, '\t') : std::nullopt;
     const auto detail = component ? take(rest, '\n') : std::nullopt;
     const auto last = static_cast<int>(Cause::kEmergencyStop);
     if (!detail || cause < 0 || cause > last || !latches(static_cast<Cause>(cause))) {
-      return refuse(line, "fault, id, time, latching cause, component and detail");
+      return refuse(line, "stop or fault, id, time, latching cause, component and detail");
     }
     if (memory.latched.size() >= FaultLog::kCapacity) return refuse(line, "at most 64 faults");
     fault.at = Time(at);

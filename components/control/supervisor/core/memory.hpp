@@ -11,13 +11,16 @@
 namespace usher::supervisor {
 
 /// What a supervisor must not forget when it is restarted: a lower epoch would be ignored by the
-/// base, and a restart must not clear what only an operator may clear.
+/// base, and a restart must not end what only an operator, or whoever asked for a stop, may end.
 struct Memory {
-  std::uint64_t epoch = 0;     ///< the highest that was ever granted
-  std::vector<Fault> latched;  ///< active latched faults
+  std::uint64_t epoch = 0;              ///< the highest that was ever granted
+  std::vector<Fault> latched;           ///< active latched faults
+  std::vector<std::string> stopped_by;  ///< clients that hold a stop; at most kMostStops
 };
 
-/// One line for the epoch, one for each fault; tabs between the fields.
+inline constexpr std::size_t kMostStops = 32;
+
+/// One line for the epoch, one for each stop and fault; tabs between the fields.
 std::string to_text(const Memory& memory);
 
 /// The inverse. Refuses anything else with the line and what was expected there.

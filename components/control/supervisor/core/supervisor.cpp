@@ -26,9 +26,10 @@ Supervisor::Supervisor(const Parameters& parameters, Memory memory)
       right_(parameters.names.movement, parameters.claim_slack),
       behavior_(parameters.dwell),
       watch_(parameters.response),
-      epoch_(std::min(memory.epoch, kHighestEpoch) + (memory.epoch > 0 ? kUnsavedEpochs : 0)),
-      movement_on_(parameters.movement_on_at_start) {
+      epoch_(std::min(memory.epoch, kHighestEpoch) + (memory.epoch > 0 ? kUnsavedEpochs : 0)) {
   assert(parameters.degraded_speed_factor >= 0.0 && parameters.degraded_speed_factor <= 1.0);
+  stopped_by_ = std::move(memory.stopped_by);
+  if (!parameters.movement_on_at_start) stop("start");
   faults_.restore(std::move(memory.latched));
   decision_.grant.epoch = epoch_;
 }
@@ -93,6 +94,21 @@ Answer Supervisor::request(const Request& request, Time now) {
   return answer;
 }
 
+void Supervisor::stop(const std::string& client) {
+  if (std::find(stopped_by_.begin(), stopped_by_.end(), client) != stopped_by_.end()) return;
+  // So many names are not honest; the stop holds all the same, and only an operator ends it.
+  if (stopped_by_.size() < kMostStops) stopped_by_.push_back(client);
+}
+
+void Supervisor::movement_on(const std::string& client) {
+  const auto& operators = parameters_.operators;
+  if (std::find(operators.begin(), operators.end(), client) != operators.end()) {
+    stopped_by_.clear();
+  } else {
+    std::erase(stopped_by_, client);
+  }
+}
+
 std::string Supervisor::carry_out(const Request& request, Time now) {
   const Fault* latched = faults_.latched();
   const auto not_now = [&]() -> std::string {
@@ -102,10 +118,10 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
   };
   switch (request.command) {
     case Command::kStop:
-      movement_on_ = false;
+      stop(request.client);
       return {};
     case Command::kMovementOn:
-      movement_on_ = true;
+      movement_on(request.client);
       return {};
     case Command::kManualOn: {
       std::string refusal = not_now();
@@ -216,7 +232,7 @@ const Decision& Supervisor::step(Time now) {
   grant(able);
 
   decision_.enables = enables_of(decision_.state);
-  if (!movement_on_) decision_.enables.movement = false;
+  if (!stopped_by_.empty()) decision_.enables.movement = false;
   decision_.speed_factor = table_.degraded() ? parameters_.degraded_speed_factor : 1.0;
   decision_.emergency_stop =
       faults_.active(Cause::kEmergencyStop) ||
@@ -265,6 +281,7 @@ SupervisorStatus Supervisor::status() const {
   status.granted = decision_.grant.writer != drive::kNobody;
   status.epoch = epoch_;
   status.reason = reason_;
+  status.stopped_by = stopped_by_;
   status.components = table_.components();
   status.faults = faults_.faults();
   status.last_request = last_request_;
@@ -274,6 +291,7 @@ SupervisorStatus Supervisor::status() const {
 Memory Supervisor::memory() const {
   Memory memory;
   memory.epoch = epoch_;
+  memory.stopped_by = stopped_by_;
   for (const Fault& fault : faults_.faults()) {
     if (fault.active && fault.latched()) memory.latched.push_back(fault);
   }

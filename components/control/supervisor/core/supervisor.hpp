@@ -35,6 +35,8 @@ struct Parameters {
   Time dwell = std::chrono::milliseconds(250);  ///< least time in Inactive; outlasts old commands
   double degraded_speed_factor = 0.5;           ///< {0..1}
   bool movement_on_at_start = true;
+  /// Clients whose kMovementOn also ends the stops of others.
+  std::vector<std::string> operators{"operator", "manual_control"};
   Time claim_slack = std::chrono::milliseconds(50);      ///< see DriveRight
   Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
   Time reset_patience = std::chrono::seconds(5);         ///< for a base that leaves its emergency
@@ -126,7 +128,8 @@ struct SupervisorStatus {
   Enables enables;
   bool granted = false;
   std::uint64_t epoch = 0;
-  std::string reason;                       ///< why nobody may drive
+  std::string reason;                   ///< why nobody may drive
+  std::vector<std::string> stopped_by;  ///< whose stops hold; movement is off while there are any
   std::vector<ComponentHealth> components;  ///< in the manifest's order
   std::vector<Fault> faults;                ///< newest last
   Answer last_request;
@@ -179,6 +182,8 @@ class Supervisor {
     Time at{};
   };
 
+  void stop(const std::string& client);
+  void movement_on(const std::string& client);
   /// Why the request cannot be carried out; empty when it was.
   std::string carry_out(const Request& request, Time now);
   void note_faults(Time now);
@@ -194,7 +199,7 @@ class Supervisor {
   drive::ResponseWatch watch_;
 
   std::uint64_t epoch_;
-  bool movement_on_;
+  std::vector<std::string> stopped_by_;  ///< clients that hold a stop
   std::optional<BaseReport> base_;
   std::optional<Commanded> commanded_;
   std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base

@@ -14,6 +14,7 @@ std::span<const std::uint8_t> bytes(const std::string& text) {
 Memory example() {
   Memory memory;
   memory.epoch = 4711;
+  memory.stopped_by = {"operator", "guide"};
   memory.latched.push_back(
       {3, Time(123456789), Cause::kForeignWriter, "rogue", "writes drive/command", true});
   memory.latched.push_back({9, Time(-5), Cause::kEmergencyStop, "", "button", true});
@@ -25,6 +26,7 @@ TEST(Memory, ComesBackAsItWas) {
   const Result<Memory> back = memory_from_text(bytes(text));
   ASSERT_TRUE(back.ok()) << back.error();
   EXPECT_EQ(back->epoch, 4711U);
+  EXPECT_EQ(back->stopped_by, (std::vector<std::string>{"operator", "guide"}));
   ASSERT_EQ(back->latched.size(), 2U);
   EXPECT_EQ(back->latched[0].id, 3U);
   EXPECT_EQ(back->latched[0].at, Time(123456789));
@@ -51,6 +53,7 @@ TEST(Memory, RefusesWithLineAndExpectation) {
       "usher supervisor memory 1\nepoch\t-1\n",
       "usher supervisor memory 1\nepoch\t99999999999999999999\n",
       "usher supervisor memory 1\nepoch\t1",
+      "usher supervisor memory 1\nepoch\t1\nstop\toperator",
       "usher supervisor memory 1\nepoch\t1\nfault\t1\t2\n",
       "usher supervisor memory 1\nepoch\t1\nfault\t1\t2\t0\ta\tb\n",  // not a latching cause
       "usher supervisor memory 1\nepoch\t1\nfault\t1\t2\t9\ta\tb\n",

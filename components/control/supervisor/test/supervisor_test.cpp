@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace usher::supervisor {
 namespace {
@@ -258,6 +259,33 @@ TEST(Supervisor, StopHoldsUntilMovementOn) {
   EXPECT_TRUE(robot.supervisor.decision().enables.movement);
 }
 
+TEST(Supervisor, AVisitorsContinueDoesNotEndAnOperatorsStop) {
+  Robot robot = guiding();
+  const auto ask_as = [&](const char* client, Command command) {
+    robot.supervisor.request({++robot.request_id, client, command, ""}, robot.now());
+    return robot.supervisor.step(robot.now()).enables.movement;
+  };
+  EXPECT_FALSE(ask_as("guide", Command::kStop));
+  EXPECT_FALSE(ask_as("operator", Command::kStop));
+  EXPECT_FALSE(ask_as("guide", Command::kMovementOn));
+  EXPECT_EQ(robot.supervisor.status().stopped_by, std::vector<std::string>{"operator"});
+  EXPECT_TRUE(ask_as("operator", Command::kMovementOn));
+  EXPECT_FALSE(ask_as("guide", Command::kStop));
+  EXPECT_TRUE(ask_as("manual_control", Command::kMovementOn)) << "an operator ends all stops";
+}
+
+TEST(Supervisor, MayStartStopped) {
+  Parameters stopped = parameters();
+  stopped.movement_on_at_start = false;
+  Robot robot(stopped);
+  robot.appear();
+  robot.run(400);
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+  robot.ask(Command::kMovementOn);
+  EXPECT_TRUE(robot.supervisor.decision().enables.movement);
+}
+
 TEST(Supervisor, ManualEndsTheGuidance) {
   Robot robot = guiding();
   EXPECT_TRUE(robot.ask(Command::kManualOn).done);
@@ -458,6 +486,7 @@ TEST(Supervisor, ReplacesAWriterOnlyAfterTheOldOneIsSeenDead) {
 
 TEST(Supervisor, EpochsGrowOverARestart) {
   Robot first = ready();
+  first.ask(Command::kStop);
   first.ask(Command::kEmergencyStop);
   const Memory memory = first.supervisor.memory();
   EXPECT_EQ(memory.epoch, 1U);
@@ -472,6 +501,8 @@ TEST(Supervisor, EpochsGrowOverARestart) {
   second.run(300);
   EXPECT_TRUE(second.granted());
   EXPECT_GT(second.supervisor.decision().grant.epoch, memory.epoch + 1);
+  EXPECT_EQ(second.state(), State::kInteraction);
+  EXPECT_FALSE(second.supervisor.decision().enables.movement) << "nor does it end a stop";
 }
 
 TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
