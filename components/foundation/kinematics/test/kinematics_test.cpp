@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "foundation/kinematics/acceleration_limiter.hpp"
+#include "foundation/kinematics/differential_drive.hpp"
+#include "foundation/kinematics/stopping_distance.hpp"
+#include "foundation/random/random.hpp"
+
+namespace usher::kinematics {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(DifferentialDrive, InverseUndoesForward) {
+  const DifferentialDrive drive{0.47};
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const geometry::Twist2 twist{random.uniform(-2, 2), random.uniform(-3, 3)};
+    const geometry::Twist2 back = drive.forward(drive.inverse(twist));
+    EXPECT_NEAR(back.v, twist.v, 1e-12);
+    EXPECT_NEAR(back.w, twist.w, 1e-12);
+  }
+}
+
+TEST(DifferentialDrive, TurnsLeftWhenTheRightWheelIsFaster) {
+  EXPECT_EQ(DifferentialDrive{0.5}.forward({0.5, 1.0}), (geometry::Twist2{0.75, 1.0}));
+}
+
+TEST(DifferentialDrive, LimitKeepsTheCurvature) {
+  const DifferentialDrive drive{0.5};
+  const geometry::Twist2 limited = drive.limited({1.0, 2.0}, 1.0);
+  EXPECT_NEAR(drive.inverse(limited).right, 1.0, 1e-12);
+  EXPECT_NEAR(limited.w / limited.v, 2.0, 1e-12);
+  EXPECT_EQ(drive.limited({0.3, 0.1}, 1.0), (geometry::Twist2{0.3, 0.1}));
+}
+
+TEST(DifferentialDrive, RollingAQuarterCircleEndsBesideTheStart) {
+  const DifferentialDrive drive{0.5};
+  const double turn = geometry::kPi / 2;
+  const geometry::Pose2 end = drive.rolled({0, 0, 0}, turn * 0.75, turn * 1.25);
+  EXPECT_NEAR(end.x, 1.0, 1e-12);
+  EXPECT_NEAR(end.y, 1.0, 1e-12);
+  EXPECT_NEAR(end.yaw, turn, 1e-12);
+}
+
+TEST(StoppingDistance, DefaultIsTheMeasuredTable) {
+  const StoppingDistance model;
+  EXPECT_DOUBLE_EQ(model.distance(1.0), 1.48);
+  EXPECT_DOUBLE_EQ(model.distance(1.4), 2.08);
+  EXPECT_DOUBLE_EQ(model.distance(0.5), 0.74);
+  EXPECT_NEAR(model.distance(1.15), 1.48 + 0.15 * 1.5, 1e-12);
+  EXPECT_NEAR(model.distance(2.0), 2.08 + 0.6 * 1.5, 1e-12);
+}
+
+TEST(StoppingDistance, IsZeroAtRestAndSymmetric) {
+  const StoppingDistance model;
+  EXPECT_EQ(model.distance(0.0), 0.0);
+  EXPECT_EQ(model.distance(-0.7), model.distance(0.7));
+}
+
+TEST(StoppingDistance, SpeedIsTheInverse) {
+  const std::array points{StoppingPoint{0.3, 0.2}, StoppingPoint{1.0, 1.5},
+                          StoppingPoint{1.4, 2.6}};
+  const StoppingDistance model = StoppingDistance::make(points).value();
+  for (double v = 0.0; v < 3.0; v += 0.01) EXPECT_NEAR(model.speed(model.distance(v)), v, 1e-12);
+}
+
+TEST(StoppingDistance, HasNoSpeedWithoutRoom) {
+  const StoppingDistance model;
+  EXPECT_EQ(model.speed(0.0), 0.0);
+  EXPECT_EQ(model.speed(-1.0), 0.0);
+  EXPECT_EQ(model.speed(kNaN), 0.0);
+}
+
+TEST(StoppingDistance, RefusesTablesThatDoNotGrow) {
+  const std::vector<std::vector<StoppingPoint>> tables{{},
+                                                       {{0.0, 0.1}},
+                                                       {{1.0, 0.0}},
+                                                       {{1.0, 1.0}, {1.0, 1.2}},
+                                                       {{1.0, 1.0}, {1.2, 0.9}},
+                                                       {{kNaN, 1.0}},
+                                                       {{1.0, kInfinity}}};
+  for (const auto& table : tables) EXPECT_FALSE(StoppingDistance::make(table).ok());
+  EXPECT_NE(StoppingDistance::make(tables[4]).error().find("1.2"), std::string::npos);
+}
+
+TEST(AccelerationLimiter, ReachesTheTargetInTimeAndNoSooner) {
+  const AccelerationLimits limits{
+      .acceleration = 0.7, .deceleration = 1.0, .angular_acceleration = 2.0};
+  geometry::Twist2 command;
+  for (int i = 0; i < 10; ++i) command = limited(command, {1.0, -1.0}, limits, 0.1);
+  EXPECT_NEAR(command.v, 0.7, 1e-12);
+  EXPECT_NEAR(command.w, -1.0, 1e-12);
+}
+
+TEST(AccelerationLimiter, BrakesWithTheDeceleration) {
+  const AccelerationLimits limits{
+      .acceleration = 0.5, .deceleration = 2.0, .angular_acceleration = 2.0};
+  EXPECT_DOUBLE_EQ(limited({1.0, 0.0}, {0.0, 0.0}, limits, 0.1).v, 0.8);
+  EXPECT_DOUBLE_EQ(limited({-1.0, 0.0}, {0.0, 0.0}, limits, 0.1).v, -0.8);
+}
+
+TEST(AccelerationLimiter, ReversesThroughZero) {
+  const AccelerationLimits limits{
+      .acceleration = 1.0, .deceleration = 10.0, .angular_acceleration = 2.0};
+  EXPECT_EQ(limited({0.2, 0.0}, {-1.0, 0.0}, limits, 0.1).v, 0.0);
+  EXPECT_DOUBLE_EQ(limited({0.0, 0.0}, {-1.0, 0.0}, limits, 0.1).v, -0.1);
+}
+
+TEST(AccelerationLimiter, BrakesOnNonsense) {
+  const AccelerationLimits limits;
+  EXPECT_LT(limited({1.0, 0.0}, {kNaN, 0.0}, limits, 0.1).v, 1.0);
+  EXPECT_EQ(limited({1.0, 0.0}, {0.0, 0.0}, limits, -1.0).v, 1.0);
+  EXPECT_EQ(limited({1.0, 0.0}, {0.0, 0.0}, limits, kNaN).v, 1.0);
+}
+
+}  // namespace
+}  // namespace usher::kinematics
