@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -86,7 +87,7 @@ class Observer {
   template <class Message>
   Result<Reader<Message>> reader(
       const topics::Topic<Message>& topic,
-      std::function<void(const Message&, const RawSample&)> on_sample = {});
+      std::type_identity_t<std::function<void(const Message&, const RawSample&)>> on_sample = {});
   template <class Message>
   Result<Writer<Message>> writer(const topics::Topic<Message>& topic);
 
@@ -154,7 +155,7 @@ class Observer::Writer {
 template <class Message>
 Result<Observer::Reader<Message>> Observer::reader(
     const topics::Topic<Message>& topic,
-    std::function<void(const Message&, const RawSample&)> on_sample) {
+    std::type_identity_t<std::function<void(const Message&, const RawSample&)>> on_sample) {
   std::function<void(const void*, const RawSample&)> erased;
   if (on_sample) {
     erased = [on_sample = std::move(on_sample)](const void* message, const RawSample& sample) {

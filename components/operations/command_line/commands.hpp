@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace usher::operations {
+
+/// Each adds its subcommands. A command sets `exit_code`; 0 only when what was asked happened.
+void add_deployment_commands(CLI::App& app, int& exit_code);  ///< check components launch graph
+void add_inspection_commands(CLI::App& app, int& exit_code);  ///< status topics
+void add_operator_commands(CLI::App& app, int& exit_code);    ///< goto stop clear map
+
+}  // namespace usher::operations

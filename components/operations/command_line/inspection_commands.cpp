@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <condition_variable>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "idl/topics.hpp"
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/table.hpp"
+#include "runtime/dds/message_layout.hpp"
+#include "runtime/dds/message_types.hpp"
+#include "runtime/dds/observer.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Observer;
+using std::chrono::milliseconds;
+
+constexpr const char* kPrefix = "rt/";
+constexpr std::size_t kItemsShown = 8;
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+const char* state_name(std::uint8_t state) {
+  constexpr const char* kNames[] = {
+      "Initialise",        "Inactive",       "Interaction", "Navigation start",
+      "Navigation active", "Navigation end", "Manual",      "Fault"};
+  return state < std::size(kNames) ? kNames[state] : "?";
+}
+
+const char* health_name(std::uint8_t health) {
+  constexpr const char* kNames[] = {"missing", "ok", "degraded", "fault", "other IDL"};
+  return health < std::size(kNames) ? kNames[health] : "?";
+}
+
+/// What the supervisor thinks; exit code 0 only when nothing is wrong.
+int status(std::uint32_t domain, double patience) {
+  auto observer = Observer::create({.name = "status", .domain = domain});
+  if (!observer) return fail(observer.error());
+  auto reader = (*observer)->reader(topics::kSupervisorStatus);
+  if (!reader) return fail(reader.error());
+  const auto message = reader->take(runtime::from_seconds(patience));
+  if (!message) return fail("no supervisor in domain " + std::to_string(domain));
+  std::cout << "state " << state_name(message->state())
+            << (message->granted() ? ", may drive" : ", may not drive: " + message->reason())
+            << "\n";
+  Table table({"component", "health", "loss means", "heard s ago", "why"});
+  constexpr const char* kCriticality[] = {"stop", "degrade", "notify"};
+  bool well = true;
+  for (const auto& component : message->components()) {
+    well = well && component.health() == usher_msgs::msg::SupervisorStatus_Constants::HEALTH_OK;
+    table.add({component.name(), health_name(component.health()),
+               kCriticality[std::min<std::uint8_t>(component.criticality(), 2)],
+               component.age() < 0 ? "never" : format("%.2f", component.age()),
+               component.reason()});
+  }
+  std::cout << table.text();
+  for (const auto& fault : message->faults()) {
+    if (!fault.active()) continue;
+    well = false;
+    std::cout << (fault.latched() ? "latched fault: " : "fault: ") << fault.component_name() << ": "
+              << fault.cause() << "\n";
+  }
+  return well ? 0 : 1;
+}
+
+struct TopicRow {
+  std::string type;
+  std::vector<std::string> writers, readers;
+  bool latched = false;
+  std::unique_ptr<Observer::Subscription> subscription;
+};
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const auto& name : names) out += (out.empty() ? "" : " ") + name;
+  return out.empty() ? "-" : out;
+}
+
+int list_topics(std::uint32_t domain, double duration) {
+  auto observer = Observer::create({.name = "topics", .domain = domain});
+  if (!observer) return fail(observer.error());
+  std::this_thread::sleep_for(milliseconds(500));  // discovery
+  std::map<std::string, TopicRow> rows;
+  for (const auto& endpoint : (*observer)->endpoints()) {
+    if (!endpoint.topic.starts_with(kPrefix)) continue;
+    auto& row = rows[endpoint.topic.substr(3)];
+    row.type = endpoint.type;
+    row.latched = row.latched || (endpoint.writer && endpoint.latched);
+    (endpoint.writer ? row.writers : row.readers).push_back(endpoint.participant);
+  }
+  for (auto& [name, row] : rows) {
+    if (row.writers.empty()) continue;
+    auto subscription =
+        (*observer)->subscribe(kPrefix + name, row.type, {false, row.latched, 32}, {});
+    if (subscription) row.subscription = std::move(subscription).value();
+  }
+  std::this_thread::sleep_for(runtime::from_seconds(duration));
+  Table table({"topic", "type", "QoS", "Hz", "p50 ms", "p99 ms", "writers", "readers"});
+  for (auto& [name, row] : rows) {
+    const auto s = row.subscription ? row.subscription->statistics() : Observer::Statistics{};
+    const bool timed = s.latency_p99 > runtime::Duration{};
+    table.add({name, row.type, row.latched ? "latched" : "volatile",
+               s.rate_hz > 0 ? format("%.1f", s.rate_hz) : "-",
+               timed ? format("%.2f", runtime::seconds(s.latency_p50) * 1e3) : "-",
+               timed ? format("%.2f", runtime::seconds(s.latency_p99) * 1e3) : "-",
+               joined(row.writers), joined(row.readers)});
+  }
+  std::cout << table.text();
+  return rows.empty() ? fail("no topic in domain " + std::to_string(domain)) : 0;
+}
+
+struct EchoArguments {
+  std::string topic;
+  int count = 0;  ///< 0 = until Ctrl-C
+  double patience = 5.0;
+};
+
+int echo(std::uint32_t domain, const EchoArguments& arguments) {
+  auto observer = Observer::create({.name = "echo", .domain = domain});
+  if (!observer) return fail(observer.error());
+  const std::string wire_name = kPrefix + arguments.topic;
+  runtime::EndpointInfo writer;
+  const bool found = (*observer)->wait_for(
+      [&](const Observer& o) {
+        for (const auto& endpoint : o.endpoints()) {
+          if (endpoint.writer && endpoint.topic == wire_name) {
+            writer = endpoint;
+            return true;
+          }
+        }
+        return false;
+      },
+      runtime::from_seconds(arguments.patience));
+  if (!found)
+    return fail("nobody writes " + arguments.topic + " in domain " + std::to_string(domain));
+  const auto* layout = runtime::MessageLayouts::built_in().find(writer.type);
+  if (layout == nullptr) return fail("the type " + writer.type + " is not known here");
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  int seen = 0;
+  auto subscription = (*observer)->subscribe(
+      wire_name, writer.type, {writer.reliable, writer.latched, 16},
+      [&](const Observer::RawSample& sample) {
+        const std::lock_guard lock(mutex);
+        if (arguments.count > 0 && seen >= arguments.count) return;
+        std::cout << runtime::to_yaml(*layout, sample.cdr, kItemsShown) << "---\n" << std::flush;
+        ++seen;
+        changed.notify_all();
+      });
+  if (!subscription) return fail(subscription.error());
+  std::unique_lock lock(mutex);
+  while (arguments.count == 0 || seen < arguments.count) {
+    const int before = seen;
+    changed.wait_for(lock, runtime::from_seconds(arguments.patience));
+    if (seen == before && arguments.count > 0)
+      return fail("no sample of " + arguments.topic + " within " +
+                  format("%.0f", arguments.patience) + " s");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_inspection_commands(CLI::App& app, int& exit_code) {
+  auto domain = std::make_shared<std::uint32_t>(0);
+  auto seconds = std::make_shared<double>(2.0);
+  auto* status_command =
+      app.add_subcommand("status", "What the supervisor thinks of the running robot");
+  status_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  status_command->add_option("--seconds", *seconds, "How long to look for it")
+      ->capture_default_str();
+  status_command->callback([=, &exit_code] { exit_code = status(*domain, *seconds); });
+
+  auto arguments = std::make_shared<EchoArguments>();
+  auto* topics_command = app.add_subcommand(
+      "topics", "Topics with type, quality of service, rate, latency, writers and readers");
+  topics_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  topics_command->add_option("--seconds", *seconds, "How long to measure")->capture_default_str();
+  auto* echo_command = topics_command->add_subcommand("echo", "Print the samples of a topic");
+  echo_command->add_option("topic", arguments->topic, "Name, for example scan/filtered")
+      ->required();
+  echo_command->add_option("--count", arguments->count, "How many; 0 = until Ctrl-C")
+      ->capture_default_str();
+  echo_command
+      ->add_option("--patience", arguments->patience, "Seconds to wait for a writer or a sample")
+      ->capture_default_str();
+  topics_command->callback([=, &exit_code] {
+    exit_code = echo_command->parsed() ? echo(*domain, *arguments) : list_topics(*domain, *seconds);
+  });
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,56 @@
+#include "operations/command_line/installation.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace usher::operations {
+
+namespace fs = std::filesystem;
+
+Installation Installation::of_this_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path root = program.parent_path().parent_path();
+  const fs::path share = root / "share" / "usher";
+  return {program.parent_path().string(), (share / "contracts").string(), share.string()};
+}
+
+std::string config_directory(const std::string& manifest_path, const Installation& installation) {
+  const fs::path beside =
+      (fs::path(manifest_path).parent_path() / ".." / "config").lexically_normal();
+  std::error_code error;
+  return fs::is_directory(beside, error) ? beside.string() : installation.share + "/config";
+}
+
+Result<Deployment> load_deployment(const std::string& manifest_path,
+                                   const Installation& installation,
+                                   const std::vector<Override>& overrides) {
+  const auto contracts = read_contracts(installation.contracts);
+  if (!contracts) return Error{contracts.error()};
+  const auto manifest = read_manifest(manifest_path, config_directory(manifest_path, installation));
+  if (!manifest) return Error{manifest.error()};
+  return resolve(*manifest, *contracts, overrides);
+}
+
+Result<Override> parse_override(const std::string& text) {
+  const auto equals = text.find('=');
+  const auto dot = text.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 >= equals ||
+      equals + 1 == text.size()) {
+    return Error{"expected COMPONENT.PARAMETER=VALUE, got '" + text + "'"};
+  }
+  return Override{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
+                  text.substr(equals + 1)};
+}
+
+std::string default_run_directory(std::uint32_t domain, const std::string& host) {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  const fs::path base = runtime != nullptr && *runtime != '\0'
+                            ? fs::path(runtime) / "usher"
+                            : fs::temp_directory_path() / ("usher-" + std::to_string(getuid()));
+  return (base / ("domain-" + std::to_string(domain) + (host.empty() ? "" : "-" + host))).string();
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,18 @@
+#include "operations/command_line/commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("Usher: the software of an indoor guide robot", "usher");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", USHER_VERSION);
+  int exit_code = 0;
+  usher::operations::add_deployment_commands(app, exit_code);
+  usher::operations::add_inspection_commands(app, exit_code);
+  usher::operations::add_operator_commands(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  }
+  return exit_code;
+}

@@ -1,0 +1,207 @@
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <memory>
+
+#include "foundation/grid/map_file.hpp"
+#include "idl/topics.hpp"
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/table.hpp"
+#include "runtime/dds/observer.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Observer;
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg;
+
+constexpr auto kRepeat = milliseconds(200);
+constexpr const char* kClient = "operator";
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+/// Ids that differ between two runs of this program.
+std::uint64_t fresh_id() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count());
+}
+
+/// Asks the supervisor and says what became of it.
+int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
+  auto observer = Observer::create({.name = kClient, .domain = domain});
+  if (!observer) return fail(observer.error());
+  auto writer = (*observer)->writer(topics::kSupervisorRequest);
+  auto status = (*observer)->reader(topics::kSupervisorStatus);
+  if (!writer) return fail(writer.error());
+  if (!status) return fail(status.error());
+  if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
+    return fail("no supervisor in domain " + std::to_string(domain));
+  SupervisorRequest request;
+  request.id(fresh_id());
+  request.client(kClient);
+  request.command(command);
+  for (int tries = 0; tries < 15; ++tries) {
+    writer->write(request);
+    const auto until = std::chrono::steady_clock::now() + kRepeat;
+    while (std::chrono::steady_clock::now() < until) {
+      const auto answer = status->take(milliseconds(50));
+      if (!answer || answer->last_request() != request.id()) continue;
+      if (!answer->last_request_done()) return fail("refused: " + answer->last_request_reason());
+      std::cout << done << "\n";
+      return 0;
+    }
+  }
+  return fail("the supervisor did not answer within 3 s");
+}
+
+struct GoalArguments {
+  std::string location;
+  std::vector<double> pose;
+  double max_speed = 0.0;
+  bool no_wait = false;
+};
+
+int list_locations(Observer& observer) {
+  auto reader = observer.reader(topics::kLocations);
+  if (!reader) return fail(reader.error());
+  const auto message = reader->take(std::chrono::seconds(3));
+  if (!message) return fail("no navigator in this domain");
+  Table table({"location", "title", "x", "y", "yaw"});
+  for (const auto& location : message->locations()) {
+    const auto pose = wire::to_planar(location.pose());
+    if (pose)
+      table.add({location.name(), location.title(), format("%.2f", pose->x),
+                 format("%.2f", pose->y), format("%.2f", pose->yaw)});
+  }
+  std::cout << table.text();
+  return 0;
+}
+
+/// One line that is rewritten while the robot drives.
+void show_progress(const NavigateStatus& status) {
+  std::cout << "\r" << format("%3.0f %%", status.progress() * 100.0) << "  "
+            << format("%5.1f m left", status.remaining()) << "  "
+            << (std::isfinite(status.eta()) ? format("%4.0f s", status.eta()) : "   -")
+            << (status.reason().empty() ? "" : "  " + status.reason()) << "\033[K" << std::flush;
+}
+
+int go(std::uint32_t domain, const GoalArguments& arguments) {
+  auto observer = Observer::create({.name = kClient, .domain = domain});
+  if (!observer) return fail(observer.error());
+  if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
+  auto writer = (*observer)->writer(topics::kNavigateGoal);
+  auto reader = (*observer)->reader(topics::kNavigateStatus);
+  if (!writer) return fail(writer.error());
+  if (!reader) return fail(reader.error());
+  if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
+    return fail("no navigator in domain " + std::to_string(domain));
+
+  NavigateGoal goal;
+  goal.id(fresh_id());
+  goal.client(kClient);
+  goal.location(arguments.location);
+  goal.max_speed(static_cast<float>(arguments.max_speed));
+  goal.pose().header().frame_id(frames::kMap);
+  if (!arguments.pose.empty()) {
+    goal.pose().pose(
+        wire::to_message(geometry::Pose2{arguments.pose[0], arguments.pose[1], arguments.pose[2]}));
+  }
+  auto told = std::chrono::steady_clock::time_point{};
+  bool accepted = false;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+  while (accepted || std::chrono::steady_clock::now() < deadline) {
+    if (!accepted && std::chrono::steady_clock::now() - told > kRepeat) {
+      writer->write(goal);
+      told = std::chrono::steady_clock::now();
+    }
+    const auto status = reader->take(milliseconds(100));
+    if (!status || status->id() != goal.id()) continue;
+    accepted = true;
+    if (arguments.no_wait) return 0;
+    show_progress(*status);
+    switch (status->state()) {
+      case GoalStatus_Constants::STATE_SUCCEEDED:
+        std::cout << "\narrived\n";
+        return 0;
+      case GoalStatus_Constants::STATE_FAILED:
+      case GoalStatus_Constants::STATE_CANCELLED:
+      case GoalStatus_Constants::STATE_REPLACED:
+        std::cout << "\n";
+        return fail(status->reason().empty() ? "another goal took its place" : status->reason());
+      default:
+        break;
+    }
+  }
+  return fail("the navigator did not take the goal within 3 s");
+}
+
+int save_map(std::uint32_t domain, const std::string& path) {
+  auto observer = Observer::create({.name = kClient, .domain = domain});
+  if (!observer) return fail(observer.error());
+  auto reader = (*observer)->reader(topics::kMap);
+  if (!reader) return fail(reader.error());
+  const auto message = reader->take(std::chrono::seconds(5));
+  if (!message) return fail("no map in domain " + std::to_string(domain));
+  const auto map = wire::from_message(*message);
+  if (!map) return fail(map.error());
+  if (const auto saved = grid::save_map(*map, path); !saved) return fail(saved.error());
+  std::cout << "saved " << map->width() << " x " << map->height() << " cells to " << path << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void add_operator_commands(CLI::App& app, int& exit_code) {
+  using namespace SupervisorRequest_Constants;
+  auto domain = std::make_shared<std::uint32_t>(0);
+  const auto with_domain = [domain](CLI::App* command) {
+    command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+    return command;
+  };
+
+  auto arguments = std::make_shared<GoalArguments>();
+  auto* goto_command = with_domain(app.add_subcommand(
+      "goto", "Send the robot to a location or a pose; without either, list the locations"));
+  goto_command->add_option("location", arguments->location, "Name of a known location");
+  goto_command->add_option("--pose", arguments->pose, "x y yaw in map [m, m, rad]")->expected(3);
+  goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default");
+  goto_command->add_flag("--no-wait", arguments->no_wait, "Return when the goal is taken");
+  goto_command->callback([=, &exit_code] { exit_code = go(*domain, *arguments); });
+
+  auto emergency = std::make_shared<bool>(false);
+  auto* stop_command = with_domain(
+      app.add_subcommand("stop", "Stop the robot; it stays stopped until `usher move`"));
+  stop_command->add_flag("--emergency", *emergency,
+                         "Motors off: a Segway drops on its tilt limiters");
+  stop_command->callback([=, &exit_code] {
+    exit_code = *emergency ? ask_supervisor(*domain, COMMAND_EMERGENCY_STOP, "emergency stop")
+                           : ask_supervisor(*domain, COMMAND_STOP, "stopped");
+  });
+  with_domain(app.add_subcommand("move", "Allow motion again after `usher stop`"))
+      ->callback([=, &exit_code] {
+        exit_code = ask_supervisor(*domain, COMMAND_MOVEMENT_ON, "may move");
+      });
+  with_domain(app.add_subcommand("clear", "Clear latched faults whose cause is gone"))
+      ->callback(
+          [=, &exit_code] { exit_code = ask_supervisor(*domain, COMMAND_CLEAR, "cleared"); });
+
+  auto path = std::make_shared<std::string>();
+  auto* map_command = app.add_subcommand("map", "Work with maps");
+  map_command->require_subcommand(1);
+  auto* save_command =
+      with_domain(map_command->add_subcommand("save", "Write the running robot's map to a file"));
+  save_command->add_option("file", *path, "YAML file; the picture is written beside it")
+      ->required();
+  save_command->callback([=, &exit_code] { exit_code = save_map(*domain, *path); });
+}
+
+}  // namespace usher::operations
