@@ -1,0 +1,127 @@
+#include "operations/experiments/run_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "wire/conversions.hpp"
+
+namespace usher::operations {
+
+namespace {
+constexpr double kPersonStep = 0.1;  // [m] between two points of a person's way
+}
+
+void RunRecord::take(const usher_sim_msgs::msg::GroundTruth& truth) {
+  const auto pose = wire::to_planar(truth.pose());
+  if (!pose) return;
+  samples_.push_back({wire::from_message(truth.header().stamp()), *pose, truth.v(), truth.pitch(),
+                      truth.clearance()});
+  contacts_ = truth.contacts();
+  touches_ = truth.touches();
+  contact_with_ = truth.contact_with();
+  worst_lag_ = std::max(worst_lag_, truth.lag());
+  for (const auto& person : truth.people()) {
+    const geometry::Point2 position(person.x(), person.y());
+    auto& way = people_[person.id()];
+    if (way.empty() || (way.back() - position).norm() > kPersonStep) way.push_back(position);
+    if (!person.name().empty()) named_[person.name()] = position;
+  }
+}
+
+void RunRecord::take(const geometry_msgs::msg::PoseWithCovarianceStamped& estimate) {
+  if (const auto pose = wire::to_planar(estimate.pose().pose())) {
+    estimates_.emplace_back(wire::from_message(estimate.header().stamp()), *pose);
+  }
+}
+
+void RunRecord::take(const nav_msgs::msg::Path& plan) {
+  const auto path = wire::from_message(plan);
+  if (!path || path->empty()) return;
+  auto& points = plans_.emplace_back();
+  for (const auto& pose : *path) points.push_back(pose.position());
+}
+
+void RunRecord::take(const usher_msgs::msg::NavigateStatus& status) {
+  using namespace usher_msgs::msg::GoalStatus_Constants;
+  const runtime::Time stamp = wire::from_message(status.header().stamp());
+  if (status.state() == STATE_ACTIVE || status.state() == STATE_WAITING) {
+    if (!active_from_) active_from_ = stamp;
+    active_until_ = stamp;
+  }
+  navigation_ = status;
+}
+
+void RunRecord::take(const usher_msgs::msg::DialogueScreen& screen) {
+  if (dialogue_.empty() || dialogue_.back() != screen.state()) dialogue_.push_back(screen.state());
+  screen_ = screen;
+}
+
+std::optional<geometry::Point2> RunRecord::person(const std::string& name) const {
+  const auto found = named_.find(name);
+  if (found == named_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<geometry::Pose2> RunRecord::truth() const {
+  if (samples_.empty()) return std::nullopt;
+  return samples_.back().truth;
+}
+
+std::optional<geometry::Pose2> RunRecord::truth_at(runtime::Time stamp) const {
+  const auto after = std::lower_bound(
+      samples_.begin(), samples_.end(), stamp,
+      [](const Sample& sample, runtime::Time wanted) { return sample.stamp < wanted; });
+  if (after == samples_.begin() || after == samples_.end()) return std::nullopt;
+  const auto before = after - 1;
+  return geometry::interpolate(
+      before->truth, after->truth,
+      runtime::seconds(stamp - before->stamp) / runtime::seconds(after->stamp - before->stamp));
+}
+
+RunRecord::Summary RunRecord::summary() const {
+  Summary s;
+  s.contacts = contacts_;
+  s.touches = touches_;
+  s.contact_with = contact_with_;
+  s.worst_lag = worst_lag_;
+  s.smallest_clearance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const auto& sample = samples_[i];
+    const bool active =
+        active_from_ && sample.stamp >= *active_from_ && sample.stamp <= *active_until_;
+    s.smallest_clearance = std::min(s.smallest_clearance, sample.clearance);
+    if (i > 0 && active) s.path += geometry::distance(samples_[i - 1].truth, sample.truth);
+  }
+  if (active_from_) s.seconds = runtime::seconds(*active_until_ - *active_from_);
+  s.mean_speed = s.seconds > 0.0 ? s.path / s.seconds : 0.0;
+  for (const auto& [stamp, estimate] : estimates_) {
+    const auto truth = truth_at(stamp);
+    if (!truth) continue;
+    const double error = geometry::distance(*truth, estimate);
+    s.localization_mean += error;
+    s.localization_yaw_mean += std::abs(geometry::shortest_turn(truth->yaw, estimate.yaw));
+    s.localization_max = std::max(s.localization_max, error);
+    ++s.estimates;
+  }
+  if (s.estimates > 0) {
+    s.localization_mean /= static_cast<double>(s.estimates);
+    s.localization_yaw_mean /= static_cast<double>(s.estimates);
+  }
+  return s;
+}
+
+std::string run_csv(const RunRecord& record) {
+  std::string out = "t,x,y,yaw,v,pitch,clearance\n";
+  char line[160];
+  for (const auto& sample : record.samples()) {
+    std::snprintf(line, sizeof(line), "%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n",
+                  runtime::seconds(sample.stamp - record.samples().front().stamp), sample.truth.x,
+                  sample.truth.y, sample.truth.yaw, sample.v, sample.pitch, sample.clearance);
+    out += line;
+  }
+  return out;
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/grid/grid.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/time.hpp"
+
+namespace usher::operations {
+
+/// What happened in one run of a simulated robot, as a judge beside the simulation sees it.
+class RunRecord {
+ public:
+  struct Sample {
+    runtime::Time stamp{};
+    geometry::Pose2 truth;
+    double v = 0.0;
+    double pitch = 0.0;
+    double clearance = 0.0;
+  };
+  struct Summary {
+    double seconds = 0.0;                ///< of motion, from the first to the last
+    double path = 0.0;                   ///< [m] really driven
+    double mean_speed = 0.0;             ///< [m/s] while the goal was active
+    double smallest_clearance = 0.0;     ///< [m]
+    double localization_mean = 0.0;      ///< [m] of the estimated position
+    double localization_max = 0.0;       ///< [m]
+    double localization_yaw_mean = 0.0;  ///< [rad]
+    std::size_t estimates = 0;
+    std::uint32_t contacts = 0;
+    std::uint32_t touches = 0;
+    std::string contact_with;
+    double worst_lag = 0.0;  ///< [s]
+  };
+
+  void take(const usher_sim_msgs::msg::GroundTruth& truth);
+  void take(const geometry_msgs::msg::PoseWithCovarianceStamped& estimate);
+  void take(const nav_msgs::msg::Path& plan);
+  void take(const usher_msgs::msg::NavigateStatus& status);
+  void take(const usher_msgs::msg::DialogueScreen& screen);
+
+  const std::vector<Sample>& samples() const { return samples_; }
+  const std::vector<std::vector<geometry::Point2>>& plans() const { return plans_; }
+  const std::map<std::uint32_t, std::vector<geometry::Point2>>& people() const { return people_; }
+  /// The newest position of a person by name.
+  std::optional<geometry::Point2> person(const std::string& name) const;
+  const std::optional<usher_msgs::msg::NavigateStatus>& navigation() const { return navigation_; }
+  const std::vector<std::string>& dialogue() const { return dialogue_; }  ///< states, in order
+  const std::optional<usher_msgs::msg::DialogueScreen>& screen() const { return screen_; }
+  std::optional<geometry::Pose2> truth() const;
+  Summary summary() const;
+
+ private:
+  std::optional<geometry::Pose2> truth_at(runtime::Time stamp) const;
+
+  std::vector<Sample> samples_;
+  std::vector<std::pair<runtime::Time, geometry::Pose2>> estimates_;
+  std::vector<std::vector<geometry::Point2>> plans_;
+  std::map<std::uint32_t, std::vector<geometry::Point2>> people_;
+  std::map<std::string, geometry::Point2> named_;
+  std::optional<usher_msgs::msg::NavigateStatus> navigation_;
+  std::optional<usher_msgs::msg::DialogueScreen> screen_;
+  std::vector<std::string> dialogue_;
+  std::optional<runtime::Time> active_from_, active_until_;
+  std::uint32_t contacts_ = 0, touches_ = 0;
+  std::string contact_with_;
+  double worst_lag_ = 0.0;
+};
+
+/// Map, planned and driven way, people, start and goal as a picture (PNG).
+Status draw_run(const RunRecord& record, const grid::OccupancyGrid& map, const std::string& title,
+                const std::string& path);
+
+/// Position over time as text: t, x, y, yaw, v, pitch, clearance.
+std::string run_csv(const RunRecord& record);
+
+}  // namespace usher::operations
