@@ -8,6 +8,7 @@
 
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/grid/grid.hpp"
+#include "foundation/result/result.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/time.hpp"
 

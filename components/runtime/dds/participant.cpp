@@ -176,6 +176,8 @@ Participant::Participant(const ParticipantOptions& options, const MonotonicClock
 
 Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                          const MonotonicClock& clock) {
+  // The library ends the process when the ports of a domain would not fit.
+  if (options.domain > 232) return Error{"a DDS domain is 0..232, found " + std::to_string(options.domain)};
   isolate_library();
   const auto qos = participant_qos(options);
   if (!qos) return Error{qos.error()};
@@ -186,7 +188,7 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   if (self->participant_ == nullptr) {
     return Error{"no participant '" + options.name + "' in DDS domain " +
                  std::to_string(options.domain) +
-                 " (0..232, needs a network interface and free UDP ports)"};
+                 " (it needs a network interface and free UDP ports)"};
   }
   self->guid_ = to_guid(self->participant_->guid());
   self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});

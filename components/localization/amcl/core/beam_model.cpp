@@ -17,11 +17,11 @@ double beam_likelihood(const SensorParameters& p, double max_range, double range
 
 }  // namespace
 
-void beam_model_likelihood(const grid::DistanceField& field, const SensorParameters& parameters,
-                           double max_range, const Particles& particles,
-                           const geometry::Pose2& base_T_laser, std::span<const Beam> beams,
-                           std::span<double> likelihood) {
-  assert(!field.empty() && likelihood.size() == particles.size());
+void beam_model_log_likelihood(const grid::DistanceField& field, const SensorParameters& parameters,
+                               double max_range, const Particles& particles,
+                               const geometry::Pose2& base_T_laser, std::span<const Beam> beams,
+                               std::span<double> log_likelihood) {
+  assert(!field.empty() && log_likelihood.size() == particles.size());
   const double share = beams.empty() ? 0.0 : 1.0 / static_cast<double>(beams.size());
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const geometry::Pose2 map_T_base = particles.pose(i);
@@ -33,7 +33,7 @@ void beam_model_likelihood(const grid::DistanceField& field, const SensorParamet
           beam_likelihood(parameters, max_range, beam.range, hit ? hit->range : max_range);
       sum += p * p * p;
     }
-    likelihood[i] = sum * share;
+    log_likelihood[i] = sum * share;
   }
 }
 

@@ -16,9 +16,9 @@ namespace usher::amcl {
 /// hundred times the cost of LikelihoodField, for places where what a beam passes on its way tells
 /// the truth (glass behind furniture, symmetric rooms). `max_range` [m] is where a beam counts as
 /// without return. 0 without beams.
-void beam_model_likelihood(const grid::DistanceField& field, const SensorParameters& parameters,
-                           double max_range, const Particles& particles,
-                           const geometry::Pose2& base_T_laser, std::span<const Beam> beams,
-                           std::span<double> likelihood);
+void beam_model_log_likelihood(const grid::DistanceField& field, const SensorParameters& parameters,
+                               double max_range, const Particles& particles,
+                               const geometry::Pose2& base_T_laser, std::span<const Beam> beams,
+                               std::span<double> log_likelihood);
 
 }  // namespace usher::amcl

@@ -20,13 +20,14 @@ void LikelihoodField::build(const grid::OccupancyGrid& map, const SensorParamete
   distances_.build(map, parameters.field_radius, grid::kOccupied, simd);
   if (map.empty()) return;
 
-  const double best = beam_likelihood(0.0);
-  largest_ = best * best * best;
+  lowest_ = std::log(beam_likelihood(distances_.radius()));
+  unit_ = (std::log(beam_likelihood(0.0)) - lowest_) / 65535.0;
   const int radius = distances_.radius_cells();
   by_square_.resize(static_cast<std::size_t>(radius * radius) + 1);
   for (std::size_t i = 0; i < by_square_.size(); ++i) {
-    const double p = beam_likelihood(std::sqrt(static_cast<double>(i)) * map.resolution());
-    by_square_[i] = static_cast<std::uint16_t>(std::lround(p * p * p / largest_ * 65535.0));
+    const double distance = std::sqrt(static_cast<double>(i)) * map.resolution();
+    by_square_[i] = static_cast<std::uint16_t>(
+        std::lround((std::log(beam_likelihood(distance)) - lowest_) / unit_));
   }
   const auto width = static_cast<std::size_t>(map.width());
   const std::size_t stride = width + 2;
@@ -43,11 +44,11 @@ void LikelihoodField::build(const grid::OccupancyGrid& map, const SensorParamete
   }
 }
 
-void LikelihoodField::likelihood(const Particles& particles, std::span<const Beam> beams,
-                                 std::span<double> likelihood, cpu::Simd simd) {
-  assert(!empty() && likelihood.size() == particles.size());
+void LikelihoodField::log_likelihood(const Particles& particles, std::span<const Beam> beams,
+                                     std::span<double> log_likelihood, cpu::Simd simd) {
+  assert(!empty() && log_likelihood.size() == particles.size());
   if (beams.empty() || particles.size() == 0) {
-    std::fill(likelihood.begin(), likelihood.end(), 0.0);
+    std::fill(log_likelihood.begin(), log_likelihood.end(), 0.0);
     return;
   }
   const std::size_t count = particles.size();
@@ -74,8 +75,8 @@ void LikelihoodField::likelihood(const Particles& particles, std::span<const Bea
   sum_field({field_.data(), g.width + 2, g.height + 2},
             {x_.data(), y_.data(), cosine_.data(), sine_.data(), padded}, beam_x_.data(),
             beam_y_.data(), beams.size(), sums_.data(), simd);
-  const double unit = largest_ / (65535.0 * static_cast<double>(beams.size()));
-  for (std::size_t i = 0; i < count; ++i) likelihood[i] = sums_[i] * unit;
+  const double share = unit_ / static_cast<double>(beams.size());
+  for (std::size_t i = 0; i < count; ++i) log_likelihood[i] = lowest_ + sums_[i] * share;
 }
 
 }  // namespace usher::amcl

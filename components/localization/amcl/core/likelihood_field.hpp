@@ -18,13 +18,11 @@ namespace usher::amcl {
 ///
 ///     p = z_hit exp(-d^2 / 2 sigma_hit^2) + z_rand / max_range,
 ///
-/// and a scan's likelihood is the mean of p^3 over its beams. Neighbouring beams are not
-/// independent, so their product would make the filter far too sure; the sum of cubes is the tamed
-/// form with which the amcl of ROS and Beluga drive.
+/// and a scan is as likely as the product of its beams.
 ///
-/// The field holds p^3 for every cell in 16 bits (error of a scan's likelihood at most 1e-5 of the
-/// largest), 2 bytes a cell, so the neighbourhood of a tracking filter stays in the first-level
-/// cache. See sum_field() for its cost.
+/// The field holds log p of every cell in 16 bits (error of a beam's log p at most half of log(p
+/// best / p worst) / 65535, 5e-5 with the default parameters) and 2 bytes a cell, so the
+/// neighbourhood of a tracking filter stays in the first-level cache. See sum_field() for its cost.
 class LikelihoodField {
  public:
   /// Keeps its memory for the next map. O(cells), see DistanceField.
@@ -34,11 +32,10 @@ class LikelihoodField {
   bool empty() const { return distances_.empty(); }
   const grid::DistanceField& distances() const { return distances_; }
 
-  /// likelihood[i] = mean of p^3 over the beams for particle i, in [0, (z_hit + z_rand /
-  /// max_range)^3]; 0 without beams. Does not allocate once as many particles and beams have been
-  /// seen.
-  void likelihood(const Particles& particles, std::span<const Beam> beams,
-                  std::span<double> likelihood, cpu::Simd simd = cpu::best_simd());
+  /// log_likelihood[i] = mean of log p over the beams for particle i; 0 without beams. Does not
+  /// allocate once as many particles and beams have been seen.
+  void log_likelihood(const Particles& particles, std::span<const Beam> beams,
+                      std::span<double> log_likelihood, cpu::Simd simd = cpu::best_simd());
 
   /// p of one beam that ends `distance` [m] from the nearest obstacle.
   double beam_likelihood(double distance) const;
@@ -46,7 +43,8 @@ class LikelihoodField {
  private:
   SensorParameters parameters_;
   grid::DistanceField distances_;
-  double largest_ = 1.0;                  // p^3 that is stored as 65535
+  double lowest_ = 0.0;                   // log p that is stored as 0
+  double unit_ = 0.0;                     // of log p per stored step
   std::vector<std::uint16_t> by_square_;  // stored value by squared distance [cells^2]
   std::vector<std::uint16_t> field_;      // with a border of one cell, and one value more
   std::vector<float> x_, y_, cosine_, sine_, beam_x_, beam_y_;

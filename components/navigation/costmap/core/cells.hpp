@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "foundation/grid/grid.hpp"
@@ -50,6 +51,25 @@ struct CellRect {
   }
 };
 
+/// Collects the rectangle around single cells.
+class CellBounds {
+ public:
+  void include(grid::Cell cell) {
+    low_x_ = std::min(low_x_, cell.x), high_x_ = std::max(high_x_, cell.x);
+    low_y_ = std::min(low_y_, cell.y), high_y_ = std::max(high_y_, cell.y);
+  }
+  /// Empty when no cell was included. Cells must be below the largest int.
+  CellRect rect() const {
+    return low_x_ > high_x_ ? CellRect{} : CellRect{low_x_, low_y_, high_x_ + 1, high_y_ + 1};
+  }
+
+ private:
+  int low_x_ = std::numeric_limits<int>::max();
+  int low_y_ = std::numeric_limits<int>::max();
+  int high_x_ = std::numeric_limits<int>::min();
+  int high_y_ = std::numeric_limits<int>::min();
+};
+
 /// The raster of a window in its frame: cell (0,0) of the window is cell (first_x, first_y) of an
 /// endless raster anchored at (anchor_x, anchor_y). A moving window changes only first_x and
 /// first_y, so what depends on the raster (not the window) gives the same bits wherever the window
@@ -77,23 +97,23 @@ inline bool reachable(double x, double y) {  // false for NaN too
 }
 
 /// Moves the content of a row-major window so that cell (x, y) holds what (x + dx, y + dy) held;
-/// what comes in from outside is `fill`. One memmove, whatever the direction.
+/// what comes in from outside is `fill`.
 template <class T>
 void shift_cells(std::vector<T>& cells, int width, int height, int dx, int dy, T fill) {
-  if (dx == 0 && dy == 0) return;
-  if (std::abs(dx) >= width || std::abs(dy) >= height) {
-    std::fill(cells.begin(), cells.end(), fill);
-    return;
-  }
-  const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(dy) * width + dx;
-  const std::size_t kept = cells.size() - static_cast<std::size_t>(std::abs(offset));
-  T* data = cells.data();
-  std::memmove(offset > 0 ? data : data - offset, offset > 0 ? data + offset : data,
-               kept * sizeof(T));
-  const auto row = [&](int y) { return data + static_cast<std::ptrdiff_t>(y) * width; };
-  std::fill(row(dy > 0 ? height - dy : 0), row(dy > 0 ? height : -dy), fill);
-  for (int y = 0; y < height; ++y) {
-    std::fill(row(y) + (dx > 0 ? width - dx : 0), row(y) + (dx > 0 ? width : -dx), fill);
+  const auto row = [&](int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width; };
+  const int kept = std::max(0, width - std::abs(dx));
+  const int first = dx >= 0 ? 0 : width - kept;  // column of the first kept cell, after the move
+  for (int i = 0; i < height; ++i) {
+    const int y = dy >= 0 ? i : height - 1 - i;  // a row is read before it is overwritten
+    const int from = y + dy;
+    T* to = row(y);
+    if (from < 0 || from >= height || kept == 0) {
+      std::fill(to, to + width, fill);
+      continue;
+    }
+    std::memmove(to + first, row(from) + first + dx, static_cast<std::size_t>(kept) * sizeof(T));
+    std::fill(to, to + first, fill);
+    std::fill(to + first + kept, to + width, fill);
   }
 }
 

@@ -68,8 +68,17 @@ Status check(const CostmapConfig& config, const Footprint& footprint) {
   return {};
 }
 
-void raise_to(const std::uint8_t* states, int count, std::uint8_t* combined) {
+void raise_to(const std::uint8_t* __restrict states, int count, std::uint8_t* __restrict combined) {
   for (int x = 0; x < count; ++x) combined[x] = combined[x] < states[x] ? states[x] : combined[x];
+}
+
+void fill_unseen(const std::uint8_t* __restrict states, int count,
+                 std::uint8_t* __restrict combined) {
+  static_assert(kUnseen == 0);  // then a mask does it without a branch
+  for (int x = 0; x < count; ++x) {
+    const auto unseen = static_cast<std::uint8_t>(combined[x] == kUnseen ? 0xff : 0);
+    combined[x] = static_cast<std::uint8_t>(combined[x] | (states[x] & unseen));
+  }
 }
 
 }  // namespace
@@ -221,10 +230,7 @@ void Costmap::combine_row(int y, int x0, int x1) {
     }
   };
   raise_by(true);
-  if (static_layer_.has_map()) {
-    const std::uint8_t* map = static_states_.row(y);
-    for (int x = x0; x < x1; ++x) combined[x] = combined[x] == kUnseen ? map[x] : combined[x];
-  }
+  if (static_layer_.has_map()) fill_unseen(static_states_.row(y) + x0, x1 - x0, combined + x0);
   raise_by(false);
 }
 

@@ -11,6 +11,10 @@ namespace usher::costmap {
 
 namespace {
 
+void seed_portable(const std::uint8_t* states, std::uint8_t none, int count, std::uint8_t* to) {
+  inflation_kernels::seed(states, none, count, to);
+}
+
 void spread_portable(const std::uint8_t* from, int step, int count, std::uint8_t* to) {
   inflation_kernels::spread(from, step, count, to);
 }
@@ -31,11 +35,27 @@ Inflation::BlockFunction block_function(int reach, cpu::Simd simd) {
   return static_cast<void>(reach), static_cast<void>(simd), block_portable;
 }
 
+Inflation::SeedFunction seed_function(cpu::Simd simd) {
+#if defined(__x86_64__)
+  if (simd == cpu::Simd::kAvx2) return inflation_kernels::seed_avx2;
+#endif
+  return static_cast<void>(simd), seed_portable;
+}
+
 Inflation::SpreadFunction spread_function(cpu::Simd simd) {
 #if defined(__x86_64__)
   if (simd == cpu::Simd::kAvx2) return inflation_kernels::spread_avx2;
 #endif
   return static_cast<void>(simd), spread_portable;
+}
+
+/// Does any cell of the block have another value?
+bool differs(const std::uint8_t* block, std::uint8_t value) {
+  std::uint64_t words[Inflation::kBlock / sizeof(std::uint64_t)];
+  std::memcpy(words, block, sizeof(words));
+  std::uint64_t difference = 0;
+  for (const std::uint64_t word : words) difference |= word ^ (0x0101010101010101U * value);
+  return difference != 0;
 }
 
 /// 1, 2, 4, ... and a rest, together `reach`.
@@ -71,6 +91,7 @@ Inflation::Inflation(int width, int height, double resolution, const CostDecay& 
       tables_(static_cast<std::size_t>((reach_ + 1) * kTable), 0),
       squared_(static_cast<std::size_t>(none_ * none_ + reach_ * reach_ + 1), 0),
       block_(block_function(reach_, simd)),
+      seed_(seed_function(simd)),
       spread_(spread_function(simd)) {
   assert(reach_ >= 0 && reach_ <= kMaxReach);
   for (std::size_t square = 0; square < squared_.size(); ++square) {
@@ -130,18 +151,14 @@ void Inflation::measure_row(int y, int first_block, int last_block) {
   std::memset(a - reach_, none_, static_cast<std::size_t>(span + 2 * reach_));
   std::memset(b + span, none_,
               static_cast<std::size_t>(reach_));  // an earlier, wider span may lie there
-  std::uint8_t* seed = a + (from - (first - reach_));
-  for (int x = 0; x < to - from; ++x) seed[x] = states[from + x] == kSeenOccupied ? 0 : none_;
+  seed_(states + from, none_, to - from, a + (from - (first - reach_)));
   for (const int step : steps_) {
     spread_(a, step, span, b);
     std::swap(a, b);
   }
   std::memcpy(distances, a + reach_, static_cast<std::size_t>(count));
   for (int block = first_block; block < last_block; ++block) {
-    std::uint8_t nearest = none_;
-    for (int x = 0; x < kBlock; ++x)
-      nearest = std::min(nearest, distances[(block - first_block) * kBlock + x]);
-    active[block] = nearest < none_;
+    active[block] = differs(a + reach_ + (block - first_block) * kBlock, none_);
   }
 }
 
@@ -161,8 +178,12 @@ void Inflation::write_row(int y, int first_block, int last_block, std::uint8_t* 
       const bool unknown = (seen[x] == kUnseen) & (costs[x] < unseen_below_);
       costs[x] = unknown ? kUnknownCost : costs[x];
     }
-    const int cells = std::min(kBlock, width_ - block * kBlock);
-    std::memcpy(master_row + block * kBlock, costs, static_cast<std::size_t>(cells));
+    const int cells = width_ - block * kBlock;
+    if (cells >= kBlock) {
+      std::memcpy(master_row + block * kBlock, costs, kBlock);  // a constant size costs no call
+    } else {
+      std::memcpy(master_row + block * kBlock, costs, static_cast<std::size_t>(cells));
+    }
   }
 }
 

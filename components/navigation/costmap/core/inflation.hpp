@@ -59,6 +59,8 @@ class Inflation {
   };
   static constexpr int kTable = 32;
   using BlockFunction = void (*)(const Kernel&, const std::uint8_t* center, std::uint8_t* costs);
+  using SeedFunction = void (*)(const std::uint8_t* states, std::uint8_t none, int count,
+                                std::uint8_t* to);
   using SpreadFunction = void (*)(const std::uint8_t* from, int step, int count, std::uint8_t* to);
 
  private:
@@ -90,6 +92,7 @@ class Inflation {
   std::vector<std::uint8_t> tables_;
   std::vector<std::uint8_t> squared_;
   BlockFunction block_;
+  SeedFunction seed_;
   SpreadFunction spread_;
 };
 

@@ -17,6 +17,11 @@ namespace {
 
 }  // namespace
 
+[[gnu::target("avx2")]] void seed_avx2(const std::uint8_t* states, std::uint8_t none, int count,
+                                       std::uint8_t* to) {
+  seed(states, none, count, to);
+}
+
 [[gnu::target("avx2")]] void spread_avx2(const std::uint8_t* from, int step, int count,
                                          std::uint8_t* to) {
   spread(from, step, count, to);

@@ -8,6 +8,14 @@
 // target), and the AVX2 entry points. Included by inflation.cpp and inflation_avx2.cpp only.
 namespace usher::costmap::inflation_kernels {
 
+/// to[x] = 0 at occupied cells, else none.
+[[gnu::always_inline]] inline void seed(const std::uint8_t* __restrict states, std::uint8_t none,
+                                        int count, std::uint8_t* __restrict to) {
+  for (int x = 0; x < count; ++x) {
+    to[x] = static_cast<std::uint8_t>(none & (states[x] == kSeenOccupied ? 0 : 0xff));
+  }
+}
+
 /// to[x] = min(from[x], from[x - step] + step, from[x + step] + step); from is readable `step`
 /// cells beyond both ends.
 [[gnu::always_inline]] inline void spread(const std::uint8_t* __restrict from, int step, int count,
@@ -43,6 +51,7 @@ namespace usher::costmap::inflation_kernels {
 }
 
 #if defined(__x86_64__)
+void seed_avx2(const std::uint8_t* states, std::uint8_t none, int count, std::uint8_t* to);
 void spread_avx2(const std::uint8_t* from, int step, int count, std::uint8_t* to);
 /// Radii up to 14 cells: one shuffle per pair of rows.
 void block_avx2_near(const Inflation::Kernel& kernel, const std::uint8_t* center,

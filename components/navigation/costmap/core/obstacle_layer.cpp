@@ -108,13 +108,10 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   const grid::Cell origin{floor_to_int(x) - raster.first_x, floor_to_int(y) - raster.first_y};
   const bool clears = states_.geometry().contains(origin);
   if (!clears) ++sensors_outside_;
-  const double max_ray = config_.max_raytrace_range;
-  const double min_ray = config_.min_raytrace_range * scale;
-  const float infinity = std::numeric_limits<float>::infinity();
 
   marks_.clear();
   marks_.reserve(observation.ranges.size());
-  CellRect touched;
+  CellBounds touched;
   grid::Cell previous{std::numeric_limits<int>::min(), 0};
   bool previous_through = false;
   for (std::size_t beam = 0; beam < observation.ranges.size(); ++beam) {
@@ -122,8 +119,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     const geometry::Point2& direction = observation.directions[beam];
     const double dx = c * direction.x() - s * direction.y();
     const double dy = s * direction.x() + c * direction.y();
-    if (!(range > 0.0F) || (range == infinity && !config_.infinity_clears) ||
-        !(std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001)) {
+    if (!measures(range) || !(std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001)) {
       ++invalid_ranges_;
       continue;
     }
@@ -131,30 +127,45 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
       return {floor_to_int(x + distance * scale * dx) - raster.first_x,
               floor_to_int(y + distance * scale * dy) - raster.first_y};
     };
-    const bool through = range > max_ray;
-    const grid::Cell end = cell_along(through ? max_ray : range);
+    const bool through = range > config_.max_raytrace_range;
+    const grid::Cell end = cell_along(through ? config_.max_raytrace_range : range);
     if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
       const grid::Cell hit = through ? cell_along(range) : end;
-      if (states_.geometry().contains(hit)) {
-        const auto index = static_cast<std::uint32_t>(states_.geometry().index(hit));
-        if (marks_.empty() || marks_.back() != index) {
-          marks_.push_back(index);
-          touched = touched.united({hit.x, hit.y, hit.x + 1, hit.y + 1});
-        }
-      }
+      if (collect(hit)) touched.include(hit);
     }
     if (!clears || (end == previous && through == previous_through)) continue;
     previous = end;
     previous_through = through;
-    int first = 0;
-    if (min_ray > 0.0) {
-      const double major = std::max(std::abs(end.x - origin.x), std::abs(end.y - origin.y));
-      const double length = std::hypot(end.x - origin.x, end.y - origin.y);
-      first = length > 0.0 ? static_cast<int>(std::ceil(min_ray * major / length)) : 1;
-    }
-    touched = touched.united(trace(origin, end, first, through));
+    trace(origin, end, first_cleared(origin, end, scale), through);
+    touched.include(end);
   }
-  return touched;
+  if (previous.x != std::numeric_limits<int>::min()) touched.include(origin);
+  return touched.rect().within(raster.all());
+}
+
+bool ObstacleLayer::measures(float range) const {  // false for NaN
+  return range > 0.0F &&
+         (range < std::numeric_limits<float>::infinity() || config_.infinity_clears);
+}
+
+/// Notes an echo to be marked; false when there is nothing new to mark.
+bool ObstacleLayer::collect(grid::Cell hit) {
+  if (!states_.geometry().contains(hit)) return false;
+  const auto index = static_cast<std::uint32_t>(states_.geometry().index(hit));
+  if (!marks_.empty() && marks_.back() == index) return false;
+  marks_.push_back(index);
+  return true;
+}
+
+/// The number of the first cell of a line that is not nearer than the minimum raytrace range.
+int ObstacleLayer::first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const {
+  if (config_.min_raytrace_range <= 0.0) return 0;
+  const double dx = to.x - from.x;
+  const double dy = to.y - from.y;
+  const double major = std::max(std::abs(dx), std::abs(dy));
+  if (major == 0.0) return 1;
+  const double shortest = config_.min_raytrace_range * cells_per_meter;
+  return static_cast<int>(std::ceil(shortest * major / std::hypot(dx, dy)));
 }
 
 // Clears cell number first, first + 1, ... of the line from one cell to another
@@ -163,7 +174,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
 // to 32767 cells: what the rounded slope loses stays below 2^-17 of a cell, and no line comes
 // closer than 2^-16 to a tie without meeting it. The last cell is cleared only for a beam that went
 // through it. The start lies in the window; the line is cut where it leaves it.
-CellRect ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool through) {
+void ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool through) {
   const int width = states_.width();
   const int height = states_.height();
   const int dx = to.x - from.x;
@@ -179,7 +190,7 @@ CellRect ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool th
       std::min<std::int64_t>(through ? major + 1 : major, (steep ? room_y : room_x) + 1);
   const std::int64_t room = steep ? room_x : room_y;
   if (minor > room) count = std::min(count, (((room + 1) << 32) - 1 - half) / slope + 1);
-  if (first >= count) return {};
+  if (first >= count) return;
 
   const std::ptrdiff_t step_x = dx < 0 ? -1 : 1;
   const std::ptrdiff_t step_y = dy < 0 ? -width : width;
@@ -193,10 +204,6 @@ CellRect ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool th
     cell += step;
     position += slope;
   }
-  const int end_x = std::clamp(to.x, 0, width - 1);
-  const int end_y = std::clamp(to.y, 0, height - 1);
-  return {std::min(from.x, end_x), std::min(from.y, end_y), std::max(from.x, end_x) + 1,
-          std::max(from.y, end_y) + 1};
 }
 
 void ObstacleLayer::mark(std::size_t index, std::uint32_t time) {

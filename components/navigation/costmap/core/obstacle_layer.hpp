@@ -89,7 +89,10 @@ class ObstacleLayer {
 
  private:
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
-  CellRect trace(grid::Cell from, grid::Cell to, int first, bool through);
+  bool measures(float range) const;
+  bool collect(grid::Cell hit);
+  int first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const;
+  void trace(grid::Cell from, grid::Cell to, int first, bool through);
   void mark(std::size_t index, std::uint32_t time);
 
   ObstacleLayerConfig config_;

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "foundation/random/random.hpp"
 #include "navigation/costmap/test/reference_costmap.hpp"
+#include "navigation/costmap/test/willow.hpp"
 #include "support/data.hpp"
 
 namespace usher::costmap {
@@ -128,28 +127,19 @@ TEST(Inflation, OfNothingWritesNothing) {
   EXPECT_EQ(master.values(), std::vector<std::uint8_t>(100, 7));
 }
 
-std::vector<std::uint8_t> bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 // costmap_2d grows costs cell by cell from each obstacle, which misses the nearest obstacle of a
 // few cells; then its cost is lower than the true one by a little, never higher.
 TEST(Inflation, OfTheWillowMapIsThatOfCostmap2dOrNearer) {
   USHER_REQUIRE_DATA(map_path, "peers/willow-1000x1000-0.05.pgm");
   USHER_REQUIRE_DATA(costmap_path, "peers/willow-1000-costmap-0.55.raw");
-  const std::vector<std::uint8_t> pgm = bytes_of(map_path);
   const std::vector<std::uint8_t> theirs = bytes_of(costmap_path);
+  const grid::OccupancyGrid map = willow_map(map_path, 0.0, 0.0);
   ASSERT_EQ(theirs.size(), 1000000U);
-  ASSERT_GE(pgm.size(), 1000000U);
-  const std::uint8_t* pixels = pgm.data() + pgm.size() - 1000000;
-  grid::Grid<std::uint8_t> states({1000, 1000, 0.05, 0.0, 0.0});
-  for (int y = 0; y < 1000; ++y) {
-    for (int x = 0; x < 1000; ++x) {
-      const std::uint8_t pixel = pixels[(999 - y) * 1000 + x];
-      states.at({x, y}) = pixel <= 89 ? kSeenOccupied : pixel >= 206 ? kSeenFree : kUnseen;
-    }
-  }
+  ASSERT_EQ(map.size(), 1000000U);
+  grid::Grid<std::uint8_t> states(map.geometry());
+  std::transform(map.begin(), map.end(), states.begin(), [](std::int8_t occupancy) {
+    return occupancy < 0 ? kUnseen : occupancy == grid::kOccupied ? kSeenOccupied : kSeenFree;
+  });
   const CostDecay decay{0.3 * std::cos(geometry::kPi / 16.0), 0.55, 10.0};
   const auto ours = inflated(states, decay, Unseen::kUnknown, cpu::best_simd());
   int differing = 0;

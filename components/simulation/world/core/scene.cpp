@@ -27,7 +27,8 @@ void trace_borders(const grid::OccupancyGrid& map, Add&& add) {
   const auto corner = [&](int x, int y) {
     return Point2(g.origin_x + x * g.resolution, g.origin_y + y * g.resolution);
   };
-  // Along rows: solid above runs to the right of... a segment to +x has its left side above.
+  // Along rows (a segment towards +x has the occupied cell on its left when that is above), then
+  // along columns.
   for (int y = 0; y <= g.height; ++y) {
     for (const bool above : {true, false}) {
       int start = -1;
@@ -91,7 +92,7 @@ Thing disc(std::string name, const Point2& center, double radius, double bottom,
   return thing;
 }
 
-Scene::Scene(std::vector<Thing> things, double ceiling)
+Scene::Scene(std::vector<Thing> things, double ceiling, const grid::OccupancyGrid* map)
     : things_(std::move(things)), ceiling_(ceiling) {
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < things_.size(); ++i) {
@@ -112,20 +113,14 @@ Scene::Scene(std::vector<Thing> things, double ceiling)
       prisms_.push_back({center, radius, id});
     }
   }
+  if (map != nullptr) {
+    const auto id = static_cast<std::int32_t>(things_.size());
+    Thing& thing = things_.emplace_back();
+    thing.name = "map";
+    thing.top = ceiling;
+    trace_borders(*map, [&](const Point2& a, const Point2& b) { segments.push_back({a, b, id}); });
+  }
   index(segments);
-}
-
-Scene Scene::from_map(const grid::OccupancyGrid& map, double ceiling) {
-  Scene scene;
-  scene.ceiling_ = ceiling;
-  Thing thing;
-  thing.name = "map";
-  thing.top = ceiling;
-  scene.things_.push_back(thing);
-  std::vector<Segment> segments;
-  trace_borders(map, [&](const Point2& a, const Point2& b) { segments.push_back({a, b, 0}); });
-  scene.index(segments);
-  return scene;
 }
 
 void Scene::index(std::span<const Segment> segments) {

@@ -49,12 +49,10 @@ struct Mover {
 class Scene {
  public:
   /// Above the floor at height 0 and below a flat ceiling. Things may overlap; a thing that reaches
-  /// from floor to ceiling counts as a wall (fast), all others as prisms.
-  Scene(std::vector<Thing> things, double ceiling);
-
-  /// Cells of 65 % and more are walls to the ceiling, all of them the one thing "map"; unknown is
+  /// from floor to ceiling counts as a wall (fast), all others as prisms. Cells of the map that are
+  /// occupied by 65 % and more are walls too, together the last thing, named "map"; unknown is
   /// free.
-  static Scene from_map(const grid::OccupancyGrid& map, double ceiling);
+  Scene(std::vector<Thing> things, double ceiling, const grid::OccupancyGrid* map = nullptr);
 
   std::span<const Thing> things() const { return things_; }
   double ceiling() const { return ceiling_; }
@@ -96,7 +94,6 @@ class Scene {
     float reach;  // no point of that cell is nearer to any point of cell (0, 0) [m]
   };
 
-  Scene() = default;
   void index(std::span<const Segment> segments);
 
   std::vector<Thing> things_;

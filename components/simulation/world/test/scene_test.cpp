@@ -224,7 +224,7 @@ TEST(RayCaster, ReadsAMapCellByCell) {
                                    : (random.uniform() < 0.1 ? grid::kUnknown : grid::kFree);
   }
   map.at({20, 15}) = grid::kFree;
-  const Scene scene = Scene::from_map(map, 2.7);
+  const Scene scene({}, 2.7, &map);
   RayCaster caster;
   FanHits hits;
   const Fan fan(-3.0, 0.01, 600);
