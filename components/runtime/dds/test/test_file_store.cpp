@@ -1,0 +1,72 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "child.hpp"
+#include "runtime/dds/file_store.hpp"
+
+namespace usher::runtime {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(FileStore, ReturnsWhatWasKeptAlsoToTheNextProcess) {
+  const test::TemporaryFolder folder;
+  const Bytes bytes{1, 2, 0, 255};
+  ASSERT_TRUE(FileStore(folder.path() + "/a/b").keep("last_pose", bytes).ok());
+  const auto kept = FileStore(folder.path() + "/a/b").kept("last_pose");
+  ASSERT_TRUE(kept.ok()) << kept.error();
+  EXPECT_EQ(*kept, bytes);
+}
+
+TEST(FileStore, ReplacesAndKeepsEmptyValues) {
+  const test::TemporaryFolder folder;
+  const FileStore store(folder.path());
+  ASSERT_TRUE(store.keep("latch", Bytes(1000, 7)).ok());
+  ASSERT_TRUE(store.keep("latch", Bytes{}).ok());
+  const auto kept = store.kept("latch");
+  ASSERT_TRUE(kept.ok());
+  EXPECT_TRUE(kept->empty());
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    ++files;
+  EXPECT_EQ(files, 1U);  // no temporary is left
+}
+
+TEST(FileStore, HasNothingBeforeTheFirstTime) {
+  const test::TemporaryFolder folder;
+  const auto kept = FileStore(folder.path()).kept("epoch");
+  ASSERT_FALSE(kept.ok());
+  EXPECT_THAT(kept.error(), HasSubstr("epoch"));
+}
+
+TEST(FileStore, RefusesKeysThatLeaveTheFolderAndValuesThatAreTooLarge) {
+  const test::TemporaryFolder folder;
+  const FileStore store(folder.path());
+  for (const char* key : {"", "../x", "a/b", ".hidden", "Upper", "sp ace"}) {
+    EXPECT_FALSE(store.keep(key, Bytes{1}).ok()) << key;
+    EXPECT_FALSE(store.kept(key).ok()) << key;
+  }
+  EXPECT_FALSE(store.keep(std::string(65, 'a'), Bytes{1}).ok());
+  EXPECT_TRUE(store.keep("large", Bytes(FileStore::kMaxBytes)).ok());
+  const Status status = store.keep("larger", Bytes(FileStore::kMaxBytes + 1));
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error(), HasSubstr("1048577"));
+}
+
+TEST(FileStore, SaysWhenTheFolderCannotBeUsed) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.file("plain", "x");
+  const Status status = FileStore(file).keep("pose", Bytes{1});
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error(), HasSubstr(file));
+}
+
+TEST(FileStore, StoresNothingWithoutAFolder) {
+  EXPECT_TRUE(FileStore("").keep("pose", Bytes{1}).ok());
+  EXPECT_FALSE(FileStore("").kept("pose").ok());
+}
+
+}  // namespace
+}  // namespace usher::runtime

@@ -1,0 +1,278 @@
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "runtime/dds/streams.hpp"
+
+namespace usher::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+/// What a stream reported, and a way to wait for it.
+class Log {
+ public:
+  StreamSink sink() {
+    return {[this] { add([this] { ++opened; }); },
+            [this](std::span<const std::uint8_t> bytes) {
+              bool accepted = false;
+              add([&] {
+                accepted = refusals == 0;
+                if (accepted) received.append(bytes.begin(), bytes.end());
+                if (!accepted) --refusals;
+              });
+              return accepted;
+            },
+            [this](const std::string& reason) { add([&] { closed.push_back(reason); }); }};
+  }
+  template <class Condition>
+  bool wait(Condition condition) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 10s, condition);
+  }
+
+  int opened = 0;
+  int refusals = 0;
+  std::string received;
+  std::vector<std::string> closed;
+
+ private:
+  template <class Change>
+  void add(const Change& change) {
+    const std::scoped_lock lock(mutex_);
+    change();
+    changed_.notify_all();
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+};
+
+Bytes bytes(std::string_view text) { return {text.begin(), text.end()}; }
+
+/// A TCP server on a free port of the loopback.
+class Server {
+ public:
+  Server() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) { bind_to(0); }
+  ~Server() {
+    drop();
+    stop();
+  }
+  std::string uri() const { return "tcp://127.0.0.1:" + std::to_string(port_); }
+  void accept() {
+    pollfd entry{listener_, POLLIN, 0};
+    if (::poll(&entry, 1, 10000) == 1)
+      connection_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    ASSERT_GE(connection_, 0);
+  }
+  void send(std::string_view text) const {
+    ASSERT_EQ(::send(connection_, text.data(), text.size(), MSG_NOSIGNAL), ssize_t(text.size()));
+  }
+  std::string read(std::size_t size) const {
+    std::string text(size, '\0');
+    const ssize_t count = ::recv(connection_, text.data(), size, MSG_WAITALL);
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    return text;
+  }
+  void drop() {
+    if (connection_ >= 0) ::close(connection_);
+    connection_ = -1;
+  }
+  void stop() {
+    if (listener_ >= 0) ::close(listener_);
+    listener_ = -1;
+  }
+
+ private:
+  void bind_to(std::uint16_t port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    const int yes = 1;
+    ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    ASSERT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(listener_, 1), 0);
+    ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+  }
+  int listener_;
+  int connection_ = -1;
+  std::uint16_t port_ = 0;
+};
+
+TEST(StreamAddress, ReadsTcpAndSerial) {
+  const auto tcp = StreamAddress::parse("tcp://192.168.1.2:2112");
+  ASSERT_TRUE(tcp.ok());
+  EXPECT_FALSE(tcp->serial);
+  EXPECT_EQ(tcp->target, "192.168.1.2");
+  EXPECT_EQ(tcp->number, 2112);
+  const auto serial = StreamAddress::parse("serial:///dev/ttyUSB0?baud=115200");
+  ASSERT_TRUE(serial.ok());
+  EXPECT_TRUE(serial->serial);
+  EXPECT_EQ(serial->target, "/dev/ttyUSB0");
+  EXPECT_EQ(serial->number, 115200);
+}
+
+TEST(StreamAddress, RefusesEverythingElse) {
+  for (const char* uri :
+       {"", "tcp://", "tcp://host.local:1", "tcp://1.2.3.4", "tcp://1.2.3.4:0",
+        "tcp://1.2.3.4:65536", "tcp://1.2.3.4:1x", "tcp://:5", "serial:///dev/x",
+        "serial:///dev/x?baud=12345", "serial://?baud=9600", "udp://1.2.3.4:5", "/dev/ttyUSB0"}) {
+    EXPECT_FALSE(StreamAddress::parse(uri).ok()) << uri;
+  }
+}
+
+TEST(Streams, MoveBytesBothWaysOverTcp) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), log.sink());
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  EXPECT_TRUE(stream.open());
+  EXPECT_TRUE(stream.write(bytes("sRN LMDscandata")));
+  EXPECT_EQ(server.read(15), "sRN LMDscandata");
+  server.send("answer");
+  EXPECT_TRUE(log.wait([&] { return log.received == "answer"; }));
+}
+
+TEST(Streams, OpenAnewAfterTheOtherSideHasGone) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), log.sink());
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  server.drop();
+  ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
+  EXPECT_THAT(log.closed[0], HasSubstr("closed by the other side"));
+  EXPECT_FALSE(stream.write(bytes("x")));
+  server.accept();
+  EXPECT_TRUE(log.wait([&] { return log.opened == 2; }));
+  EXPECT_TRUE(stream.write(bytes("y")));
+  EXPECT_EQ(server.read(1), "y");
+}
+
+TEST(Streams, ReportEachFailureToOpenAndTryAgain) {
+  Server server;
+  const std::string uri = server.uri();
+  server.stop();
+  Log log;
+  Streams streams;
+  const auto begin = std::chrono::steady_clock::now();
+  streams.open(uri, log.sink());
+  ASSERT_TRUE(log.wait([&] { return log.closed.size() == 2; }));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 990ms);
+  EXPECT_THAT(log.closed[0], HasSubstr(uri));
+  EXPECT_THAT(log.closed[0], HasSubstr("refused"));
+  EXPECT_EQ(log.opened, 0);
+}
+
+TEST(Streams, ReportAWrongAddressOnce) {
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open("tcp://nowhere", log.sink());
+  ASSERT_TRUE(log.wait([&] { return !log.closed.empty(); }));
+  EXPECT_THAT(log.closed[0], HasSubstr("tcp://nowhere"));
+  stream.reopen({});
+  EXPECT_FALSE(stream.open());
+  EXPECT_FALSE(stream.write(bytes("x")));
+}
+
+TEST(Streams, OfferRefusedBytesAgain) {
+  Server server;
+  Log log;
+  log.refusals = 3;
+  Streams streams;
+  streams.open(server.uri(), log.sink());
+  server.accept();
+  server.send("important");
+  EXPECT_TRUE(log.wait([&] { return log.received == "important"; }));
+  EXPECT_EQ(log.refusals, 0);
+}
+
+TEST(Streams, QueueAtMost64Kilobytes) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), log.sink());
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  // Nobody reads: the kernel's buffers fill, then the queue, then write() refuses. Nothing of what
+  // it took is lost.
+  std::size_t taken = 0;
+  const Bytes block(32 * 1024, 'b');
+  while (stream.write(block) && taken < (64U << 20)) taken += block.size();
+  ASSERT_LT(taken, 64U << 20);
+  EXPECT_EQ(server.read(taken).size(), taken);
+  EXPECT_FALSE(stream.write(Bytes(64 * 1024 + 1)));
+}
+
+TEST(Streams, ReopenWhenTheComponentAsks) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), log.sink());
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  stream.reopen(10ms);
+  ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
+  EXPECT_THAT(log.closed[0], HasSubstr("reopened by the component"));
+  server.drop();
+  server.accept();
+  EXPECT_TRUE(log.wait([&] { return log.opened == 2; }));
+}
+
+TEST(Streams, SpeakRawOnASerialLine) {
+  int master = -1;
+  int slave = -1;
+  std::array<char, 128> name{};
+  ASSERT_EQ(::openpty(&master, &slave, name.data(), nullptr, nullptr), 0);
+  ::close(slave);
+  Log log;
+  {
+    Streams streams;
+    Stream& stream =
+        streams.open("serial://" + std::string(name.data()) + "?baud=115200", log.sink());
+    ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+    // Bytes that a terminal would swallow or translate.
+    EXPECT_TRUE(stream.write(bytes("\x03\r\n\x11")));
+    std::array<char, 4> read{};
+    ASSERT_EQ(::read(master, read.data(), read.size()), 4);
+    EXPECT_EQ(std::string_view(read.data(), 4), "\x03\r\n\x11");
+    ASSERT_EQ(::write(master, "\x04\r\x7f", 3), 3);
+    EXPECT_TRUE(log.wait([&] { return log.received == "\x04\r\x7f"; }));
+  }
+  ::close(master);
+}
+
+TEST(Streams, ReportASerialLineThatIsNotThereOrUnplugged) {
+  Log absent;
+  Log unplugged;
+  int master = -1;
+  int slave = -1;
+  std::array<char, 128> name{};
+  ASSERT_EQ(::openpty(&master, &slave, name.data(), nullptr, nullptr), 0);
+  ::close(slave);
+  Streams streams;
+  streams.open("serial:///dev/no-such-device?baud=9600", absent.sink());
+  streams.open("serial://" + std::string(name.data()) + "?baud=9600", unplugged.sink());
+  ASSERT_TRUE(absent.wait([&] { return !absent.closed.empty(); }));
+  EXPECT_THAT(absent.closed[0], HasSubstr("/dev/no-such-device"));
+  ASSERT_TRUE(unplugged.wait([&] { return unplugged.opened == 1; }));
+  ::close(master);
+  EXPECT_TRUE(unplugged.wait([&] { return !unplugged.closed.empty(); }));
+}
+
+}  // namespace
+}  // namespace usher::runtime
