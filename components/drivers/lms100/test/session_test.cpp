@@ -1,0 +1,286 @@
+#include "drivers/lms100/core/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "foundation/random/random.hpp"
+
+namespace usher::lms100 {
+namespace {
+
+using std::chrono::milliseconds;
+using Bytes = std::vector<std::uint8_t>;
+
+/// A scanner that answers as the documents and the recorded dialogue say.
+class Scanner {
+ public:
+  explicit Scanner(Dialect dialect) : dialect_(dialect) {}
+
+  bool refuse_login = false;
+  int refuse_settings_with = 0;   ///< code of mLMPsetscancfg
+  std::string refuse_with_error;  ///< name that is answered with sFA 3
+  std::string mute;               ///< name that is not answered
+  int polls_until_ready = 3;
+  std::vector<std::string> heard;
+
+  Bytes answer(const Bytes& sent) {
+    Bytes out;
+    decoder_.feed(sent);
+    while (const auto telegram = decoder_.next()) {
+      auto message = open(*telegram);
+      if (!message) continue;
+      heard.emplace_back(telegram->payload.begin(), telegram->payload.end());
+      const std::string name(message->name);
+      if (name == mute) continue;
+      if (name == refuse_with_error) {
+        append(out, error(3));
+        continue;
+      }
+      Command reply(dialect_, answer_kind(message->kind), name);
+      if (name == "SetAccessMode") {
+        const bool right =
+            message->fields.number(1) == 3 && message->fields.number(4) == 0xF4724744;
+        reply.number(right && !refuse_login ? 1 : 0, 1);
+      } else if (name == "mLMPsetscancfg") {
+        reply.number(static_cast<std::uint32_t>(refuse_settings_with), 1);
+        for (int i = 0; i < 5; ++i) reply.number(0, 4);
+      } else if (name == "STlms") {
+        reply.number(polls_until_ready-- > 0 ? 4 : 7, 2);
+      } else if (name == "Run" || name == "LMDscandata") {
+        reply.number(1, 1);
+      } else if (name == "LMCstartmeas") {
+        reply.number(0, 1);
+      }
+      append(out, reply.frame());
+    }
+    return out;
+  }
+
+  Bytes scan(std::uint16_t counter, std::uint32_t time_us) const {
+    Command command(dialect_, "sSN", "LMDscandata");
+    command.number(1, 2).number(1, 2).number(77, 4).number(0, 1).number(0, 1);
+    command.number(counter, 2).number(counter, 2).number(time_us, 4).number(time_us + 3000, 4);
+    for (int i = 0; i < 4; ++i) command.number(0, 1);
+    command.number(0, 2).number(5000, 4).number(360, 4).number(0, 2).number(1, 2);
+    Bytes frame = with_channel(command);
+    return frame;
+  }
+
+ private:
+  static std::string_view answer_kind(std::string_view kind) {
+    return kind == "sMN" ? "sAN" : kind == "sWN" ? "sWA" : kind == "sEN" ? "sEA" : "sRA";
+  }
+  static void append(Bytes& out, const Bytes& more) {
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  Bytes error(std::uint8_t code) const {
+    if (dialect_ == Dialect::kAscii) return {0x02, 's', 'F', 'A', ' ', std::uint8_t('0' + code), 3};
+    Bytes payload{'s', 'F', 'A', 0, code};
+    Bytes frame{2, 2, 2, 2, 0, 0, 0, static_cast<std::uint8_t>(payload.size())};
+    std::uint8_t sum = 0;
+    for (const std::uint8_t byte : payload) sum = static_cast<std::uint8_t>(sum ^ byte);
+    append(frame, payload);
+    frame.push_back(sum);
+    return frame;
+  }
+  /// One channel of four values behind the header; the frame is rebuilt around its characters.
+  Bytes with_channel(const Command& head) const {
+    const Bytes framed = head.frame();
+    const bool binary = dialect_ == Dialect::kBinary;
+    Bytes payload(framed.begin() + (binary ? 8 : 1), framed.end() - 1);
+    if (binary) {
+      for (const char c : std::string("DIST1")) payload.push_back(static_cast<std::uint8_t>(c));
+      append(payload, {0x3F, 0x80, 0, 0, 0, 0, 0, 0, 0xFF, 0xF9, 0x22, 0x30, 0x13, 0x88, 0, 4});
+      append(payload, {3, 0xE8, 3, 0xE8, 0, 0, 7, 0xD0, 0, 0});
+      Bytes frame{2,
+                  2,
+                  2,
+                  2,
+                  0,
+                  0,
+                  static_cast<std::uint8_t>(payload.size() >> 8),
+                  static_cast<std::uint8_t>(payload.size())};
+      std::uint8_t sum = 0;
+      for (const std::uint8_t byte : payload) sum = static_cast<std::uint8_t>(sum ^ byte);
+      append(frame, payload);
+      frame.push_back(sum);
+      return frame;
+    }
+    const std::string channel =
+        " DIST1 3F800000 00000000 FFF92230 1388 4 3E8 3E8 0 7D0 0 0 0 0 0 0";
+    payload.insert(payload.end(), channel.begin(), channel.end());
+    Bytes frame{2};
+    append(frame, payload);
+    frame.push_back(3);
+    return frame;
+  }
+
+  Dialect dialect_;
+  Decoder decoder_;
+};
+
+struct Link {
+  explicit Link(Dialect dialect = Dialect::kBinary) : scanner(dialect) {
+    Session::Parameters parameters;
+    parameters.dialect = dialect;
+    session = Session(parameters);
+    session.opened(now());
+  }
+  Scanner scanner;
+  Session session;
+  int now_ms = 0;
+  std::vector<Scan> scans;
+
+  Time now() const { return milliseconds(now_ms); }
+  void hear(const Bytes& bytes) {
+    session.received(bytes, now(), [this](const Scan& scan) { scans.push_back(scan); });
+  }
+  void run(int ms) {
+    for (const int end = now_ms + ms; now_ms < end;) {
+      now_ms += 50;
+      const Bytes sent = session.take_output();
+      if (!sent.empty()) hear(scanner.answer(sent));
+      session.tick(now());
+    }
+  }
+};
+
+TEST(Session, StartsInBothDialects) {
+  for (const Dialect dialect : {Dialect::kAscii, Dialect::kBinary}) {
+    Link link(dialect);
+    link.run(5000);
+    EXPECT_EQ(link.session.state(), Session::State::kStreaming) << link.session.reason();
+    link.hear(link.scanner.scan(1, 1000));
+    ASSERT_EQ(link.scans.size(), 1U);
+    EXPECT_TRUE(link.session.healthy());
+    EXPECT_FLOAT_EQ(link.scans[0].ranges[0], 1.0F);
+    EXPECT_FLOAT_EQ(link.scans[0].ranges[3], 2.0F);
+    EXPECT_EQ(link.scans[0].stamp, link.now() - std::chrono::microseconds(3000));
+  }
+}
+
+TEST(Session, SaysWhatTheRecordedDialogueSays) {
+  Link link(Dialect::kAscii);
+  link.run(5000);
+  const std::vector<std::string> expected{
+      "sMN SetAccessMode 3 F4724744",
+      "sMN mLMPsetscancfg 1388 1 1388 FFF92230 225510",
+      "sWN LMDscandatacfg 1 0 0 1 0 0 0 0 0 0 0 1",
+      "sWN LMPoutputRange 1 1388 FFF92230 225510",
+      "sMN LMCstartmeas",
+      "sMN Run",
+      "sRN STlms",
+      "sRN STlms",
+      "sRN STlms",
+      "sRN STlms",
+      "sEN LMDscandata 1",
+  };
+  EXPECT_EQ(link.scanner.heard, expected);
+}
+
+TEST(Session, SaysWhyItFails) {
+  struct Row {
+    void (*spoil)(Scanner&);
+    const char* reason;
+  };
+  const Row rows[] = {
+      {[](Scanner& s) { s.refuse_login = true; }, "the scanner refused the login"},
+      {[](Scanner& s) { s.refuse_settings_with = 1; },
+       "the scanner refused mLMPsetscancfg: frequency not allowed"},
+      {[](Scanner& s) { s.refuse_settings_with = 5; },
+       "the scanner refused mLMPsetscancfg: refused"},
+      {[](Scanner& s) { s.refuse_with_error = "LMPoutputRange"; },
+       "the scanner refused LMPoutputRange: unknown variable"},
+      {[](Scanner& s) { s.refuse_with_error = "STlms"; },
+       "the scanner refused STlms: unknown variable"},
+      {[](Scanner& s) { s.mute = "Run"; }, "no answer to Run"},
+      {[](Scanner& s) { s.mute = "LMDscandata"; }, "no answer to sEN LMDscandata"},
+      {[](Scanner& s) { s.polls_until_ready = 1000; }, "the scanner does not begin to measure"},
+  };
+  for (const Row& row : rows) {
+    for (const Dialect dialect : {Dialect::kAscii, Dialect::kBinary}) {
+      Link link(dialect);
+      row.spoil(link.scanner);
+      link.run(130000);
+      EXPECT_EQ(link.session.state(), Session::State::kFailed);
+      EXPECT_EQ(link.session.reason(), row.reason);
+    }
+  }
+}
+
+TEST(Session, WatchesTheScans) {
+  Link link;
+  link.run(5000);
+  for (std::uint16_t i = 1; i <= 10; ++i) {
+    link.now_ms += 20;
+    link.hear(link.scanner.scan(i, i * 20000U));
+  }
+  EXPECT_EQ(link.session.scans(), 10U);
+  link.run(150);
+  EXPECT_TRUE(link.session.healthy());
+  link.run(100);
+  EXPECT_FALSE(link.session.healthy());
+  EXPECT_EQ(link.session.reason(), "scans are missing");
+  link.hear(link.scanner.scan(20, 400000));
+  EXPECT_TRUE(link.session.healthy());
+  EXPECT_EQ(link.session.lost_scans(), 9U);
+  link.run(2000);
+  EXPECT_EQ(link.session.state(), Session::State::kFailed);
+  EXPECT_EQ(link.session.reason(), "no scans");
+  link.session.opened(link.now());
+  link.scanner.polls_until_ready = 0;
+  link.run(1000);
+  EXPECT_EQ(link.session.state(), Session::State::kStreaming);
+}
+
+TEST(Session, IgnoresARepeatedScanAndSurvivesTheCountersWrap) {
+  Link link;
+  link.run(5000);
+  link.hear(link.scanner.scan(65535, 20000));
+  link.hear(link.scanner.scan(65535, 20000));
+  link.hear(link.scanner.scan(0, 40000));
+  EXPECT_EQ(link.scans.size(), 2U);
+  EXPECT_EQ(link.session.lost_scans(), 0U);
+}
+
+TEST(Session, EventsInBetweenAndOldScansDoNotDisturb) {
+  Link link;
+  link.hear(link.scanner.scan(5, 1000));  // of a subscription that nobody ended
+  link.hear(Command(Dialect::kBinary, "sSN", "LIDoutputstate").number(0, 4).frame());
+  link.hear(Command(Dialect::kBinary, "sEA", "LIDinputstate").number(1, 1).frame());
+  link.run(5000);
+  EXPECT_EQ(link.session.state(), Session::State::kStreaming);
+  EXPECT_TRUE(link.scans.empty());
+}
+
+TEST(Session, RejectsBrokenScansAndGoesOn) {
+  Link link;
+  link.run(5000);
+  link.hear(Command(Dialect::kBinary, "sSN", "LMDscandata").number(1, 2).frame());
+  EXPECT_EQ(link.session.rejected(), 1U);
+  link.hear(link.scanner.scan(1, 1000));
+  EXPECT_EQ(link.scans.size(), 1U);
+}
+
+TEST(Session, SurvivesNoiseInEveryState) {
+  Random random(8);
+  for (int run = 0; run < 200; ++run) {
+    Link link(run % 2 == 0 ? Dialect::kAscii : Dialect::kBinary);
+    link.run(static_cast<int>(random.below(6000)));
+    for (int i = 0; i < 20; ++i) {
+      Bytes noise(random.below(300));
+      for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.below(256));
+      link.hear(noise);
+    }
+    link.session.closed();
+    link.session.opened(link.now());
+    link.scanner.polls_until_ready = 0;
+    link.run(2000);
+    EXPECT_EQ(link.session.state(), Session::State::kStreaming) << link.session.reason();
+  }
+}
+
+}  // namespace
+}  // namespace usher::lms100
