@@ -1,0 +1,600 @@
+#include "navigation/navigator/core/navigator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace usher::navigator {
+namespace {
+
+constexpr double kRepeat = 0.2 - 1e-6;  // [s] between repetitions of what was not answered
+constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever restarts the stall clock
+constexpr double kSlowestKept =
+    0.02;  // [m/s] slower than this tells nothing about the time of arrival
+constexpr int kRecoveryKinds = 3;
+
+std::string text(const char* format, double value) {
+  char buffer[160];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+bool finite(const std::vector<geometry::Pose2>& path) {
+  return std::ranges::all_of(path, &geometry::Pose2::finite);
+}
+
+/// Bounds of every field: what is outside makes no sense, and nothing may wait forever.
+Status check(const NavigatorConfig& c) {
+  struct Field {
+    const char* name;
+    double value, low, high;
+  };
+  for (const Field& f :
+       {Field{"position_tolerance", c.position_tolerance, 0.01, 2.0},
+        Field{"yaw_tolerance", c.yaw_tolerance, 0.01, 3.2},
+        Field{"settle_time", c.settle_time, 0.0, 10.0},
+        Field{"settle_speed", c.settle_speed, 0.001, 0.5},
+        Field{"replan_period", c.replan_period, 0.0, 600.0},
+        Field{"replan_interval", c.replan_interval, 0.1, 60.0},
+        Field{"off_path", c.off_path, 0.1, 10.0},
+        Field{"obstacle_ahead", c.obstacle_ahead, 0.0, 20.0},
+        Field{"keep_path", c.keep_path, 0.0, 1.0},
+        Field{"wait_object", c.wait_object, 0.0, 120.0},
+        Field{"wait_person", c.wait_person, c.wait_object, 120.0},
+        Field{"recovery_patience", c.recovery_patience, 0.1, 120.0},
+        Field{"stall_time", c.stall_time, 1.0, 120.0},
+        Field{"most_recoveries", static_cast<double>(c.most_recoveries), 0.0, 100.0},
+        Field{"recovery_progress", c.recovery_progress, 0.1, 100.0},
+        Field{"back_off_distance", c.back_off_distance, 0.0, 2.0},
+        Field{"rear_margin", c.rear_margin, 0.0, 2.0},
+        Field{"look_angle", c.look_angle, 0.1, 6.3},
+        Field{"clear_time", c.clear_time, 0.0, 30.0},
+        Field{"recovery_timeout", c.recovery_timeout, 0.5, 120.0},
+        Field{"plan_attempts", static_cast<double>(c.plan_attempts), 1.0, 100.0},
+        Field{"plan_retry", c.plan_retry, 0.1, 60.0},
+        Field{"plan_timeout", c.plan_timeout, 0.5, 60.0},
+        Field{"ready_timeout", c.ready_timeout, 0.0, 600.0},
+        Field{"pause_timeout", c.pause_timeout, 0.0, 600.0},
+        Field{"time_base", c.time_base, 1.0, 36000.0},
+        Field{"time_factor", c.time_factor, 1.0, 1000.0},
+        Field{"usual_speed", c.usual_speed, 0.05, 5.0},
+        Field{"speed_memory", c.speed_memory, 0.1, 600.0},
+        Field{"degraded_speed", c.degraded_speed, 0.05, 5.0}}) {
+    if (f.value >= f.low && f.value <= f.high) continue;
+    char message[160];
+    std::snprintf(message, sizeof message, "%s must be in [%g, %g], got %g", f.name, f.low, f.high,
+                  f.value);
+    return Error{message};
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* name(State state) {
+  switch (state) {
+    case State::kInitialise:
+      return "initialise";
+    case State::kInactive:
+      return "inactive";
+    case State::kNewRequest:
+      return "new request";
+    case State::kActive:
+      return "active";
+    case State::kSuccess:
+      return "success";
+    case State::kFailure:
+      return "failure";
+  }
+  return "unknown";
+}
+
+const char* name(Phase phase) {
+  switch (phase) {
+    case Phase::kPlanning:
+      return "planning";
+    case Phase::kFollowing:
+      return "following";
+    case Phase::kBlocked:
+      return "blocked";
+    case Phase::kPaused:
+      return "paused";
+    case Phase::kClearing:
+      return "clearing";
+    case Phase::kBackingOff:
+      return "backing off";
+    case Phase::kLooking:
+      return "looking";
+  }
+  return "unknown";
+}
+
+const char* name(Failure failure) {
+  switch (failure) {
+    case Failure::kNone:
+      return "none";
+    case Failure::kBadGoal:
+      return "bad goal";
+    case Failure::kUnknownLocation:
+      return "unknown location";
+    case Failure::kNotReady:
+      return "not ready";
+    case Failure::kNoPath:
+      return "no path";
+    case Failure::kPlannerSilent:
+      return "planner silent";
+    case Failure::kBlocked:
+      return "blocked";
+    case Failure::kLocalizationLost:
+      return "localization lost";
+    case Failure::kInputsStale:
+      return "inputs stale";
+    case Failure::kHeld:
+      return "held";
+    case Failure::kTooSlow:
+      return "too slow";
+  }
+  return "unknown";
+}
+
+Result<Navigator> Navigator::create(const NavigatorConfig& config, Locations locations,
+                                    std::uint64_t first_id) {
+  if (const Status status = check(config); !status) return Error{status.error()};
+  return Navigator(config, std::move(locations), first_id);
+}
+
+Navigator::Navigator(const NavigatorConfig& config, Locations locations, std::uint64_t first_id)
+    : config_(config), locations_(std::move(locations)), last_plan_id_(first_id - 1) {
+  motion_.id = first_id;
+}
+
+// --- Requests
+
+void Navigator::request(GoalRequest goal) {
+  if (goal.id == status_.id && goal.id != 0 && goal.client == status_.client) return;
+  NavigationStatus status;
+  status.id = goal.id;
+  status.client = goal.client;
+  status.location = goal.location;
+  status.goal = goal.pose;
+  status.state = GoalState::kActive;
+  const auto refuse = [&](Failure failure, const std::string& reason) {
+    status.state = GoalState::kFailed;
+    status.failure = failure;
+    status.reason = reason;
+    if (open()) {
+      decision_.asides.push_back(status);
+    } else {
+      status_ = status;
+      state_ = state_ == State::kInitialise ? State::kInitialise : State::kFailure;
+    }
+  };
+  if (goal.id == 0) return refuse(Failure::kBadGoal, "a goal needs an id other than 0");
+  if (!std::isfinite(goal.max_speed) || goal.max_speed < 0.0)
+    return refuse(Failure::kBadGoal,
+                  text("max_speed must be 0 or more, got %g m/s", goal.max_speed));
+  if (!goal.location.empty()) {
+    const auto location = locations_.find(goal.location);
+    if (!location) return refuse(Failure::kUnknownLocation, location.error());
+    status.goal = location->pose;
+  } else if (!goal.pose.finite()) {
+    return refuse(Failure::kBadGoal, "the goal pose must be finite");
+  }
+  if (open()) {
+    NavigationStatus old = status_;
+    old.state = GoalState::kReplaced;
+    old.reason = "replaced by a newer goal";
+    decision_.asides.push_back(old);
+  }
+  status_ = status;
+  goal_max_speed_ = goal.max_speed;
+  fresh_ = true;
+}
+
+bool Navigator::cancel(std::uint64_t id) {
+  if (!open() || (id != 0 && id != status_.id)) return false;
+  finish(GoalState::kCancelled, Failure::kNone, "cancelled");
+  return true;
+}
+
+void Navigator::plan_reply(PlanReply reply) { reply_ = std::move(reply); }
+
+// --- The state machine
+
+Decision Navigator::step(const Situation& s) {
+  if (fresh_) start(s);
+  step_state(s);
+  limit_speed(s);
+  send_plan(s);
+  send_motion(s);
+  update_status(s);
+  last_step_ = s.time;
+  return std::exchange(decision_, {});
+}
+
+void Navigator::start(const Situation& s) {
+  fresh_ = false;
+  started_at_ = s.time;
+  longest_ = 0.0;
+  pending_.reset();
+  reply_ = {};
+  waiting_for_.clear();
+  next_attempt_ = s.time;
+  failed_plans_ = 0;
+  route_.clear();
+  advanced_ = recovered_at_ = 0.0;
+  recoveries_in_a_row_ = 0;
+  speed_kept_ =
+      goal_max_speed_ > 0.0 ? std::min(goal_max_speed_, config_.usual_speed) : config_.usual_speed;
+  set_motion(MotionMode::kStop);
+  if (state_ != State::kInitialise) state_ = State::kNewRequest;
+  enter(Phase::kPlanning, s.time);
+}
+
+void Navigator::step_state(const Situation& s) {
+  switch (state_) {
+    case State::kInitialise:
+      if (s.missing.empty()) {
+        state_ = open() ? State::kNewRequest : State::kInactive;
+        enter(Phase::kPlanning, s.time);
+        if (open()) pursue(s);
+      } else if (open() && s.time - started_at_ > config_.ready_timeout) {
+        finish(GoalState::kFailed, Failure::kNotReady,
+               s.missing + text(" not there after %g s", config_.ready_timeout));
+      }
+      break;
+    case State::kSuccess:
+    case State::kFailure:
+      state_ = State::kInactive;
+      [[fallthrough]];
+    case State::kInactive:
+      if (!s.missing.empty()) state_ = State::kInitialise;
+      break;
+    case State::kNewRequest:
+    case State::kActive:
+      pursue(s);
+      break;
+  }
+}
+
+void Navigator::pursue(const Situation& s) {
+  const double limit = config_.time_base + config_.time_factor * longest_ / config_.usual_speed;
+  if (s.time - started_at_ > limit)
+    return finish(GoalState::kFailed, Failure::kTooSlow, text("not there after %.0f s", limit));
+  if (pause_if_unfit(s)) return;
+  track(s);
+  handle_reply(s);
+  if (!open() || arrived(s)) return;
+  switch (phase_) {
+    case Phase::kPlanning:
+      return plan(s);
+    case Phase::kFollowing:
+      return follow(s);
+    case Phase::kBlocked:
+      return wait_blocked(s);
+    case Phase::kClearing:
+    case Phase::kBackingOff:
+    case Phase::kLooking:
+      return continue_recovery(s);
+    case Phase::kPaused:
+      break;  // left by pause_if_unfit
+  }
+}
+
+bool Navigator::pause_if_unfit(const Situation& s) {
+  Failure cause = Failure::kNone;
+  std::string reason;
+  if (!s.missing.empty() || !s.stale.empty()) {
+    cause = Failure::kInputsStale;
+    reason = "no fresh " + (s.missing.empty() ? s.stale : s.missing);
+  } else if (s.localization == Localization::kLost || !s.pose || !s.pose->finite()) {
+    cause = Failure::kLocalizationLost;
+    reason = "robot not localized";
+  } else if (!s.hold.empty()) {
+    cause = Failure::kHeld;
+    reason = s.hold;
+  } else if (phase_ == Phase::kPaused) {
+    failed_plans_ = 0;
+    next_attempt_ = s.time;
+    waiting_for_.clear();
+    enter(Phase::kPlanning, s.time);  // the world has moved on: from here, a new path
+  }
+  if (cause == Failure::kNone) return false;
+  if (phase_ != Phase::kPaused) {
+    pending_.reset();
+    set_motion(MotionMode::kStop);
+    enter(Phase::kPaused, s.time);
+  }
+  waiting_for_ = reason;
+  if (s.time - phase_since_ > config_.pause_timeout)
+    finish(GoalState::kFailed, cause, reason + text(" for %g s", config_.pause_timeout));
+  return true;
+}
+
+void Navigator::track(const Situation& s) {
+  if (route_.empty()) return;
+  const double elapsed = std::clamp(s.time - last_step_, 0.0, 1.0);
+  const double advance = route_.track(*s.pose);
+  advanced_ = std::max(0.0, advanced_ + advance);
+  if (elapsed > 0.0) {
+    const double speed = std::clamp(advance / elapsed, 0.0, 5.0);
+    speed_kept_ += (speed - speed_kept_) * (1.0 - std::exp(-elapsed / config_.speed_memory));
+  }
+  if (route_.remaining() < nearest_ - kProgress) {
+    nearest_ = route_.remaining();
+    nearest_since_ = s.time;
+  }
+  recovered_at_ = std::min(recovered_at_, advanced_);
+  if (advanced_ - recovered_at_ >= config_.recovery_progress) recoveries_in_a_row_ = 0;
+}
+
+bool Navigator::arrived(const Situation& s) {
+  if (motion_.mode != MotionMode::kFollow) return false;
+  const geometry::Pose2& end = route_.end();
+  const bool there =
+      geometry::distance(*s.pose, end) <= config_.position_tolerance &&
+      std::abs(geometry::shortest_turn(s.pose->yaw, end.yaw)) <= config_.yaw_tolerance &&
+      std::abs(s.velocity.v) <= config_.settle_speed &&
+      std::abs(s.velocity.w) <= config_.settle_speed;
+  if (!there) {
+    standing_since_.reset();
+    return false;
+  }
+  if (!standing_since_) standing_since_ = s.time;
+  if (s.time - *standing_since_ < config_.settle_time) return false;
+  const double shift = geometry::distance(end, status_.goal);
+  status_.progress = 1.0;
+  finish(GoalState::kSucceeded, Failure::kNone,
+         shift > config_.position_tolerance
+             ? text("%.2f m beside the goal, which is blocked", shift)
+             : "");
+  return true;
+}
+
+// --- Planning
+
+void Navigator::ask_plan(const Situation& s, PlanCause cause) {
+  pending_ = PendingPlan{{++last_plan_id_, *s.pose, status_.goal},
+                         cause,
+                         s.time,
+                         -std::numeric_limits<double>::infinity()};
+  last_planned_ = s.time;
+}
+
+void Navigator::send_plan(const Situation& s) {
+  if (!pending_ || s.time - pending_->sent < kRepeat) return;
+  decision_.plan = pending_->request;
+  pending_->sent = s.time;
+}
+
+void Navigator::handle_reply(const Situation& s) {
+  const PlanReply reply = std::exchange(reply_, {});
+  if (!pending_) return;
+  if (reply.id == pending_->request.id) {
+    const PlanCause cause = std::exchange(pending_, std::nullopt)->cause;
+    if (reply.path.empty() || !finite(reply.path))
+      return handle_failed_plan(s, Failure::kNoPath,
+                                reply.reason.empty() ? "no path" : reply.reason);
+    adopt(s, cause, reply.path);
+  } else if (s.time - pending_->asked > config_.plan_timeout) {
+    pending_.reset();
+    handle_failed_plan(s, Failure::kPlannerSilent,
+                       text("the global planner did not answer for %g s", config_.plan_timeout));
+  }
+}
+
+void Navigator::handle_failed_plan(const Situation& s, Failure failure, const std::string& reason) {
+  if (phase_ == Phase::kBlocked && replanned_at_) replanned_at_ = s.time;
+  if (phase_ != Phase::kPlanning) return;  // the old path still leads there
+  waiting_for_ = reason;
+  next_attempt_ = s.time + config_.plan_retry;
+  if (++failed_plans_ < config_.plan_attempts) {
+    decision_.clear_costmap = true;  // what bars the way may be gone
+  } else if (state_ == State::kActive) {
+    recover(s, failure, reason);
+  } else {
+    finish(GoalState::kFailed, failure, reason);
+  }
+}
+
+void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry::Pose2> path) {
+  Route route;
+  route.set(std::move(path));
+  ++status_.replans;
+  failed_plans_ = 0;
+  const double change = std::abs(route.length() - route_.remaining());
+  if (cause == PlanCause::kPeriodic && change <= config_.keep_path * route_.remaining()) return;
+  route_ = std::move(route);
+  route_.track(*s.pose);
+  longest_ = std::max(longest_, advanced_ + route_.length());
+  nearest_ = route_.remaining();
+  nearest_since_ = s.time;
+  standing_since_.reset();
+  obstacle_since_.reset();
+  state_ = State::kActive;
+  if (motion_.mode == MotionMode::kFollow) {
+    motion_changed_ = true;
+  } else {
+    set_motion(MotionMode::kFollow);
+  }
+  if (phase_ == Phase::kBlocked) {
+    if (replanned_at_) replanned_at_ = s.time;
+  } else {
+    enter(Phase::kFollowing, s.time);
+  }
+}
+
+void Navigator::plan(const Situation& s) {
+  if (!pending_ && s.time >= next_attempt_) ask_plan(s, PlanCause::kNeeded);
+}
+
+// --- On the way
+
+bool Navigator::blocked(const Situation& s) const {
+  return follower_speaks(s) && s.follow.state == GoalState::kWaiting;
+}
+
+void Navigator::follow(const Situation& s) {
+  if (blocked(s)) {
+    enter(Phase::kBlocked, s.time);
+    blocked_since_ = s.time;
+    blocked_by_person_ = false;
+    replanned_at_.reset();
+    return wait_blocked(s);
+  }
+  if (follower_speaks(s) && s.follow.state == GoalState::kFailed)
+    return recover(s, Failure::kBlocked,
+                   s.follow.reason.empty() ? "the path cannot be followed" : s.follow.reason);
+  if (s.time - nearest_since_ > config_.stall_time)
+    return recover(s, Failure::kBlocked, text("no progress for %g s", config_.stall_time));
+  replan_if_due(s);
+}
+
+void Navigator::replan_if_due(const Situation& s) {
+  if (!(s.follow.obstacle_distance < config_.obstacle_ahead) || !follower_speaks(s)) {
+    obstacle_since_.reset();
+  } else if (!obstacle_since_) {
+    obstacle_since_ = s.time;
+  }
+  if (pending_ || s.time - last_planned_ < config_.replan_interval) return;
+  const double wait = s.person_ahead ? config_.wait_person : config_.wait_object;
+  // The follower believes to be there, we do not: localization corrected itself after the path was
+  // made.
+  const bool astray =
+      follower_speaks(s) && s.follow.state == GoalState::kSucceeded && !standing_since_;
+  if (route_.offset() > config_.off_path || astray) {
+    ask_plan(s, PlanCause::kOffPath);
+  } else if (obstacle_since_ && s.time - *obstacle_since_ >= wait) {
+    obstacle_since_ = s.time;
+    ask_plan(s, PlanCause::kObstacleAhead);
+  } else if (config_.replan_period > 0.0 && s.time - last_planned_ >= config_.replan_period) {
+    ask_plan(s, PlanCause::kPeriodic);
+  }
+}
+
+void Navigator::wait_blocked(const Situation& s) {
+  if (!blocked(s)) {
+    nearest_since_ = s.time;
+    return enter(Phase::kFollowing, s.time);
+  }
+  blocked_by_person_ |= s.person_ahead;
+  waiting_for_ = s.follow.reason.empty() ? "the way is blocked" : s.follow.reason;
+  if (pending_) return;
+  if (!replanned_at_) {
+    const double wait = blocked_by_person_ ? config_.wait_person : config_.wait_object;
+    if (s.time - blocked_since_ < wait) return;
+    replanned_at_ = s.time;
+    ask_plan(s, PlanCause::kBlocked);
+  } else if (s.time - *replanned_at_ >= config_.recovery_patience) {
+    recover(s, Failure::kBlocked, waiting_for_);
+  }
+}
+
+// --- Recovering
+
+void Navigator::recover(const Situation& s, Failure failure, const std::string& reason) {
+  if (recoveries_in_a_row_ >= config_.most_recoveries)
+    return finish(GoalState::kFailed, failure, reason);
+  const int kind = recoveries_in_a_row_++ % kRecoveryKinds;
+  const bool left = recoveries_in_a_row_ / kRecoveryKinds % 2 == 1;
+  ++status_.recoveries;
+  recovered_at_ = advanced_;
+  waiting_for_ = reason;
+  pending_.reset();
+  const bool room_behind = s.rear_clearance >= config_.back_off_distance + config_.rear_margin;
+  if (kind == 0) {
+    decision_.clear_costmap = true;
+    set_motion(MotionMode::kStop);
+    enter(Phase::kClearing, s.time);
+  } else if (kind == 1 && room_behind) {
+    set_motion(MotionMode::kBackOff, config_.back_off_distance);
+    enter(Phase::kBackingOff, s.time);
+  } else {
+    set_motion(MotionMode::kRotate, left ? config_.look_angle : -config_.look_angle);
+    enter(Phase::kLooking, s.time);
+  }
+}
+
+void Navigator::continue_recovery(const Situation& s) {
+  const double elapsed = s.time - phase_since_;
+  const bool moved = follower_speaks(s) && (s.follow.state == GoalState::kSucceeded ||
+                                            s.follow.state == GoalState::kFailed);
+  const bool done = phase_ == Phase::kClearing ? elapsed >= config_.clear_time
+                                               : moved || elapsed >= config_.recovery_timeout ||
+                                                     (phase_ == Phase::kBackingOff &&
+                                                      s.rear_clearance < config_.rear_margin);
+  if (!done) return;
+  set_motion(MotionMode::kStop);
+  failed_plans_ = 0;
+  next_attempt_ = s.time;
+  enter(Phase::kPlanning, s.time);
+  plan(s);
+}
+
+// --- Outputs
+
+void Navigator::enter(Phase phase, double time) {
+  phase_ = phase;
+  phase_since_ = time;
+  if (phase == Phase::kFollowing) waiting_for_.clear();
+}
+
+void Navigator::set_motion(MotionMode mode, double amount) {
+  if (mode == MotionMode::kStop && motion_.mode == MotionMode::kStop) return;
+  motion_ = {motion_.id + 1, mode, 0.0, amount};
+  motion_changed_ = true;
+  standing_since_.reset();
+  obstacle_since_.reset();
+}
+
+void Navigator::limit_speed(const Situation& s) {
+  if (motion_.mode != MotionMode::kFollow) return;
+  double limit = goal_max_speed_;
+  if (s.localization == Localization::kDegraded)
+    limit = limit > 0.0 ? std::min(limit, config_.degraded_speed) : config_.degraded_speed;
+  if (limit == motion_.max_speed) return;
+  motion_.max_speed = limit;
+  motion_changed_ = true;
+}
+
+void Navigator::send_motion(const Situation& s) {
+  const bool unheard = !follower_speaks(s) && s.time - motion_sent_ >= kRepeat;
+  if (!motion_changed_ && !unheard) return;
+  decision_.motion = motion_;
+  motion_changed_ = false;
+  motion_sent_ = s.time;
+}
+
+void Navigator::finish(GoalState outcome, Failure failure, const std::string& reason) {
+  status_.state = outcome;
+  status_.failure = failure;
+  status_.reason = reason;
+  status_.eta = outcome == GoalState::kSucceeded ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  if (outcome == GoalState::kSucceeded) status_.remaining = 0.0;
+  pending_.reset();
+  fresh_ = false;
+  waiting_for_.clear();
+  set_motion(MotionMode::kStop);
+  if (state_ == State::kInitialise) return;
+  state_ = outcome == GoalState::kSucceeded ? State::kSuccess
+           : outcome == GoalState::kFailed  ? State::kFailure
+                                            : State::kInactive;
+}
+
+void Navigator::update_status(const Situation& s) {
+  if (!open()) return;
+  if (state_ == State::kInitialise) waiting_for_ = s.missing + " not there yet";
+  const bool stands =
+      state_ == State::kInitialise || (phase_ != Phase::kFollowing && !waiting_for_.empty());
+  status_.state = stands ? GoalState::kWaiting : GoalState::kActive;
+  status_.reason = stands ? waiting_for_ : "";
+  if (route_.empty()) return;
+  status_.remaining = route_.remaining();
+  const double way = advanced_ + status_.remaining;
+  if (way > 0.0) status_.progress = std::max(status_.progress, advanced_ / way);
+  status_.eta = speed_kept_ >= kSlowestKept ? status_.remaining / speed_kept_
+                                            : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace usher::navigator

@@ -1,0 +1,52 @@
+#include "navigation/navigator/core/route.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace usher::navigator {
+namespace {
+constexpr double kBehind = 0.5;      // [m]
+constexpr double kAhead = 3.0;       // [m]
+constexpr double kLostOffset = 1.0;  // [m]
+}  // namespace
+
+void Route::set(std::vector<geometry::Pose2> path) {
+  assert(!path.empty());
+  path_ = std::move(path);
+  length_.assign(1, 0.0);
+  for (std::size_t i = 1; i < path_.size(); ++i)
+    length_.push_back(length_.back() + geometry::distance(path_[i - 1], path_[i]));
+  place_ = offset_ = 0.0;
+}
+
+Route::Projection Route::project(const geometry::Pose2& robot, double from, double to) const {
+  Projection best{0.0, std::numeric_limits<double>::infinity()};
+  const auto after = [&](double place) {
+    return static_cast<std::size_t>(std::upper_bound(length_.begin(), length_.end(), place) -
+                                    length_.begin());
+  };
+  const std::size_t first = std::max<std::size_t>(after(from), 1) - 1;
+  const std::size_t last = std::min(after(to), path_.size() - 1);
+  for (std::size_t i = first; i <= last; ++i) {
+    const geometry::Point2 a = path_[i].position();
+    const geometry::Point2 along = (i < last ? path_[i + 1].position() : a) - a;
+    const double squared = along.squaredNorm();
+    const double part =
+        squared > 0.0 ? std::clamp((robot.position() - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+    const double distance = (a + part * along - robot.position()).norm();
+    if (distance < best.distance) best = {length_[i] + part * std::sqrt(squared), distance};
+  }
+  return best;
+}
+
+double Route::track(const geometry::Pose2& robot) {
+  Projection found = project(robot, place_ - kBehind, place_ + kAhead);
+  if (found.distance > kLostOffset) found = project(robot, 0.0, length());
+  const double advance = found.place - place_;
+  place_ = found.place;
+  offset_ = found.distance;
+  return advance;
+}
+
+}  // namespace usher::navigator

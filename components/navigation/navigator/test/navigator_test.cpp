@@ -1,0 +1,344 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "navigation/navigator/test/rig.hpp"
+
+namespace usher::navigator {
+namespace {
+
+// --- The way that all goes well
+
+TEST(Navigator, RunsThroughTheStatesOfTheThesis) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.s.missing = "global_planner";
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kInitialise);
+  rig.s.missing.clear();
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kInactive);
+  EXPECT_EQ(rig.status().state, GoalState::kIdle);
+  rig.go_to("lab");
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kNewRequest);
+  EXPECT_EQ(rig.status().state, GoalState::kActive);
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kActive);
+  EXPECT_EQ(rig.navigator.phase(), Phase::kFollowing);
+  EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kFollow);
+  ASSERT_FALSE(std::isnan(rig.run_to_end(60.0)));
+  EXPECT_EQ(rig.navigator.state(), State::kSuccess);
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded);
+  EXPECT_EQ(rig.status().progress, 1.0);
+  EXPECT_EQ(rig.status().remaining, 0.0);
+  EXPECT_EQ(rig.status().eta, 0.0);
+  EXPECT_EQ(rig.status().location, "lab");
+  EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kStop);
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kInactive);
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded) << "the outcome stays to be read";
+}
+
+TEST(Navigator, ProgressNeverFallsAndTheTimeLeftIsTrue) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(30.0);
+  rig.run(20.0);
+  const double left = rig.status().remaining;
+  EXPECT_NEAR(left, 30.0 - rig.s.pose->x, 0.06);
+  EXPECT_NEAR(rig.status().progress, rig.s.pose->x / 30.0, 0.01);
+  const double eta = rig.status().eta;
+  double progress = rig.status().progress;
+  const double begin = rig.s.time;
+  while (rig.status().state == GoalState::kActive) {
+    rig.step();
+    EXPECT_GE(rig.status().progress, progress);
+    progress = rig.status().progress;
+  }
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded);
+  EXPECT_NEAR(rig.s.time - begin, eta, 0.1 * eta);
+}
+
+TEST(Navigator, ArrivesOnlyWithinBothTolerancesAndAtRest) {
+  const struct {
+    const char* name;
+    Pose2 pose;
+    geometry::Twist2 velocity;
+    bool arrived;
+  } table[] = {
+      {"exact", {8.0, 0.0, 0.0}, {}, true},
+      {"inside", {7.8, 0.1, 0.19}, {0.04, -0.04}, true},
+      {"too far", {7.7, 0.0, 0.0}, {}, false},
+      {"turned away", {8.0, 0.0, 0.25}, {}, false},
+      {"turned round", {8.0, 0.0, 3.14}, {}, false},
+      {"rolling", {8.0, 0.0, 0.0}, {0.06, 0.0}, false},
+      {"turning", {8.0, 0.0, 0.0}, {0.0, -0.06}, false},
+      {"velocity unknown", {8.0, 0.0, 0.0}, {std::nan(""), 0.0}, false},
+  };
+  for (const auto& row : table) {
+    Rig rig;
+    rig.go();
+    rig.run(0.3);
+    rig.s.pose = row.pose;
+    rig.s.velocity = row.velocity;
+    rig.run(0.4);
+    EXPECT_EQ(rig.status().state, GoalState::kActive) << row.name << ": not before it has settled";
+    rig.run(0.4);
+    EXPECT_EQ(rig.status().state == GoalState::kSucceeded, row.arrived) << row.name;
+  }
+}
+
+TEST(Navigator, SaysHowFarBesideABlockedGoalItStopped) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.answer = [](Rig& r, const PlanRequest& request) {
+    Rig::straight_path(r, {request.id, request.start, {7.5, 0.0, 0.0}});
+  };
+  rig.go();
+  ASSERT_FALSE(std::isnan(rig.run_to_end(60.0)));
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded);
+  EXPECT_EQ(rig.status().reason, "0.50 m beside the goal, which is blocked");
+}
+
+// --- Requests
+
+TEST(Navigator, RefusesAGoalWithTheReason) {
+  const double nan = std::nan("");
+  const struct {
+    const char* name;
+    GoalRequest goal;
+    Failure failure;
+    const char* reason;
+  } table[] = {
+      {"no id",
+       {0, "test", "", {1, 0, 0}, 0},
+       Failure::kBadGoal,
+       "a goal needs an id other than 0"},
+      {"NaN pose",
+       {1, "test", "", {nan, 0, 0}, 0},
+       Failure::kBadGoal,
+       "the goal pose must be finite"},
+      {"NaN yaw",
+       {1, "test", "", {0, 0, nan}, 0},
+       Failure::kBadGoal,
+       "the goal pose must be finite"},
+      {"NaN speed",
+       {1, "test", "lab", {}, nan},
+       Failure::kBadGoal,
+       "max_speed must be 0 or more, got nan m/s"},
+      {"backwards",
+       {1, "test", "lab", {}, -1},
+       Failure::kBadGoal,
+       "max_speed must be 0 or more, got -1 m/s"},
+      {"unknown",
+       {1, "test", "labb", {}, 0},
+       Failure::kUnknownLocation,
+       "unknown location \"labb\", did you mean lab?"},
+  };
+  for (const auto& row : table) {
+    Rig idle;
+    idle.run(0.2);
+    idle.navigator.request(row.goal);
+    EXPECT_EQ(idle.navigator.state(), State::kFailure) << row.name;
+    idle.step();
+    EXPECT_EQ(idle.navigator.state(), State::kInactive) << row.name;
+    EXPECT_EQ(idle.status().state, GoalState::kFailed) << row.name;
+    EXPECT_EQ(idle.status().failure, row.failure) << row.name;
+    EXPECT_EQ(idle.status().reason, row.reason) << row.name;
+    EXPECT_TRUE(idle.plans.empty()) << row.name;
+
+    Rig busy;
+    busy.go(8.0, 7);
+    busy.run(1.0);
+    busy.navigator.request(row.goal);
+    busy.step();
+    EXPECT_EQ(busy.status().id, 7u) << row.name << ": the running goal goes on";
+    EXPECT_EQ(busy.navigator.motion().mode, MotionMode::kFollow) << row.name;
+    ASSERT_EQ(busy.asides.size(), 1u) << row.name;
+    EXPECT_EQ(busy.asides[0].id, row.goal.id) << row.name;
+    EXPECT_EQ(busy.asides[0].failure, row.failure) << row.name;
+  }
+}
+
+TEST(Navigator, TakesTheNewestGoal) {
+  Rig rig;
+  rig.go(8.0, 1);
+  rig.run(1.0);
+  rig.go_to("kitchen", 2);
+  rig.step();
+  ASSERT_EQ(rig.asides.size(), 1u);
+  EXPECT_EQ(rig.asides[0].id, 1u);
+  EXPECT_EQ(rig.asides[0].state, GoalState::kReplaced);
+  EXPECT_EQ(rig.status().id, 2u);
+  EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kStop) << "no step on the old path";
+  rig.step();
+  EXPECT_EQ(rig.navigator.path().back().y, 5.0);
+}
+
+TEST(Navigator, TakesARepeatedGoalOnce) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  for (int i = 0; i < 5; ++i) {
+    rig.go();
+    rig.run(0.2);
+  }
+  EXPECT_EQ(rig.status().replans, 1u);
+  ASSERT_FALSE(std::isnan(rig.run_to_end(60.0)));
+  rig.go();
+  rig.run(1.0);
+  EXPECT_EQ(rig.navigator.state(), State::kInactive) << "a late repetition does not start again";
+  rig.go(9.0, 2);
+  rig.run(1.0);
+  EXPECT_EQ(rig.navigator.state(), State::kActive);
+}
+
+TEST(Navigator, CancelsByIdOrWhateverRuns) {
+  const struct {
+    std::uint64_t id;
+    bool cancelled;
+  } table[] = {{1, true}, {0, true}, {2, false}};
+  for (const auto& row : table) {
+    Rig rig;
+    EXPECT_FALSE(rig.navigator.cancel(row.id)) << "nothing runs";
+    rig.go();
+    rig.run(1.0);
+    EXPECT_EQ(rig.navigator.cancel(row.id), row.cancelled);
+    rig.step();
+    EXPECT_EQ(rig.status().state, row.cancelled ? GoalState::kCancelled : GoalState::kActive);
+    EXPECT_EQ(rig.navigator.motion().mode, row.cancelled ? MotionMode::kStop : MotionMode::kFollow);
+    EXPECT_FALSE(rig.navigator.cancel(row.cancelled ? 0 : row.id));
+  }
+}
+
+TEST(Navigator, WaitsForPlannersThatAreNotThereYet) {
+  Rig rig;
+  rig.s.missing = "local_planner";
+  rig.step();
+  rig.go();
+  rig.run(5.0);
+  EXPECT_EQ(rig.navigator.state(), State::kInitialise);
+  EXPECT_EQ(rig.status().state, GoalState::kWaiting);
+  EXPECT_EQ(rig.status().reason, "local_planner not there yet");
+  EXPECT_TRUE(rig.plans.empty());
+  rig.s.missing.clear();
+  rig.run(0.3);
+  EXPECT_EQ(rig.navigator.state(), State::kActive);
+}
+
+TEST(Navigator, CancelsAGoalThatWaitsForPlanners) {
+  Rig rig;
+  rig.s.missing = "local_planner";
+  rig.step();
+  rig.go();
+  rig.step();
+  EXPECT_TRUE(rig.navigator.cancel(1));
+  rig.s.missing.clear();
+  rig.run(1.0);
+  EXPECT_EQ(rig.navigator.state(), State::kInactive);
+  EXPECT_TRUE(rig.plans.empty());
+}
+
+// --- Planning
+
+TEST(Navigator, RepeatsAPlanRequestFiveTimesASecondUntilAnswered) {
+  Rig rig;
+  rig.answer = Rig::silence;
+  rig.go();
+  rig.run(2.0);
+  EXPECT_EQ(rig.plans.size(), 1u);
+  EXPECT_NEAR(rig.plan_messages, 10, 1);
+  rig.navigator.plan_reply({999, "", {{0, 0, 0}}});
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kNewRequest) << "an answer to something else";
+  Rig::straight_path(rig, rig.plans.back());
+  rig.step();
+  EXPECT_EQ(rig.navigator.state(), State::kActive);
+}
+
+TEST(Navigator, ClearsTheCostmapBeforeItPlansAgain) {
+  Rig rig;
+  rig.answer = Rig::no_path;
+  rig.go();
+  rig.run(0.3);
+  EXPECT_EQ(rig.costmap_clears, 1);
+  EXPECT_EQ(rig.status().state, GoalState::kWaiting);
+  EXPECT_EQ(rig.status().reason, "no path joins start and goal");
+  rig.answer = Rig::straight_path;
+  rig.run(1.2);
+  EXPECT_EQ(rig.navigator.phase(), Phase::kFollowing);
+}
+
+TEST(Navigator, PlansAgainWhenThereIsReason) {
+  const struct {
+    const char* name;
+    std::function<void(Rig&)> change;  // two seconds after the first plan
+    double within;                     // [s] a second plan; 0 = none for 2.5 s
+  } table[] = {
+      {"all is well", [](Rig&) {}, 0.0},
+      {"off the path", [](Rig& r) { r.s.pose->y = 0.7; }, 0.2},
+      {"beside the path", [](Rig& r) { r.s.pose->y = 0.5; }, 0.0},
+      {"obstacle ahead", [](Rig& r) { r.s.follow.obstacle_distance = 2.0; }, 2.3},
+      {"person ahead",
+       [](Rig& r) {
+         r.s.follow.obstacle_distance = 2.0;
+         r.s.person_ahead = true;
+       },
+       0.0},
+      {"obstacle far ahead", [](Rig& r) { r.s.follow.obstacle_distance = 4.0; }, 0.0},
+      {"distance unknown", [](Rig& r) { r.s.follow.obstacle_distance = std::nan(""); }, 0.0},
+      {"follower believes to be there", [](Rig& r) { r.s.follow.state = GoalState::kSucceeded; },
+       0.2},
+  };
+  for (const auto& row : table) {
+    Rig rig;
+    rig.go();
+    rig.run(2.0);
+    ASSERT_EQ(rig.plans.size(), 1u);
+    row.change(rig);
+    rig.run(row.within > 0.0 ? row.within : 2.5);
+    EXPECT_EQ(rig.plans.size(), row.within > 0.0 ? 2u : 1u) << row.name;
+    EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kFollow)
+        << row.name << ": drives on meanwhile";
+  }
+}
+
+TEST(Navigator, PlansPeriodicallyButKeepsAPathThatIsAsGood) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(30.0);
+  rig.run(10.5);
+  EXPECT_EQ(rig.plans.size(), 3u);
+  EXPECT_NEAR(rig.navigator.path().front().x, 0.0, 1e-9) << "the first path";
+  rig.answer = [](Rig& r, const PlanRequest& request) {  // a door closed: the way is longer now
+    PlanReply reply{request.id,
+                    "",
+                    {request.start, {request.start.x, 4.0, 0.0}, {30.0, 4.0, 0.0}, request.goal}};
+    r.navigator.plan_reply(reply);
+  };
+  rig.run(5.0);
+  EXPECT_EQ(rig.navigator.path().size(), 4u);
+  EXPECT_EQ(rig.motions.size(), 2u) << "the same task, so it does not stop to change over";
+
+  NavigatorConfig never;
+  never.replan_period = 0.0;
+  Rig calm(never);
+  calm.drive = Rig::drive_on;
+  calm.go(30.0);
+  calm.run(20.0);
+  EXPECT_EQ(calm.plans.size(), 1u);
+}
+
+TEST(Navigator, DrivesOnWhenAPeriodicPlanFails) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(8.0);
+  rig.run(2.0);
+  rig.answer = Rig::no_path;
+  ASSERT_FALSE(std::isnan(rig.run_to_end(60.0)));
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded);
+}
+
+}  // namespace
+}  // namespace usher::navigator
