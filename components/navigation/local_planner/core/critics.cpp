@@ -1,0 +1,280 @@
+// The critics of the dynamic window: what each trajectory is measured by.
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/local_planner/core/dynamic_window.hpp"
+
+namespace usher::navigation {
+namespace {
+
+constexpr double kBehind = 0.3;  // [m] of path behind the robot that still counts as near
+constexpr double kStandsStill =
+    0.3;                            // [m/s] a disc slower than this is in the way until it has gone
+constexpr double kForesight = 3.0;  // [s] that moving discs are foreseen
+constexpr double kTurnOnSpot = 0.15;       // [m/s] slower than this a turn is one on the spot
+constexpr double kTurnMatters = 0.05;      // [rad/s]
+constexpr double kOscillationWay = 0.05;   // [m] after which the other sense is allowed again
+constexpr double kOscillationTurn = 0.35;  // [rad]
+
+}  // namespace
+
+void DynamicWindow::choose_local_goal(const Input& input) {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  const double step = geometry.resolution;
+  const auto inside = [&](const geometry::Point2& p) {
+    const grid::Cell cell = geometry.cell_at(p);
+    return cell.x >= 2 && cell.y >= 2 && cell.x < geometry.width - 2 &&
+           cell.y < geometry.height - 2;
+  };
+  const auto open = [&](const geometry::Point2& p) {
+    const std::uint8_t cost = input.costs.at(geometry.cell_at(p));
+    return cost < kCostInscribed || (cost == kCostUnknown && !config_.unknown_is_lethal);
+  };
+  // The last open point before the path leaves the window; the window's half circumference bounds
+  // the walk.
+  const double farthest = step * (geometry.width + geometry.height);
+  double arc = path_.progress();
+  local_goal_arc_ = arc;
+  goal_in_window_ = false;
+  while (arc - path_.progress() < farthest) {
+    const geometry::Point2 point = path_.point(arc);
+    if (!inside(point)) break;
+    if (open(point)) local_goal_arc_ = arc;
+    if (arc >= path_.length()) {
+      goal_in_window_ = true;
+      break;
+    }
+    arc = std::min(arc + step, path_.length());
+  }
+  const grid::Cell goal_cell = geometry.cell_at(path_.point(local_goal_arc_));
+  wavefront_.set_obstacles(input.costs, kCostInscribed, config_.unknown_is_lethal);
+  for (const MovingDisc& disc : input.discs) {
+    if (disc.velocity.norm() > kStandsStill) continue;  // who walks will be elsewhere
+    wavefront_.close(disc.position.x(), disc.position.y(),
+                     disc.radius + config_.footprint.inscribed_radius(), geometry);
+  }
+  way_open_ = false;
+  if (!geometry.contains(goal_cell)) {  // the path is outside of the window
+    goal_lengths_.assign(geometry.size(), Wavefront::kUnreachable);
+    front_lengths_ = goal_lengths_;
+    aligned_ = false;
+    return;
+  }
+  wavefront_.spread(goal_cell, goal_lengths_);
+  const grid::Cell here = geometry.cell_at(input.pose.x, input.pose.y);
+  for (int dy = -2; dy <= 2; ++dy) {
+    for (int dx = -2; dx <= 2; ++dx) {
+      const grid::Cell cell{here.x + dx, here.y + dy};
+      if (geometry.contains(cell) && goal_lengths_[geometry.index(cell)] < Wavefront::kUnreachable)
+        way_open_ = true;
+    }
+  }
+  aligned_ = path_.remaining() > 2.0 * config_.forward_point;
+  if (!aligned_) return;
+  grid::Cell front = geometry.cell_at(path_.point(local_goal_arc_ + config_.forward_point));
+  front = {std::clamp(front.x, 0, geometry.width - 1), std::clamp(front.y, 0, geometry.height - 1)};
+  wavefront_.spread(front, front_lengths_);
+}
+
+double DynamicWindow::obstacle_on_path(const Input& input) const {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  TurnedFootprint turned;
+  const double end = std::min(
+      path_.length(), path_.progress() + geometry.resolution * (geometry.width + geometry.height));
+  for (double arc = path_.progress() + geometry.resolution; arc < end + geometry.resolution;
+       arc += geometry.resolution) {
+    const geometry::Point2 point = path_.point(std::min(arc, end));
+    const double x = (point.x() - geometry.origin_x) / geometry.resolution;
+    const double y = (point.y() - geometry.origin_y) / geometry.resolution;
+    if (!(x >= 0.0 && y >= 0.0 && x < geometry.width && y < geometry.height)) break;
+    if (center_.clear_around(bits_, x, y)) continue;
+    // The chord over a short stretch: a grid path's own segments only know eight directions.
+    const geometry::Point2 along = path_.point(arc + 0.15) - path_.point(arc - 0.15);
+    if (along.norm() < 1e-6) continue;
+    center_.turn(along.x() / along.norm(), along.y() / along.norm(), geometry.resolution, turned);
+    // Beyond the window nothing is known: that is no obstacle, the window will move.
+    const double reach = config_.footprint.circumscribed_radius() / geometry.resolution;
+    if (x < reach || y < reach || x > geometry.width - reach || y > geometry.height - reach) break;
+    if (center_.touches(bits_, turned, x, y)) return arc - path_.progress();
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void DynamicWindow::sample(const Input& input, double fastest) {
+  const kinematics::AccelerationLimits& limits = config_.limits;
+  const bool window = config_.sampling == Sampling::kDynamicWindow;
+  const double reach = window ? config_.window : config_.simulated_time;
+  const geometry::Twist2& last = input.last_command;
+  const double slowest = std::min(config_.slowest, fastest);
+  const double high =
+      std::clamp(std::max(last.v, 0.0) + limits.acceleration * reach, slowest, fastest);
+  const double low = std::clamp(last.v - limits.deceleration * reach, slowest, high);
+  const int reverse = config_.reverse_speed > 0.0 ? 1 : 0;
+  speeds_.resize(static_cast<std::size_t>(config_.speed_samples + reverse));
+  const Ramp speed_ramp{limits.acceleration, limits.deceleration, config_.response.latency,
+                        config_.response.time_constant, config_.response.acceleration};
+  // Who walks is looked at for longer: there is time to let them pass.
+  const double step = rollout_.settings().step;
+  const int least_steps = input.discs.empty() ? config_.steps
+                                              : std::clamp(static_cast<int>(kForesight / step),
+                                                           config_.steps, Rollout::kMostSteps);
+  int most_steps = least_steps;
+  const double anticipated = config_.response.time_constant + config_.response.latency;
+  for (int i = 0; i < config_.speed_samples + reverse; ++i) {
+    SpeedProfile& profile = speeds_[static_cast<std::size_t>(i)];
+    // The slowest is always among them: slowing down is always allowed.
+    double v = i == 0 ? slowest : high;
+    if (i > 0 && i < config_.speed_samples - 1)
+      v = low + (high - low) * (i - 1) / (config_.speed_samples - 2);
+    if (i == config_.speed_samples) v = -config_.reverse_speed;
+    // Told to slow down, the base keeps its speed for a while; then it stops within the measured
+    // distance.
+    profile.contact = std::abs(v) > config_.careful_speed ? 1 : 0;
+    profile.needed = config_.stopping.distance(v) + config_.margin +
+                     anticipated * std::max(0.0, std::abs(input.measured.v) - std::abs(v));
+    if (goal_in_window_) profile.needed = std::min(profile.needed, path_.remaining() + 0.05);
+    rollout_.profile(input.measured.v, last.v, v, speed_ramp, least_steps, profile);
+    most_steps = std::max(most_steps, profile.steps);
+  }
+  const Ramp turn_ramp{limits.angular_acceleration, limits.angular_acceleration,
+                       config_.response.latency, config_.response.turn_time_constant,
+                       config_.response.angular_acceleration};
+  const double turn_reach = limits.angular_acceleration * reach;
+  const double left = std::clamp(last.w + turn_reach, -config_.fastest_turn, config_.fastest_turn);
+  const double right = std::clamp(last.w - turn_reach, -config_.fastest_turn, config_.fastest_turn);
+  turns_.resize(static_cast<std::size_t>(config_.turn_samples));
+  const double spacing = (left - right) / (config_.turn_samples - 1);
+  for (int i = 0; i < config_.turn_samples; ++i) {
+    double w = right + spacing * i;
+    if (std::abs(w) <= 0.5 * spacing) w = 0.0;  // straight on is always among them
+    rollout_.profile(input.measured.w, last.w, w, turn_ramp, most_steps,
+                     turns_[static_cast<std::size_t>(i)]);
+  }
+}
+
+void DynamicWindow::measure_path(const Input& input) {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  // Relative to the robot, so that single precision is exact to micrometres.
+  path_distance_.clear();
+  const double begin = path_.progress() - kBehind;
+  const double end = local_goal_arc_ + config_.forward_point;
+  const double step = std::max(geometry.resolution, (end - begin) / 128.0);
+  geometry::Point2 a = path_.point(begin);
+  for (double arc = begin; arc < end; arc += step) {
+    const geometry::Point2 b = path_.point(std::min(arc + step, end));
+    path_distance_.add(
+        static_cast<float>(a.x() - input.pose.x), static_cast<float>(a.y() - input.pose.y),
+        static_cast<float>(b.x() - input.pose.x), static_cast<float>(b.y() - input.pose.y));
+    a = b;
+  }
+  const std::size_t count = rollout_.trajectories().size();
+  points_x_.resize(4 * count), points_y_.resize(4 * count), point_distances_.resize(4 * count);
+  const auto ahead = static_cast<float>(config_.forward_point);
+  for (std::size_t i = 0; i < 3 * count; ++i)
+    points_x_[i] = rollout_.x()[i], points_y_[i] = rollout_.y()[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    points_x_[3 * count + i] = rollout_.x()[3 * i + 2] + ahead * rollout_.end_cosine()[i];
+    points_y_[3 * count + i] = rollout_.y()[3 * i + 2] + ahead * rollout_.end_sine()[i];
+  }
+  path_distance_.measure(points_x_, points_y_, point_distances_);
+}
+
+/// Bilinear between the centers of the reachable cells around the point; a closed point takes the
+/// straight line.
+double DynamicWindow::way_left(const std::vector<std::uint16_t>& lengths, const Input& input,
+                               double x, double y) const {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  const double u = (input.pose.x + x - geometry.origin_x) / geometry.resolution - 0.5;
+  const double v = (input.pose.y + y - geometry.origin_y) / geometry.resolution - 0.5;
+  const int column = static_cast<int>(std::floor(u));
+  const int row = static_cast<int>(std::floor(v));
+  const double fu = u - column;
+  const double fv = v - row;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const grid::Cell cell{column + (k & 1), row + (k >> 1)};
+    if (!geometry.contains(cell)) continue;
+    const std::uint16_t length = lengths[geometry.index(cell)];
+    if (length >= Wavefront::kUnreachable) continue;
+    const double weight = ((k & 1) ? fu : 1.0 - fu) * ((k >> 1) ? fv : 1.0 - fv) + 1e-6;
+    sum += weight * length;
+    weights += weight;
+  }
+  if (weights > 0.0) return sum / weights * geometry.resolution / Wavefront::kUnitsPerCell;
+  const geometry::Point2 goal = path_.point(local_goal_arc_);
+  return 0.5 + std::hypot(goal.x() - input.pose.x - x, goal.y() - input.pose.y - y);
+}
+
+bool DynamicWindow::forbidden_turn(double speed, double turn) const {
+  return std::abs(speed) < kTurnOnSpot && std::abs(turn) > kTurnMatters &&
+         turn * oscillation_forbidden_ > 0.0;
+}
+
+void DynamicWindow::note_turn(const Input& input, const geometry::Twist2& command) {
+  const geometry::Pose2& since = oscillation_pose_;
+  if (distance(since, input.pose) > kOscillationWay ||
+      std::abs(geometry::shortest_turn(since.yaw, input.pose.yaw)) > kOscillationTurn) {
+    oscillation_forbidden_ = oscillation_sign_ = 0.0;
+    oscillation_pose_ = input.pose;
+  }
+  if (std::abs(command.v) >= kTurnOnSpot || std::abs(command.w) <= kTurnMatters) return;
+  const double sign = command.w > 0.0 ? 1.0 : -1.0;
+  // The sense has changed without getting anywhere: no way back to the first.
+  if (oscillation_sign_ * sign < 0.0) oscillation_forbidden_ = oscillation_sign_;
+  if (oscillation_sign_ == 0.0) oscillation_pose_ = input.pose;
+  oscillation_sign_ = sign;
+}
+
+CriticScores DynamicWindow::score(const Input& input, std::size_t index, double fastest) const {
+  const Trajectory& trajectory = rollout_.trajectories()[index];
+  const std::size_t count = rollout_.trajectories().size();
+  const CriticWeights& weights = config_.weights;
+  const double v = speeds_[static_cast<std::size_t>(trajectory.speed)].target;
+  const double w = turns_[static_cast<std::size_t>(trajectory.turn)].target;
+  const double end_x = rollout_.x()[3 * index + 2];
+  const double end_y = rollout_.y()[3 * index + 2];
+  CriticScores s;
+  s.path = weights.path / 3.0 *
+           (static_cast<double>(point_distances_[3 * index]) +
+            static_cast<double>(point_distances_[3 * index + 1]) +
+            static_cast<double>(point_distances_[3 * index + 2]));
+  s.goal = weights.goal * way_left(goal_lengths_, input, end_x, end_y);
+  if (aligned_) {
+    s.alignment = weights.alignment * static_cast<double>(point_distances_[3 * count + index]);
+    s.goal_front = weights.goal_front * way_left(front_lengths_, input,
+                                                 static_cast<double>(points_x_[3 * count + index]),
+                                                 static_cast<double>(points_y_[3 * count + index]));
+  }
+  const double cut =
+      trajectory.contact
+          ? 1.0 -
+                static_cast<double>(std::min(trajectory.free_steps, config_.steps)) / config_.steps
+          : 0.0;
+  s.obstacle = weights.obstacle * (static_cast<double>(trajectory.mean_cost) +
+                                   static_cast<double>(trajectory.close) + cut);
+  s.moving_obstacle = weights.moving_obstacle * static_cast<double>(trajectory.disc_cost);
+  s.speed = weights.speed * std::max(0.0, fastest - v) / config_.pace;
+  s.twirling = weights.twirling * std::abs(w);
+  s.smoothness = weights.smoothness *
+                 (std::abs(w - input.last_command.w) + 0.5 * std::abs(v - input.last_command.v));
+  s.prefer_forward = v < 0.0 ? weights.prefer_forward : 0.0;
+  s.oscillation = forbidden_turn(v, w) ? weights.oscillation : 0.0;
+  return s;
+}
+
+int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticScores& best) const {
+  int winner = -1;
+  for (std::size_t i = 0; i < rollout_.trajectories().size(); ++i) {
+    const Trajectory& trajectory = rollout_.trajectories()[i];
+    if (!trajectory.admissible) continue;
+    const double v = speeds_[static_cast<std::size_t>(trajectory.speed)].target;
+    const double w = turns_[static_cast<std::size_t>(trajectory.turn)].target;
+    if (std::abs(v * w) > config_.lateral_acceleration) continue;
+    const CriticScores scores = score(input, i, fastest);
+    if (winner < 0 || scores.total() < best.total()) winner = static_cast<int>(i), best = scores;
+  }
+  return winner;
+}
+
+}  // namespace usher::navigation

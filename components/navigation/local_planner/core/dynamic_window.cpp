@@ -1,0 +1,425 @@
+// What to do in a cycle: turn, follow, stop, or report that there is no way. critics.cpp measures
+// trajectories.
+#include "navigation/local_planner/core/dynamic_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace usher::navigation {
+namespace {
+
+using geometry::Pose2;
+using geometry::Twist2;
+
+constexpr double kStanding = 0.05;          // [m/s] slower than this the robot stands
+constexpr double kSlowEnoughToTurn = 0.15;  // [m/s] below this a turn in place may begin
+constexpr double kLongestCycle = 0.2;  // [s] a command is ramped for at most this long after a gap
+constexpr double kLookAhead =
+    0.5;  // [m] the direction of the path is that to the point this far along
+constexpr double kAligned = 0.15;  // [rad] a turn towards the path ends here
+constexpr double kSweep =
+    0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
+
+struct Range {
+  const char* name;
+  double value;
+  double low;
+  double high;
+};
+
+Status check(const DynamicWindowConfig& c) {
+  const Range ranges[] = {
+      {"pace", c.pace, 0.05, 3.0},
+      {"slowest", c.slowest, 0.01, c.pace},
+      {"careful_speed", c.careful_speed, 0.0, 3.0},
+      {"clearance", c.clearance, 0.0, 0.5},
+      {"disc_clearance", c.disc_clearance, 0.0, 2.0},
+      {"tight_speed", c.tight_speed, c.slowest, c.pace},
+      {"fastest_turn", c.fastest_turn, 0.05, 5.0},
+      {"spot_turn", c.spot_turn, 0.05, 5.0},
+      {"slowest_turn", c.slowest_turn, 0.01, c.spot_turn},
+      {"lateral_acceleration", c.lateral_acceleration, 0.05, 10.0},
+      {"turn_stopping_time", c.turn_stopping_time, 0.05, 5.0},
+      {"braking", c.braking, 0.1, 20.0},
+      {"reverse_speed", c.reverse_speed, 0.0, 1.0},
+      {"window", c.window, 0.02, 4.0},
+      {"speed_samples", static_cast<double>(c.speed_samples), 3, 64},
+      {"turn_samples", static_cast<double>(c.turn_samples), 3, 255},
+      {"simulated_time", c.simulated_time, 0.5, 4.0},
+      {"steps", static_cast<double>(c.steps), 6, 40},
+      {"margin", c.margin, 0.0, 1.0},
+      {"forward_point", c.forward_point, 0.0, 2.0},
+      {"position_tolerance", c.position_tolerance, 0.02, 2.0},
+      {"yaw_tolerance", c.yaw_tolerance, 0.01, 3.2},
+      {"turn_first_angle", c.turn_first_angle, 0.3, 3.2},
+      {"limits.acceleration", c.limits.acceleration, 0.05, 10.0},
+      {"limits.deceleration", c.limits.deceleration, 0.05, 10.0},
+      {"limits.angular_acceleration", c.limits.angular_acceleration, 0.05, 20.0},
+      {"response.latency", c.response.latency, 0.0, 1.0},
+      {"response.time_constant", c.response.time_constant, 0.0, 3.0},
+      {"response.turn_time_constant", c.response.turn_time_constant, 0.0, 3.0},
+      {"response.acceleration", c.response.acceleration, 0.05, 10.0},
+      {"response.angular_acceleration", c.response.angular_acceleration, 0.05, 20.0},
+  };
+  for (const Range& r : ranges) {
+    if (!(r.value >= r.low && r.value <= r.high)) {
+      return Error{std::string("local planner: ") + r.name + " must be in [" +
+                   std::to_string(r.low) + ", " + std::to_string(r.high) + "], got " +
+                   std::to_string(r.value)};
+    }
+  }
+  const CriticWeights& w = c.weights;
+  for (const double weight :
+       {w.path, w.goal, w.alignment, w.goal_front, w.obstacle, w.moving_obstacle, w.speed,
+        w.twirling, w.smoothness, w.prefer_forward, w.oscillation}) {
+    if (!(weight >= 0.0 && weight <= 1e6)) {
+      return Error{"local planner: every critic's weight must be in [0, 1e6], got " +
+                   std::to_string(weight)};
+    }
+  }
+  return {};
+}
+
+bool plausible(const Twist2& twist) {
+  return twist.finite() && std::abs(twist.v) < 10.0 && std::abs(twist.w) < 20.0;
+}
+
+Decision refused() {
+  Decision decision;
+  decision.reason = Reason::kInvalidInput;
+  return decision;
+}
+
+}  // namespace
+
+const char* to_string(Reason reason) {
+  switch (reason) {
+    case Reason::kFollowing:
+      return "following the path";
+    case Reason::kTight:
+      return "passing a tight place";
+    case Reason::kTurning:
+      return "turning to the path";
+    case Reason::kTurningToGoal:
+      return "turning to the goal's direction";
+    case Reason::kReached:
+      return "goal reached";
+    case Reason::kBraking:
+      return "braking: no way that can be stopped on";
+    case Reason::kBlocked:
+      return "blocked";
+    case Reason::kTouching:
+      return "an obstacle inside the footprint";
+    case Reason::kRecovering:
+      return "recovering";
+    case Reason::kNoPath:
+      return "no path";
+    case Reason::kInvalidInput:
+      return "invalid input";
+  }
+  return "unknown";
+}
+
+Result<DynamicWindow> DynamicWindow::make(const DynamicWindowConfig& config, cpu::Simd simd) {
+  if (const Status status = check(config); !status) return Error{status.error()};
+  return DynamicWindow(config, simd);
+}
+
+DynamicWindow::DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd)
+    : config_(config),
+      roomy_(config.footprint.grown(config.clearance), CellExtent::kWhole, simd),
+      narrow_(config.footprint.grown(0.25 * config.clearance), CellExtent::kWhole, simd),
+      whole_(config.footprint, CellExtent::kWhole, simd),
+      center_(config.footprint, CellExtent::kCenter, simd),
+      rollout_({.step = config.simulated_time / config.steps,
+                .scored_steps = config.steps,
+                .unknown_is_lethal = config.unknown_is_lethal,
+                .disc_clearance = config.disc_clearance},
+               simd),
+      wavefront_(simd),
+      path_distance_(simd) {}
+
+Status DynamicWindow::set_path(std::span<const Pose2> path) {
+  const bool had_goal = !path_.empty();
+  const Pose2 old = path_.goal();
+  if (Status status = path_.set(path); !status) return status;
+  const bool same_goal =
+      had_goal && distance(old, path_.goal()) <= config_.position_tolerance &&
+      std::abs(geometry::shortest_turn(old.yaw, path_.goal().yaw)) <= config_.yaw_tolerance;
+  if (!same_goal) position_reached_ = false;
+  return {};
+}
+
+void DynamicWindow::clear_path() {
+  path_.clear();
+  position_reached_ = false;
+  turning_ = 0;
+}
+
+Status DynamicWindow::set_pace(double pace) {
+  if (!(pace >= config_.slowest && pace <= 3.0)) {
+    return Error{"local planner: pace must be in [" + std::to_string(config_.slowest) +
+                 ", 3] m/s, got " + std::to_string(pace)};
+  }
+  config_.pace = pace;
+  config_.tight_speed = std::min(config_.tight_speed, pace);
+  return {};
+}
+
+bool DynamicWindow::valid(const Input& input) const {
+  const grid::GridGeometry& g = input.costs.geometry();
+  const bool grid = g.width > 0 && g.height > 0 && g.width <= Wavefront::kLargestSide &&
+                    g.height <= Wavefront::kLargestSide && g.resolution > 1e-3 &&
+                    g.resolution < 1.0 && std::isfinite(g.origin_x) && std::isfinite(g.origin_y);
+  if (!grid || !input.pose.finite() || !plausible(input.measured) || !plausible(input.last_command))
+    return false;
+  const double x = (input.pose.x - g.origin_x) / g.resolution;
+  const double y = (input.pose.y - g.origin_y) / g.resolution;
+  if (!(x >= 0.0 && y >= 0.0 && x < g.width && y < g.height)) return false;
+  return std::all_of(input.discs.begin(), input.discs.end(), [](const MovingDisc& d) {
+    return d.position.allFinite() && d.velocity.allFinite() && d.radius >= 0.0 && d.radius < 100.0;
+  });
+}
+
+void DynamicWindow::load(const Input& input) {
+  bits_.assign(input.costs, config_.unknown_is_lethal,
+               roomy_.reach_cells(input.costs.resolution()));
+}
+
+Twist2 DynamicWindow::ramped(const Input& input, const Twist2& target, double fall) const {
+  kinematics::AccelerationLimits limits = config_.limits;
+  limits.deceleration = fall;
+  return kinematics::limited(input.last_command, target, limits, input.seconds);
+}
+
+Decision DynamicWindow::halt(const Input& input, Reason reason, double deceleration) const {
+  Decision decision;
+  decision.reason = reason;
+  decision.blocked = reason == Reason::kBlocked || reason == Reason::kTouching;
+  decision.command = ramped(input, {}, deceleration);
+  return decision;
+}
+
+Decision DynamicWindow::brake(const Input& input) {
+  const bool standing = std::abs(input.measured.v) < kStanding;
+  Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
+  decision.blocked = true;
+  // Along the arc that it is on: that one was free when it was chosen.
+  if (!standing && std::abs(input.last_command.v) > 1e-3) {
+    decision.command.w = input.last_command.w * decision.command.v / input.last_command.v;
+  }
+  return decision;
+}
+
+Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
+                               const Twist2& measured, const Twist2& last_command,
+                               double seconds_since_last, std::span<const MovingDisc> discs) {
+  const double seconds =
+      seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
+  const Input input{costs, pose, measured, last_command, seconds, discs};
+  if (!valid(input)) return refused();
+  if (path_.empty()) return halt(input, Reason::kNoPath, config_.limits.deceleration);
+  path_.advance(pose.position());
+  load(input);
+  const double away = distance(pose, path_.goal());
+  const bool abreast = path_.remaining() < 0.02;
+  if (away < 0.6 * config_.position_tolerance || (away < config_.position_tolerance && abreast)) {
+    position_reached_ = true;
+  } else if (away > config_.position_tolerance + 0.1) {
+    position_reached_ = false;
+  }
+  Decision decision = position_reached_ ? at_goal(input) : follow(input);
+  note_turn(input, decision.command);
+  return decision;
+}
+
+Decision DynamicWindow::at_goal(const Input& input) {
+  const double yaw = path_.goal().yaw;
+  const bool turned =
+      std::abs(geometry::shortest_turn(input.pose.yaw, yaw)) <= config_.yaw_tolerance;
+  const bool standing = std::abs(input.measured.v) < kStanding && std::abs(input.measured.w) < 0.1;
+  if (!turned) return turn_to(input, yaw, Reason::kTurningToGoal);
+  turning_ = 0;
+  Decision decision = halt(input, standing ? Reason::kReached : Reason::kTurningToGoal,
+                           config_.limits.deceleration);
+  decision.reached = standing;
+  return decision;
+}
+
+bool DynamicWindow::touches(const Input& input, const ContactTest& contact,
+                            const Pose2& pose) const {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  const double x = (pose.x - geometry.origin_x) * bits_.cells_per_metre();
+  const double y = (pose.y - geometry.origin_y) * bits_.cells_per_metre();
+  if (contact.clear_around(bits_, x, y)) return false;
+  TurnedFootprint turned;
+  contact.turn(std::cos(pose.yaw), std::sin(pose.yaw), geometry.resolution, turned);
+  return contact.touches(bits_, turned, x, y);
+}
+
+bool DynamicWindow::can_turn(const Input& input, double angle) const {
+  // Cells that it overlaps in part already cannot be asked to stay untouched.
+  const ContactTest& contact = touches(input, whole_, input.pose) ? center_ : whole_;
+  const int steps = static_cast<int>(std::ceil(std::abs(angle) / kSweep));
+  for (int i = 1; i <= steps; ++i) {
+    const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / steps};
+    if (touches(input, contact, turned)) return false;
+  }
+  return true;
+}
+
+Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
+  if (std::abs(input.measured.v) > kSlowEnoughToTurn) {
+    return halt(input, reason, config_.limits.deceleration);
+  }
+  double angle = geometry::shortest_turn(input.pose.yaw, yaw);
+  // A turn that has begun keeps its sense, the long way round too, until it is nearly there.
+  if (turning_ != 0 && std::abs(angle) > 0.5 && angle * turning_ < 0.0)
+    angle += turning_ * 2.0 * geometry::kPi;
+  if (!can_turn(input, angle)) {
+    angle += angle > 0.0 ? -2.0 * geometry::kPi : 2.0 * geometry::kPi;
+    if (!can_turn(input, angle)) return halt(input, Reason::kBlocked, config_.braking);
+  }
+  turning_ = angle > 0.0 ? 1 : -1;
+  const double remaining = std::abs(angle) - config_.response.turn_time_constant *
+                                                 std::max(0.0, turning_ * input.measured.w);
+  const double rate =
+      std::clamp(remaining / config_.turn_stopping_time, config_.slowest_turn, config_.spot_turn);
+  Decision decision;
+  decision.reason = reason;
+  decision.target = {0.0, turning_ * rate};
+  decision.command = ramped(input, decision.target, config_.braking);
+  return decision;
+}
+
+bool DynamicWindow::must_turn_first(const Input& input, double& heading) {
+  // Beside the path the robot joins it farther on, else a detour would look like a wrong heading.
+  const double beside = (path_.point(path_.progress()) - input.pose.position()).norm();
+  const double arc = path_.progress() + kLookAhead + 1.5 * beside;
+  const geometry::Point2 ahead = path_.point(std::min(arc, path_.length()));
+  const geometry::Point2 way = ahead - input.pose.position();
+  if (way.norm() < 0.05) {
+    turning_ = 0;
+    return false;
+  }
+  heading = std::atan2(way.y(), way.x());
+  const double error = std::abs(geometry::shortest_turn(input.pose.yaw, heading));
+  const bool standing = std::abs(input.measured.v) < kSlowEnoughToTurn;
+  if (turning_ != 0 && error < kAligned) turning_ = 0;
+  if (turning_ != 0) return true;
+  return error > (standing ? 0.7 : 1.0) * config_.turn_first_angle;
+}
+
+Decision DynamicWindow::follow(const Input& input) {
+  const double obstacle = obstacle_on_path(input);
+  const auto with_obstacle = [obstacle](Decision decision) {
+    decision.obstacle_distance = obstacle;
+    return decision;
+  };
+  if (touches(input, center_, input.pose))
+    return with_obstacle(halt(input, Reason::kTouching, config_.braking));
+  double heading = input.pose.yaw;
+  if (must_turn_first(input, heading)) {
+    const Decision decision = turn_to(input, heading, Reason::kTurning);
+    if (!decision.blocked) return with_obstacle(decision);
+    turning_ = 0;  // no room to turn: perhaps an arc leads out
+  }
+  choose_local_goal(input);
+  // Slow towards the goal, and towards an obstacle that nothing leads around, by the distance that
+  // stopping takes.
+  const double lag =
+      (config_.response.time_constant + config_.response.latency) * std::max(0.0, input.measured.v);
+  double fastest = std::min(config_.pace, config_.stopping.speed(path_.remaining() - lag));
+  if (!way_open_) {
+    const double room = config_.stopping.speed(obstacle - config_.margin - lag);
+    if (room < config_.slowest) return with_obstacle(brake(input));
+    fastest = std::min(fastest, room);
+  }
+  fastest = std::max(fastest, config_.slowest);
+  Decision decision = drive(input, {&narrow_, &roomy_}, fastest);
+  if (decision.admissible > 0) return with_obstacle(decision);
+  // No arc fits: perhaps one does after a turn to the path, or slowly and with less room.
+  const double error = geometry::shortest_turn(input.pose.yaw, heading);
+  const bool standing = std::abs(input.measured.v) < kSlowEnoughToTurn;
+  if (standing && std::abs(error) > kAligned && can_turn(input, error)) {
+    return with_obstacle(turn_to(input, heading, Reason::kTurning));
+  }
+  const double slow = std::min(fastest, config_.tight_speed);
+  decision = drive(input, {&whole_, &narrow_}, slow);
+  // Who overlaps part of a cell already must be let out by its center.
+  if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {
+    decision = drive(input, {&center_, &whole_}, slow);
+  }
+  decision.reason = Reason::kTight;
+  return with_obstacle(decision.admissible > 0 ? decision : brake(input));
+}
+
+Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, double fastest) {
+  sample(input, fastest);
+  const RolloutStart start{input.pose, input.measured, input.last_command};
+  rollout_.run(start, speeds_, turns_, input.costs, bits_, contacts, config_.footprint,
+               input.discs);
+  Decision decision;
+  decision.reason = Reason::kFollowing;
+  decision.trajectories = static_cast<int>(rollout_.trajectories().size());
+  measure_path(input);
+  const int winner = best_trajectory(input, fastest, decision.scores);
+  if (winner < 0) return decision;
+  for (const Trajectory& trajectory : rollout_.trajectories())
+    decision.admissible += trajectory.admissible;
+  const Trajectory& best = rollout_.trajectories()[static_cast<std::size_t>(winner)];
+  const SpeedProfile& speed = speeds_[static_cast<std::size_t>(best.speed)];
+  const SpeedProfile& turn = turns_[static_cast<std::size_t>(best.turn)];
+  decision.target = {speed.target, turn.target};
+  decision.command = ramped(input, decision.target, config_.limits.deceleration);
+  rollout_.poses(start, speed, turn, best.free_steps, winner_);
+  decision.trajectory = winner_;
+  return decision;
+}
+
+Decision DynamicWindow::recover(const Input& input, const Twist2& target) {
+  if (!valid(input) || !plausible(target)) return refused();
+  load(input);
+  turning_ = 0;
+  // What it touches already must not hold it; anything else stops it.
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  TurnedFootprint turned;
+  center_.turn(std::cos(input.pose.yaw), std::sin(input.pose.yaw), geometry.resolution, turned);
+  center_.erase_touched(bits_, turned, (input.pose.x - geometry.origin_x) * bits_.cells_per_metre(),
+                        (input.pose.y - geometry.origin_y) * bits_.cells_per_metre());
+  const double way = config_.stopping.distance(target.v) + config_.margin;
+  const double angle = std::abs(target.w) * config_.turn_stopping_time + kAligned;
+  const double reach = target.v != 0.0 ? way : angle;
+  const int steps = static_cast<int>(std::ceil(reach / kSweep));
+  for (int i = 1; i <= steps; ++i) {
+    const double part = reach * i / steps;
+    const Pose2 ahead = target.v != 0.0
+                            ? input.pose * Pose2{std::copysign(part, target.v), 0.0, 0.0}
+                            : input.pose * Pose2{0.0, 0.0, std::copysign(part, target.w)};
+    if (touches(input, center_, ahead)) return halt(input, Reason::kBlocked, config_.braking);
+  }
+  Decision decision;
+  decision.reason = Reason::kRecovering;
+  decision.target = target;
+  decision.command = ramped(input, target, config_.braking);
+  return decision;
+}
+
+Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
+                                 const Twist2& measured, const Twist2& last_command,
+                                 double seconds_since_last, double speed) {
+  const double seconds =
+      seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
+  return recover({costs, pose, measured, last_command, seconds, {}}, {-speed, 0.0});
+}
+
+Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
+                               const Twist2& measured, const Twist2& last_command,
+                               double seconds_since_last, double rate) {
+  const double seconds =
+      seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
+  return recover({costs, pose, measured, last_command, seconds, {}}, {0.0, rate});
+}
+
+}  // namespace usher::navigation

@@ -1,0 +1,230 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "foundation/cpu/cpu.hpp"
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/grid/grid.hpp"
+#include "foundation/kinematics/acceleration_limiter.hpp"
+#include "foundation/kinematics/stopping_distance.hpp"
+#include "foundation/result/result.hpp"
+#include "navigation/local_planner/core/contact.hpp"
+#include "navigation/local_planner/core/footprint.hpp"
+#include "navigation/local_planner/core/reference_path.hpp"
+#include "navigation/local_planner/core/rollout.hpp"
+#include "navigation/local_planner/core/wavefront.hpp"
+
+namespace usher::navigation {
+
+/// How strongly each critic counts; the trajectory with the smallest weighted sum wins. README.md
+/// has the formulas.
+struct CriticWeights {
+  double path = 1.2;        ///< per metre from the path, mean over the trajectory
+  double goal = 1.0;        ///< per metre of way left to the local goal
+  double alignment = 0.6;   ///< per metre from the path, seen from a point ahead
+  double goal_front = 0.4;  ///< per metre of way left, seen from a point ahead
+  double obstacle =
+      1.0;  ///< for the mean cost under the base, 0..1, and for a way that ends at an obstacle
+  double moving_obstacle = 2.0;  ///< for brushing past a moving disc, 0..1
+  double speed = 1.0;            ///< for the lacking part of the allowed speed, 0..1
+  double twirling = 0.03;        ///< per rad/s
+  double smoothness = 0.15;      ///< per rad/s and per m/s of change of the target command
+  double prefer_forward = 1.0;   ///< for driving backward, 0 or 1
+  double oscillation = 1e3;      ///< for turning back and forth on the spot, 0 or 1
+};
+
+/// Which velocities are sampled.
+enum class Sampling : std::uint8_t {
+  kDynamicWindow,      ///< those that can be reached within `window` [fox1997dynamic]
+  kTrajectoryRollout,  ///< those that can be reached within the simulated time [gerkey2008planning]
+};
+
+struct DynamicWindowConfig {
+  Footprint footprint = Footprint::rectangle(0.61, 0.61);
+  kinematics::StoppingDistance stopping;  ///< what "can be stopped" means
+  kinematics::AccelerationLimits limits;  ///< of the command
+  BaseResponse response;
+
+  double pace = 1.15;          ///< [m/s] the speed to keep where it can be stopped
+  double slowest = 0.1;        ///< [m/s] the base does not follow slower commands well
+  double careful_speed = 0.4;  ///< [m/s] up to here a quarter of the clearance is enough
+  double clearance = 0.06;     ///< [m] kept around the outline above the careful speed
+  double disc_clearance =
+      0.2;  ///< [m] kept from moving discs above the careful speed, a quarter of it below
+  double tight_speed =
+      0.25;  ///< [m/s] where only the robot's own outline fits, not the whole lethal cells
+  double fastest_turn = 1.0;          ///< [rad/s]
+  double slowest_turn = 0.15;         ///< [rad/s] turning in place
+  double spot_turn = 0.8;             ///< [rad/s] turning in place
+  double lateral_acceleration = 0.8;  ///< [m/s2] bounds speed x turn rate
+  double turn_stopping_time = 0.6;    ///< [s] a turn stops within this time x its rate
+  double braking = 2.0;               ///< [m/s2] slope of the command when it must stop
+  double reverse_speed = 0.0;  ///< [m/s] one sample backward; zero: never, nobody sees behind
+
+  Sampling sampling = Sampling::kDynamicWindow;
+  double window = 0.4;          ///< [s] of the dynamic window
+  int speed_samples = 8;        ///< 2 to 64
+  int turn_samples = 25;        ///< 3 to 255
+  double simulated_time = 1.7;  ///< [s] 0.5 to 4
+  int steps = 20;               ///< of the simulated time, 6 to 40
+
+  double margin = 0.10;              ///< [m] left free after stopping
+  double forward_point = 0.325;      ///< [m] ahead of the base: where alignment looks from
+  double position_tolerance = 0.15;  ///< [m]
+  double yaw_tolerance = 0.10;       ///< [rad]
+  double turn_first_angle =
+      1.2;  ///< [rad] between heading and path from which a moving robot stops to turn
+  bool unknown_is_lethal = false;
+  bool trust_centers =
+      false;  ///< where whole lethal cells leave no way, their centers decide, at tight_speed
+  CriticWeights weights;
+};
+
+enum class Reason : std::uint8_t {
+  kFollowing,      ///< drives along the path
+  kTight,          ///< drives slowly where only its own outline fits
+  kTurning,        ///< turns in place towards the path
+  kTurningToGoal,  ///< stands at the goal, turns to its yaw
+  kReached,        ///< at the goal; the command is zero
+  kBraking,        ///< no trajectory can be stopped before an obstacle: stops
+  kBlocked,        ///< stands before an obstacle
+  kTouching,       ///< stands with a lethal cell inside its outline: a recovery motion may free it
+  kRecovering,     ///< a recovery motion runs
+  kNoPath,         ///< nothing to follow
+  kInvalidInput,   ///< not finite, an empty grid, or a robot outside of it; the command is zero
+};
+const char* to_string(Reason reason);
+
+/// Contribution of each critic to the winner, weighted; smaller is better.
+struct CriticScores {
+  double path = 0.0, goal = 0.0, alignment = 0.0, goal_front = 0.0, obstacle = 0.0,
+         moving_obstacle = 0.0, speed = 0.0, twirling = 0.0, smoothness = 0.0, prefer_forward = 0.0,
+         oscillation = 0.0;
+  double total() const {
+    return path + goal + alignment + goal_front + obstacle + moving_obstacle + speed + twirling +
+           smoothness + prefer_forward + oscillation;
+  }
+};
+
+struct Decision {
+  geometry::Twist2 command;  ///< to send now; ramped from the last command
+  Reason reason = Reason::kNoPath;
+  bool blocked = false;  ///< no motion along the path is possible; the command goes to zero
+  bool reached = false;  ///< position and yaw within tolerance, standing
+  /// Along the path from the base to where the footprint first meets a lethal cell [m]; infinite
+  /// when there is none in sight.
+  double obstacle_distance = std::numeric_limits<double>::infinity();
+  geometry::Twist2 target;  ///< of the winning trajectory
+  CriticScores scores;
+  int trajectories = 0;  ///< simulated
+  int admissible = 0;
+  std::span<const geometry::Pose2> trajectory;  ///< the winner; valid until the next call
+};
+
+/// Follows a path on a local cost grid [fox1997dynamic, gerkey2008planning]. Grid, path, poses and
+/// discs are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
+/// microseconds and allocates only when grid or samples grow. Same inputs, same decisions, on every
+/// processor.
+class DynamicWindow {
+ public:
+  /// An error names the value that is out of its range.
+  static Result<DynamicWindow> make(const DynamicWindowConfig& config,
+                                    cpu::Simd simd = cpu::best_simd());
+
+  /// A new path. Progress at the goal (position reached, turning) is kept when the goal stays
+  /// within tolerance.
+  Status set_path(std::span<const geometry::Pose2> path);
+  void clear_path();
+  /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
+  Status set_pace(double pace);
+
+  Decision decide(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
+                  const geometry::Twist2& measured, const geometry::Twist2& last_command,
+                  double seconds_since_last, std::span<const MovingDisc> discs = {});
+
+  /// Recovery: straight back at `speed` [m/s, positive] while the footprint meets nothing that it
+  /// does not touch already. Stops (kBlocked) otherwise. Nobody sees behind: the navigator bounds
+  /// the way.
+  Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
+                    const geometry::Twist2& measured, const geometry::Twist2& last_command,
+                    double seconds_since_last, double speed);
+  /// Recovery: turns in place at `rate` [rad/s, either sign], checked in the same way.
+  Decision rotate(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
+                  const geometry::Twist2& measured, const geometry::Twist2& last_command,
+                  double seconds_since_last, double rate);
+
+  const DynamicWindowConfig& config() const { return config_; }
+  const ReferencePath& path() const { return path_; }
+
+ private:
+  struct Input {
+    const grid::Grid<std::uint8_t>& costs;
+    geometry::Pose2 pose;
+    geometry::Twist2 measured;
+    geometry::Twist2 last_command;
+    double seconds = 0.0;
+    std::span<const MovingDisc> discs;
+  };
+
+  DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd);
+
+  bool valid(const Input& input) const;
+  void load(const Input& input);
+
+  // What to do (dynamic_window.cpp).
+  Decision at_goal(const Input& input);
+  Decision turn_to(const Input& input, double yaw, Reason reason);
+  Decision follow(const Input& input);
+  Decision brake(const Input& input);
+  Decision halt(const Input& input, Reason reason, double deceleration) const;
+  Decision drive(const Input& input, const ContactTests& contacts, double fastest);
+  Decision recover(const Input& input, const geometry::Twist2& target);
+  bool must_turn_first(const Input& input, double& heading);
+  bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
+  bool can_turn(const Input& input, double angle) const;
+  geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;
+
+  // What the critics see (critics.cpp).
+  void choose_local_goal(const Input& input);
+  double obstacle_on_path(const Input& input) const;
+  void sample(const Input& input, double fastest);
+  void measure_path(const Input& input);
+  double way_left(const std::vector<std::uint16_t>& lengths, const Input& input, double x,
+                  double y) const;
+  int best_trajectory(const Input& input, double fastest, CriticScores& best) const;
+  CriticScores score(const Input& input, std::size_t index, double fastest) const;
+  bool forbidden_turn(double speed, double turn) const;
+  void note_turn(const Input& input, const geometry::Twist2& command);
+
+  DynamicWindowConfig config_;
+  ContactTest roomy_;   // whole cells, with clearance
+  ContactTest narrow_;  // whole cells, with a quarter of it: what the prediction may be wrong by
+  ContactTest whole_;   // whole cells
+  ContactTest center_;  // centers of cells
+  Rollout rollout_;
+  Wavefront wavefront_;
+  ReferencePath path_;
+  PolylineDistance path_distance_;
+  LethalBits bits_;
+
+  bool position_reached_ = false;
+  int turning_ = 0;  // +1, -1: turning first, in this sense
+  double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
+  geometry::Pose2 oscillation_pose_;
+
+  double local_goal_arc_ = 0.0;
+  bool goal_in_window_ = false;
+  bool way_open_ = false;  // the local goal can be reached around the obstacles of the window
+  bool aligned_ =
+      false;  // alignment and goal-front count: the goal is farther than the forward point
+  std::vector<std::uint16_t> goal_lengths_, front_lengths_;
+  std::vector<SpeedProfile> speeds_, turns_;
+  std::vector<float> points_x_, points_y_,
+      point_distances_;  // 4 per trajectory: three parts, the point ahead
+  std::vector<geometry::Pose2> winner_;
+};
+
+}  // namespace usher::navigation

@@ -1,0 +1,287 @@
+#include "navigation/local_planner/core/dynamic_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "foundation/random/random.hpp"
+#include "navigation/local_planner/test/world.hpp"
+
+namespace usher::navigation {
+namespace {
+
+using namespace testing_world;  // NOLINT: the test's own vocabulary
+using geometry::kPi;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Costs empty_window() { return Costs({120, 120, 0.05, -3.0, -3.0}); }
+
+/// A wall across the way: its face at x.
+Costs wall_at(double x) {
+  World world(-3, -3, 3, 3);
+  world.add(Box{x, -3, x + 0.1, 3});
+  world.finish(0.305);
+  return world.costs();
+}
+
+DynamicWindow planner_to(double x, const DynamicWindowConfig& config = {},
+                         cpu::Simd simd = cpu::best_simd()) {
+  DynamicWindow planner = DynamicWindow::make(config, simd).value();
+  EXPECT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {x, 0, 0}}).ok());
+  return planner;
+}
+
+TEST(Configuration, NamesTheValueThatIsOutOfRange) {
+  DynamicWindowConfig config;
+  config.pace = 0.0;
+  EXPECT_NE(DynamicWindow::make(config).error().find("pace"), std::string::npos);
+  config = {};
+  config.steps = 400;
+  EXPECT_NE(DynamicWindow::make(config).error().find("steps"), std::string::npos);
+  config = {};
+  config.weights.goal = -1.0;
+  EXPECT_FALSE(DynamicWindow::make(config).ok());
+  config = {};
+  config.response.time_constant = kNaN;
+  EXPECT_FALSE(DynamicWindow::make(config).ok());
+}
+
+TEST(Configuration, DefaultIsValid) { EXPECT_TRUE(DynamicWindow::make({}).ok()); }
+
+TEST(Decide, StandsWithoutAPath) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  const Decision decision = planner.decide(empty_window(), {}, {}, {}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kNoPath);
+  EXPECT_EQ(decision.command, (Twist2{0, 0}));
+  EXPECT_FALSE(decision.reached);
+}
+
+TEST(Decide, RampsToAStopWhenThePathIsTaken) {
+  DynamicWindow planner = planner_to(8.0);
+  planner.clear_path();
+  const Decision decision = planner.decide(empty_window(), {}, {1.0, 0}, {1.0, 0}, 0.05);
+  EXPECT_NEAR(decision.command.v, 0.95, 1e-12);
+}
+
+TEST(Decide, StopsOnInputThatIsNotFinite) {
+  const Costs costs = empty_window();
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
+    DynamicWindow planner = planner_to(8.0);
+    for (const Pose2& pose : {Pose2{bad, 0, 0}, Pose2{0, bad, 0}}) {
+      const Decision decision = planner.decide(costs, pose, {}, {}, 0.05);
+      EXPECT_EQ(decision.reason, Reason::kInvalidInput);
+      EXPECT_EQ(decision.command, (Twist2{0, 0}));
+    }
+    EXPECT_EQ(planner.decide(costs, {}, {bad, 0}, {}, 0.05).reason, Reason::kInvalidInput);
+    EXPECT_EQ(planner.decide(costs, {}, {}, {0, bad}, 0.05).reason, Reason::kInvalidInput);
+    const std::vector<MovingDisc> discs{{{bad, 0}, {0, bad}, bad}};
+    EXPECT_EQ(planner.decide(costs, {}, {}, {}, 0.05, discs).reason, Reason::kInvalidInput);
+  }
+}
+
+TEST(Decide, StopsOnAGridThatCannotBeUsed) {
+  DynamicWindow planner = planner_to(8.0);
+  EXPECT_EQ(planner.decide(Costs{}, {}, {}, {}, 0.05).reason, Reason::kInvalidInput);
+  EXPECT_EQ(planner.decide(Costs({10, 10, 0.0, 0, 0}), {}, {}, {}, 0.05).reason,
+            Reason::kInvalidInput);
+  EXPECT_EQ(planner.decide(Costs({10, 10, 0.05, kNaN, 0}), {}, {}, {}, 0.05).reason,
+            Reason::kInvalidInput);
+  EXPECT_EQ(planner.decide(Costs({10, 10, 0.05, 50, 50}), {}, {}, {}, 0.05).reason,
+            Reason::kInvalidInput);
+}
+
+TEST(Decide, KeepsTheCommandWhenNoTimeHasPassed) {
+  DynamicWindow planner = planner_to(8.0);
+  for (const double seconds : {0.0, -1.0, kNaN}) {
+    EXPECT_EQ(planner.decide(empty_window(), {}, {0.5, 0}, {0.5, 0}, seconds).command.v, 0.5);
+  }
+}
+
+TEST(Decide, DoesNotLeapAfterAGap) {
+  DynamicWindow planner = planner_to(8.0);
+  EXPECT_LE(planner.decide(empty_window(), {}, {}, {}, 60.0).command.v, 0.2 + 1e-12);
+}
+
+TEST(Decide, NeverAsksForASpeedThatCannotBeStoppedBeforeTheWall) {
+  const kinematics::StoppingDistance stopping;
+  for (double wall = 0.5; wall < 2.4; wall += 0.1) {
+    for (const double v : {0.0, 0.3, 0.6, 1.0}) {
+      DynamicWindow planner = planner_to(8.0);
+      const Decision decision = planner.decide(wall_at(wall), {}, {v, 0}, {v, 0}, 0.05);
+      if (decision.blocked) continue;
+      EXPECT_LE(stopping.distance(decision.target.v), wall - 0.305) << wall << ' ' << v;
+    }
+  }
+}
+
+TEST(Decide, KeepsThePaceWhereItCanBeStopped) {
+  DynamicWindow planner = planner_to(8.0);
+  EXPECT_NEAR(planner.decide(empty_window(), {}, {1.15, 0}, {1.15, 0}, 0.05).target.v, 1.15, 1e-12);
+  ASSERT_TRUE(planner.set_pace(0.6).ok());
+  EXPECT_NEAR(planner.decide(empty_window(), {}, {0.6, 0}, {0.6, 0}, 0.05).target.v, 0.6, 1e-12);
+  EXPECT_FALSE(planner.set_pace(kNaN).ok());
+}
+
+TEST(Decide, ReportsTheDistanceToTheObstacleOnThePath) {
+  DynamicWindow planner = planner_to(8.0);
+  EXPECT_NEAR(planner.decide(wall_at(1.5), {}, {}, {}, 0.05).obstacle_distance, 1.5 - 0.305, 0.08);
+  EXPECT_EQ(planner.decide(empty_window(), {}, {}, {}, 0.05).obstacle_distance, kInfinity);
+}
+
+TEST(Decide, SaysBlockedBeforeAWallAndStands) {
+  DynamicWindow planner = planner_to(8.0);
+  const Decision decision = planner.decide(wall_at(0.45), {}, {}, {}, 0.05);
+  EXPECT_TRUE(decision.blocked);
+  EXPECT_EQ(decision.reason, Reason::kBlocked);
+  EXPECT_EQ(decision.command, (Twist2{0, 0}));
+}
+
+TEST(Decide, BrakesHarderThanItSlowsWhenAnObstacleAppears) {
+  DynamicWindow planner = planner_to(8.0);
+  const Decision decision = planner.decide(wall_at(0.6), {}, {1.0, 0.2}, {1.0, 0.2}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kBraking);
+  EXPECT_NEAR(decision.command.v, 0.9, 1e-12);
+  EXPECT_NEAR(decision.command.w, 0.18, 1e-12);  // along the arc that it is on
+}
+
+TEST(Decide, StandsWhenACellLiesInsideTheOutline) {
+  DynamicWindow planner = planner_to(8.0);
+  Costs costs = empty_window();
+  costs.at(costs.geometry().cell_at(0.2, 0.1)) = kCostLethal;
+  const Decision decision = planner.decide(costs, {}, {}, {}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kTouching);
+  EXPECT_TRUE(decision.blocked);
+}
+
+TEST(Decide, TreatsUnknownAsAsked) {
+  Costs costs = empty_window();
+  for (std::uint8_t& c : costs) c = kCostUnknown;
+  DynamicWindow open = planner_to(8.0);
+  EXPECT_EQ(open.decide(costs, {}, {}, {}, 0.05).reason, Reason::kFollowing);
+  DynamicWindowConfig config;
+  config.unknown_is_lethal = true;
+  DynamicWindow closed = planner_to(8.0, config);
+  EXPECT_TRUE(closed.decide(costs, {}, {}, {}, 0.05).blocked);
+}
+
+TEST(Decide, TurnsInPlaceBeforeAPathThatStartsBehind) {
+  DynamicWindow planner = planner_to(-5.0);
+  const Decision decision = planner.decide(empty_window(), {0, 0, 0.3}, {}, {}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kTurning);
+  EXPECT_EQ(decision.command.v, 0.0);
+  EXPECT_GT(decision.command.w, 0.0);  // the shorter way round
+}
+
+TEST(Decide, TurnsTheOtherWayRoundWhenTheShorterIsClosed) {
+  // A post beside the long nose of a robot: it cannot turn left, but right.
+  DynamicWindowConfig config;
+  const std::vector<Point2> nose{{0.7, -0.2}, {0.7, 0.2}, {-0.2, 0.2}, {-0.2, -0.2}};
+  config.footprint = Footprint::make(nose).value();
+  DynamicWindow planner = planner_to(-5.0, config);
+  Costs costs = empty_window();
+  costs.at(costs.geometry().cell_at(0.45, 0.4)) = kCostLethal;
+  const Decision decision = planner.decide(costs, {0, 0, 0.05}, {}, {}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kTurning);
+  EXPECT_LT(decision.command.w, 0.0);
+}
+
+TEST(Decide, ReportsTheGoalOnlyStanding) {
+  DynamicWindow planner = planner_to(0.05);
+  EXPECT_TRUE(planner.decide(empty_window(), {0.05, 0, 0}, {}, {}, 0.05).reached);
+  EXPECT_FALSE(planner.decide(empty_window(), {0.05, 0, 0}, {0.3, 0}, {0.3, 0}, 0.05).reached);
+}
+
+TEST(Decide, KeepsTheReachedPositionWhenThePathIsSentAgain) {
+  DynamicWindow planner = planner_to(2.0);
+  EXPECT_TRUE(planner.decide(empty_window(), {1.95, 0, 0}, {}, {}, 0.05).reached);
+  ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{1.9, 0, 0}, {2.05, 0.02, 0}}).ok());
+  EXPECT_TRUE(planner.decide(empty_window(), {1.93, 0, 0}, {}, {}, 0.05).reached);
+  ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{1.9, 0, 0}, {2.5, 0, 0}}).ok());
+  EXPECT_FALSE(planner.decide(empty_window(), {1.93, 0, 0}, {}, {}, 0.05).reached);
+}
+
+TEST(Decide, YieldsToSomebodyWhoComesTowardsIt) {
+  DynamicWindow planner = planner_to(8.0);
+  const std::vector<MovingDisc> person{{{2.5, 0}, {-1.0, 0}, 0.3}};
+  const Decision free = planner.decide(empty_window(), {}, {1.0, 0}, {1.0, 0}, 0.05);
+  const Decision met = planner.decide(empty_window(), {}, {1.0, 0}, {1.0, 0}, 0.05, person);
+  EXPECT_LT(met.admissible, free.admissible);
+  EXPECT_TRUE(met.target.v < 0.6 || std::abs(met.target.w) > 0.2);
+}
+
+TEST(Decide, IsTheSameOnEveryInstructionSet) {
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    World world(-3, -3, 3, 3);
+    for (int k = 0; k < 8; ++k) {
+      const Disc disc{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(0.05, 0.3)};
+      if (std::hypot(disc.x, disc.y) > 0.5 + disc.radius) world.add(disc);
+    }
+    world.finish(0.305);
+    const std::vector<Pose2> path{{0, 0, 0}, {random.uniform(1, 4), random.uniform(-3, 3), 0}};
+    DynamicWindow portable = DynamicWindow::make({}, cpu::Simd::kPortable).value();
+    DynamicWindow best = DynamicWindow::make({}).value();
+    ASSERT_TRUE(portable.set_path(path).ok() && best.set_path(path).ok());
+    const Twist2 measured{random.uniform(0, 1), random.uniform(-0.5, 0.5)};
+    const Decision a = portable.decide(world.costs(), {0, 0, 0.2}, measured, measured, 0.05);
+    const Decision b = best.decide(world.costs(), {0, 0, 0.2}, measured, measured, 0.05);
+    ASSERT_EQ(a.command, b.command);
+    ASSERT_EQ(a.target, b.target);
+    ASSERT_EQ(a.admissible, b.admissible);
+    ASSERT_EQ(a.scores.total(), b.scores.total());
+    ASSERT_EQ(a.obstacle_distance, b.obstacle_distance);
+  }
+}
+
+TEST(Decide, RolloutSamplesMoreThanTheWindow) {
+  DynamicWindowConfig config;
+  config.sampling = Sampling::kTrajectoryRollout;
+  DynamicWindow planner = planner_to(8.0, config);
+  EXPECT_GT(planner.decide(empty_window(), {}, {}, {}, 0.05).target.v, 1.0);
+  DynamicWindow window = planner_to(8.0);
+  EXPECT_LT(window.decide(empty_window(), {}, {}, {}, 0.05).target.v, 0.5);
+}
+
+TEST(BackingOff, RunsStraightBackWhileThereIsRoom) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  const Decision decision = planner.back_off(empty_window(), {}, {}, {}, 0.05, 0.15);
+  EXPECT_EQ(decision.reason, Reason::kRecovering);
+  EXPECT_LT(decision.command.v, 0.0);
+  EXPECT_EQ(decision.command.w, 0.0);
+}
+
+TEST(BackingOff, StopsBeforeAWallBehind) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  EXPECT_TRUE(planner.back_off(wall_at(-0.5), {}, {}, {}, 0.05, 0.15).blocked);
+  EXPECT_FALSE(planner.back_off(wall_at(-0.9), {}, {}, {}, 0.05, 0.15).blocked);
+}
+
+TEST(BackingOff, LeavesWhatTouchesInFront) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  EXPECT_FALSE(planner.back_off(wall_at(0.25), {}, {}, {}, 0.05, 0.15).blocked);
+}
+
+TEST(Rotating, RunsWhileTheOutlineSweepsNothing) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  EXPECT_GT(planner.rotate(empty_window(), {}, {}, {}, 0.05, 0.4).command.w, 0.0);
+  EXPECT_LT(planner.rotate(empty_window(), {}, {}, {}, 0.05, -0.4).command.w, 0.0);
+  Costs costs = empty_window();
+  costs.at(costs.geometry().cell_at(0.38, 0.0)) =
+      kCostLethal;  // before the middle of the front, inside the corners' circle
+  EXPECT_TRUE(planner.rotate(costs, {0, 0, 0.55}, {}, {}, 0.05, -1.0).blocked ||
+              planner.rotate(costs, {0, 0, 0.55}, {}, {}, 0.05, 1.0).blocked);
+}
+
+TEST(Rotating, RefusesARateThatIsNotFinite) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  const Decision decision = planner.rotate(empty_window(), {}, {}, {}, 0.05, kNaN);
+  EXPECT_EQ(decision.reason, Reason::kInvalidInput);
+  EXPECT_EQ(decision.command, (Twist2{0, 0}));
+}
+
+}  // namespace
+}  // namespace usher::navigation
