@@ -71,6 +71,10 @@ class Parameters {
   std::vector<double> numbers(const std::string& name, const std::string& unit, Range range,
                               std::size_t count_min, std::size_t count_max,
                               const std::vector<double>& fallback, const std::string& text);
+  /// Must be set somewhere.
+  std::vector<double> numbers(const std::string& name, const std::string& unit, Range range,
+                              std::size_t count_min, std::size_t count_max,
+                              const std::string& text);
   /// A list of records; empty when it is not set.
   std::vector<Record> records(const std::string& name, const std::vector<RecordField>& fields,
                               const std::string& text);

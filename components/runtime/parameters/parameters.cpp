@@ -101,6 +101,21 @@ std::vector<double> Parameters::numbers(const std::string& name, const std::stri
   return declare(declaration).numbers;
 }
 
+std::vector<double> Parameters::numbers(const std::string& name, const std::string& unit,
+                                        Range range, std::size_t count_min, std::size_t count_max,
+                                        const std::string& text) {
+  Declaration declaration;
+  declaration.name = name;
+  declaration.kind = ParameterKind::kNumbers;
+  declaration.unit = unit;
+  declaration.range = range;
+  declaration.count_min = count_min;
+  declaration.count_max = count_max;
+  declaration.required = true;
+  declaration.text = text;
+  return declare(declaration).numbers;
+}
+
 std::vector<Record> Parameters::records(const std::string& name,
                                         const std::vector<RecordField>& fields,
                                         const std::string& text) {

@@ -1,0 +1,279 @@
+#include "navigation/navigator/shell/component.hpp"
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::navigator {
+
+namespace {
+
+using runtime::HealthState;
+using runtime::ParameterKind;
+using std::chrono::milliseconds;
+namespace supervisor_state = usher_msgs::msg::SupervisorStatus_Constants;
+
+constexpr auto kPeriod = milliseconds(100);
+constexpr int kStatusEvery = 2;  // of those periods: 5 Hz
+constexpr auto kFollowAge = milliseconds(500);
+constexpr auto kOdomAge = milliseconds(200);
+constexpr auto kLocalizationAge = milliseconds(1000);
+constexpr auto kSupervisorAge = milliseconds(1000);
+constexpr auto kPoseAge = milliseconds(300);
+
+}  // namespace
+
+NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& parameters) {
+  NavigatorConfig c;
+  const auto number = [&](const char* name, const char* unit, double low, double high,
+                          double& value, const char* text) {
+    value = parameters.number(name, unit, {low, high}, value, text);
+  };
+  number("position_tolerance", "m", 0.05, 2, c.position_tolerance,
+         "The goal is reached within this; at least the local planner's.");
+  number("yaw_tolerance", "rad", 0.02, 3.2, c.yaw_tolerance, "The same for its yaw.");
+  number("settle_time", "s", 0, 10, c.settle_time, "Time to stand at the goal before it counts.");
+  number("replan_period", "s", 0, 600, c.replan_period,
+         "A better path may have appeared; 0 = never.");
+  number("wait_object", "s", 0, 600, c.wait_object,
+         "Blocked by a thing: wait before planning round it.");
+  number("wait_person", "s", 0, 600, c.wait_person, "Blocked by somebody, who probably moves.");
+  number("recovery_patience", "s", 0, 600, c.recovery_patience,
+         "Still blocked after the new path: recover.");
+  number("stall_time", "s", 1, 600, c.stall_time, "Without getting nearer it counts as blocked.");
+  number("pause_timeout", "s", 1, 3600, c.pause_timeout,
+         "Without localization or inputs before giving up.");
+  number("plan_timeout", "s", 0.5, 60, c.plan_timeout, "Without an answer is a failed plan.");
+  number("time_base", "s", 1, 36000, c.time_base, "A goal may take this long, and the following.");
+  number("time_factor", "-", 1, 100, c.time_factor, "This many times its path at the usual speed.");
+  number("usual_speed", "m/s", 0.05, 2, c.usual_speed,
+         "Kept on average: the first guess for the time of arrival.");
+  c.most_recoveries =
+      static_cast<int>(parameters.integer("most_recoveries", "-", {0, 100}, c.most_recoveries,
+                                          "Recoveries in a row without progress."));
+  return c;
+}
+
+Locations NavigatorComponent::read_locations(runtime::Host& host) {
+  std::vector<Location> locations;
+  const auto records = host.parameters().records(
+      "site.locations",
+      {{"name", ParameterKind::kText, "-", {}, "Identifier, unique."},
+       {"title", ParameterKind::kText, "-", {}, "For people."},
+       {"x", ParameterKind::kNumber, "m", {-1e4, 1e4}, "Where the robot stands, in map."},
+       {"y", ParameterKind::kNumber, "m", {-1e4, 1e4}, "The same."},
+       {"yaw", ParameterKind::kNumber, "rad", {-6.3, 6.3}, "Which way it looks."}},
+      "Known locations of the site.");
+  for (const auto& record : records) {
+    locations.push_back({record.text("name"),
+                         record.text("title"),
+                         {record.number("x"), record.number("y"), record.number("yaw")}});
+  }
+  auto made = Locations::create(std::move(locations));
+  if (!made) host.fault("site.locations: " + made.error());
+  return std::move(made).value();
+}
+
+Navigator NavigatorComponent::make(runtime::Host& host) {
+  // Ids above all that were used before a restart.
+  const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
+  auto made = Navigator::create(read_parameters(host.parameters()), read_locations(host), first_id);
+  if (!made) host.fault(made.error());
+  return std::move(made).value();
+}
+
+NavigatorComponent::NavigatorComponent(runtime::Host& host)
+    : host_(host),
+      transforms_(host),
+      core_(make(host)),
+      rejected_(host.health().counter("inputs: rejected")) {
+  goal_ = host.input(topics::kNavigateGoal, {.optional = true},
+                     [this](const auto& goal, const auto&) { take_goal(goal); });
+  goal_pose_ = host.input(topics::kGoalPose, {.optional = true},
+                          [this](const auto& goal, const auto&) { take_goal_pose(goal); });
+  cancel_ = host.input(topics::kNavigateCancel, {.optional = true},
+                       [this](const auto& cancel, const auto&) {
+                         core_.cancel(cancel.id());
+                         step();
+                       });
+  reply_ = host.input(topics::kPlanReply, {},
+                      [this](const auto& reply, const auto&) { take_reply(reply); });
+  follow_ = host.input(topics::kFollowStatus,
+                       {.max_age = kFollowAge, .on_loss = "pauses, fails after a while"},
+                       [this](const auto&, const auto&) { step(); });
+  localization_ =
+      host.input(topics::kLocalizationStatus,
+                 {.max_age = kLocalizationAge, .on_loss = "pauses, fails after a while"});
+  odom_ =
+      host.input(topics::kOdom, {.max_age = kOdomAge, .on_loss = "pauses, fails after a while"});
+  supervisor_ = host.input(topics::kSupervisorStatus,
+                           {.max_age = kSupervisorAge, .on_loss = "pauses, fails after a while"});
+  plan_ = host.output(topics::kPlanRequest);
+  motion_ = host.output(topics::kFollowGoal);
+  clear_ = host.output(topics::kCostmapRequest);
+  status_ = host.output(topics::kNavigateStatus);
+  locations_ = host.output(topics::kLocations);
+  timer_ = host.timer("step", kPeriod, [this](auto) {
+    step();
+    if (++status_share_ % kStatusEvery == 0) publish(core_.status());
+  });
+  publish_locations();
+  publish(core_.status());
+}
+
+void NavigatorComponent::take_goal(const usher_msgs::msg::NavigateGoal& goal) {
+  const auto pose = wire::to_planar(goal.pose().pose());
+  if (goal.location().empty() && (!pose || goal.pose().header().frame_id() != frames::kMap)) {
+    ++rejected_;
+    return;
+  }
+  core_.request({goal.id(), goal.client(), goal.location(), pose ? *pose : geometry::Pose2{},
+                 goal.max_speed()});
+  step();
+  publish(core_.status());
+}
+
+/// rviz's goal: a pose without an id.
+void NavigatorComponent::take_goal_pose(const geometry_msgs::msg::PoseStamped& goal) {
+  const auto pose = wire::to_planar(goal.pose());
+  if (!pose || goal.header().frame_id() != frames::kMap) {
+    ++rejected_;
+    return;
+  }
+  core_.request({++viewer_goals_, "goal_pose", "", *pose, 0.0});
+  step();
+}
+
+void NavigatorComponent::take_reply(const usher_msgs::msg::PlanReply& reply) {
+  PlanReply plan{reply.id(), reply.reason(), {}};
+  if (reply.state() == usher_msgs::msg::GoalStatus_Constants::STATE_SUCCEEDED) {
+    auto path = wire::from_message(reply.path());
+    if (!path) {
+      ++rejected_;
+      plan.reason = path.error();
+    } else {
+      plan.path = std::move(path).value();
+    }
+  }
+  core_.plan_reply(std::move(plan));
+  step();
+}
+
+/// In words, why nothing may drive now; the supervisor enables the navigation in one state only.
+std::string NavigatorComponent::hold() const {
+  const auto* supervisor = supervisor_.fresh();
+  if (supervisor == nullptr) return "no supervisor";
+  if (!supervisor->granted())
+    return supervisor->reason().empty() ? "nobody may drive" : supervisor->reason();
+  if (supervisor->state() != supervisor_state::STATE_NAVIGATION_ACTIVE)
+    return "the supervisor has not started the navigation";
+  return {};
+}
+
+Situation NavigatorComponent::situation() {
+  Situation s;
+  s.time = now();
+  if (reply_.writers().empty()) {
+    s.missing = "no global planner";
+  } else if (follow_.latest() == nullptr) {
+    s.missing = "no local planner";
+  }
+  if (const auto* status = follow_.fresh()) {
+    s.follow = {status->id(), static_cast<GoalState>(std::min<std::uint8_t>(status->state(), 6)),
+                status->reason(), status->obstacle_distance()};
+  } else {
+    s.stale = "the local planner is silent";
+  }
+  if (const auto* status = localization_.fresh())
+    s.localization = static_cast<Localization>(std::min<std::uint8_t>(status->state(), 2));
+  if (const auto* odom = odom_.fresh()) {
+    if (const auto velocity = wire::from_message(odom->twist().twist())) s.velocity = *velocity;
+  } else {
+    s.stale = "no odometry";
+  }
+  if (const auto newest = transforms_.buffer().newest(frames::kMap, frames::kBaseFootprint)) {
+    const runtime::Time stamp(*newest);
+    const auto pose = transforms_.lookup_planar(frames::kMap, frames::kBaseFootprint, stamp);
+    if (pose && host_.now() - stamp < kPoseAge) s.pose = *pose;
+  }
+  s.hold = hold();
+  return s;
+}
+
+void NavigatorComponent::step() {
+  const Decision decision = core_.step(situation());
+  for (const auto& aside : decision.asides) publish(aside);
+  if (decision.plan) send_plan(*decision.plan);
+  if (decision.motion) send_motion(*decision.motion);
+  if (decision.clear_costmap) {
+    usher_msgs::msg::CostmapRequest request;
+    request.id(static_cast<std::uint64_t>(host_.now().time_since_epoch().count()) +
+               ++clear_requests_);
+    request.client(host_.name());
+    clear_.publish(request);
+  }
+  const auto& status = core_.status();
+  if (status.id != last_published_ || status.state != last_state_) publish(status);
+  const bool ready = core_.state() != State::kInitialise;
+  host_.health().set(ready ? HealthState::kOk : HealthState::kDegraded,
+                     ready ? "" : "waits for the planners");
+}
+
+void NavigatorComponent::send_plan(const PlanRequest& request) {
+  usher_msgs::msg::PlanRequest message;
+  message.id(request.id);
+  message.client(host_.name());
+  message.start().header(wire::header(host_.now(), frames::kMap));
+  message.start().pose(wire::to_message(request.start));
+  message.goal().header(message.start().header());
+  message.goal().pose(wire::to_message(request.goal));
+  plan_.publish(message);
+}
+
+void NavigatorComponent::send_motion(const Motion& motion) {
+  using namespace usher_msgs::msg::FollowGoal_Constants;
+  constexpr std::uint8_t kModes[] = {MODE_STOP, MODE_PATH, MODE_ROTATE, MODE_BACK_OFF};
+  usher_msgs::msg::FollowGoal message;
+  message.id(motion.id);
+  message.client(host_.name());
+  message.mode(kModes[static_cast<std::size_t>(motion.mode)]);
+  message.max_speed(static_cast<float>(motion.max_speed));
+  message.amount(static_cast<float>(motion.amount));
+  const std::span<const geometry::Pose2> path = motion.mode == MotionMode::kFollow
+                                                    ? std::span(core_.path())
+                                                    : std::span<const geometry::Pose2>();
+  message.path(wire::to_message(host_.now(), frames::kMap, path));
+  motion_.publish(message);
+}
+
+void NavigatorComponent::publish_locations() {
+  usher_msgs::msg::Locations message;
+  for (const auto& location : core_.locations().all()) {
+    auto& entry = message.locations().emplace_back();
+    entry.name(location.name);
+    entry.title(location.title);
+    entry.pose(wire::to_message(location.pose));
+  }
+  locations_.publish(message);
+}
+
+void NavigatorComponent::publish(const NavigationStatus& status) {
+  usher_msgs::msg::NavigateStatus message;
+  message.header(wire::header(host_.now(), frames::kMap));
+  message.id(status.id);
+  message.client(status.client);
+  message.state(static_cast<std::uint8_t>(status.state));
+  message.reason(status.reason);
+  message.location(status.location);
+  message.goal().header(message.header());
+  message.goal().pose(wire::to_message(status.goal));
+  message.progress(static_cast<float>(status.progress));
+  message.remaining(static_cast<float>(status.remaining));
+  message.eta(static_cast<float>(status.eta));
+  message.recoveries(status.recoveries);
+  message.replans(status.replans);
+  status_.publish(message);
+  last_published_ = status.id;
+  last_state_ = status.state;
+}
+
+}  // namespace usher::navigator

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "navigation/navigator/core/navigator.hpp"
+#include "runtime/api/host.hpp"
+#include "wire/transform_input.hpp"
+
+namespace usher::navigator {
+
+/// Takes goals, asks the global planner, tells the local planner, says how it goes.
+class NavigatorComponent final : public runtime::Component {
+ public:
+  explicit NavigatorComponent(runtime::Host& host);
+
+ private:
+  static NavigatorConfig read_parameters(runtime::Parameters& parameters);
+  static Locations read_locations(runtime::Host& host);
+  static Navigator make(runtime::Host& host);
+  double now() const { return runtime::seconds(host_.now().time_since_epoch()); }
+  void take_goal(const usher_msgs::msg::NavigateGoal& goal);
+  void take_goal_pose(const geometry_msgs::msg::PoseStamped& goal);
+  void take_reply(const usher_msgs::msg::PlanReply& reply);
+  Situation situation();
+  std::string hold() const;
+  void step();
+  void publish_locations();
+  void publish(const NavigationStatus& status);
+  void send_plan(const PlanRequest& request);
+  void send_motion(const Motion& motion);
+
+  runtime::Host& host_;
+  wire::TransformInput transforms_;
+  Navigator core_;
+  std::uint64_t viewer_goals_ = 0;
+  std::uint64_t clear_requests_ = 0;
+  std::uint64_t last_published_ = 0;
+  GoalState last_state_ = GoalState::kIdle;
+  int status_share_ = 0;
+  std::uint64_t& rejected_;
+
+  runtime::Input<usher_msgs::msg::NavigateGoal> goal_;
+  runtime::Input<geometry_msgs::msg::PoseStamped> goal_pose_;
+  runtime::Input<usher_msgs::msg::GoalCancel> cancel_;
+  runtime::Input<usher_msgs::msg::PlanReply> reply_;
+  runtime::Input<usher_msgs::msg::FollowStatus> follow_;
+  runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
+  runtime::Input<nav_msgs::msg::Odometry> odom_;
+  runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
+  runtime::Output<usher_msgs::msg::PlanRequest> plan_;
+  runtime::Output<usher_msgs::msg::FollowGoal> motion_;
+  runtime::Output<usher_msgs::msg::CostmapRequest> clear_;
+  runtime::Output<usher_msgs::msg::NavigateStatus> status_;
+  runtime::Output<usher_msgs::msg::Locations> locations_;
+  runtime::Timer timer_;
+};
+
+}  // namespace usher::navigator
