@@ -1,0 +1,88 @@
+#include "drivers/segway_rmp/core/link.hpp"
+
+#include "drivers/segway_rmp/core/status.hpp"
+
+namespace usher::segway_rmp {
+
+Link::Link() : Link(Parameters{}) {}
+
+Link::Link(const Parameters& parameters)
+    : parameters_(parameters), assembler_(parameters.calibration) {}
+
+void Link::opened(Time now) {
+  open_ = true;
+  opened_at_ = now;
+  step_ = 0;
+  decoder_.reset();
+  assembler_.reset();
+  feedback_at_.reset();
+  reported_ = Mode::kDisconnected;
+  reason_ = "waiting for feedback";
+}
+
+void Link::closed() {
+  open_ = false;
+  feedback_at_.reset();
+  reported_ = Mode::kDisconnected;
+  reason_ = "not connected";
+}
+
+void Link::reset() {
+  if (!emergency_) return;
+  emergency_ = false;
+  step_ = 0;  // a base that was switched off may have forgotten its settings
+}
+
+std::optional<SegwayFeedback> Link::take(const Packet& packet, Time now) {
+  auto feedback = assembler_.take(packet, now);
+  if (!feedback) return std::nullopt;
+  if (emergency_) feedback->mode = Mode::kEmergency;
+  const bool news = !feedback_at_ || reported_ != feedback->mode ||
+                    status_1_ != feedback->status_1 || status_2_ != feedback->status_2;
+  feedback_at_ = now;
+  reported_ = feedback->mode;
+  status_1_ = feedback->status_1;
+  status_2_ = feedback->status_2;
+  if (news) {
+    reason_ = report(status_1_, status_2_).text;
+    if (reason_.empty() && reported_ == Mode::kEmergency) reason_ = "emergency stop";
+    if (reason_.empty() && reported_ == Mode::kStandby) reason_ = "not balancing";
+  }
+  return feedback;
+}
+
+Mode Link::mode(Time now) const {
+  if (!feedback_at_ || now - *feedback_at_ >= parameters_.lost) return Mode::kDisconnected;
+  return emergency_ ? Mode::kEmergency : reported_;
+}
+
+std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time now) {
+  if (!open_) return {};
+  if (mode(now) == Mode::kDisconnected && feedback_at_) reason_ = "no feedback from the base";
+  if (emergency_) {
+    output_ = shutdown();
+    return output_;
+  }
+  if (configured()) {
+    output_ = command(wanted, parameters_.calibration);
+    return output_;
+  }
+  struct Step {
+    Setting setting;
+    std::uint16_t value;
+  };
+  const Step steps[kSteps] = {
+      {Setting::kMaxVelocityScale, parameters_.velocity_scale},
+      {Setting::kMaxAccelerationScale, parameters_.acceleration_scale},
+      {Setting::kMaxTurnScale, parameters_.turn_scale},
+      {Setting::kGainSchedule, parameters_.gain_schedule},
+      {Setting::kBalanceLockout, 0},
+      {Setting::kOperationalMode, kModeBalance},
+  };
+  const Step& step = steps[step_ % kSteps];
+  ++step_;
+  output_ = command({}, parameters_.calibration, step.setting, step.value);
+  return output_;
+}
+
+}  // namespace usher::segway_rmp

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/segway_rmp/core/protocol.hpp"
+
+namespace usher::segway_rmp {
+
+/// The dialogue with one base over its USB line: configure, command in every cycle, watch.
+///
+/// The base answers nothing and holds the last command for 0.4 s, so settings are sent repeatedly
+/// and a command frame goes out in every cycle, zero where nothing else is wanted.
+class Link {
+ public:
+  struct Parameters {
+    Calibration calibration;
+    std::uint16_t velocity_scale = 16;             ///< {0..16}
+    std::uint16_t acceleration_scale = 8;          ///< {0..16}
+    std::uint16_t turn_scale = 16;                 ///< {0..16}
+    std::uint16_t gain_schedule = 1;               ///< tall
+    Time settle = std::chrono::milliseconds(250);  ///< after opening the line holds old bytes
+    Time lost = std::chrono::seconds(1);           ///< without feedback the base is disconnected
+  };
+
+  Link();
+  explicit Link(const Parameters& parameters);
+
+  void opened(Time now);
+  void closed();
+
+  /// Bytes arrived; calls `on_feedback(const SegwayFeedback&)` for each whole cycle.
+  template <class OnFeedback>
+  void received(std::span<const std::uint8_t> bytes, Time now, OnFeedback&& on_feedback) {
+    if (!open_ || now - opened_at_ < parameters_.settle) return;
+    decoder_.feed(bytes, [&](const Packet& packet) {
+      if (const auto feedback = take(packet, now)) on_feedback(*feedback);
+    });
+  }
+
+  /// The frames to send in this cycle (50 Hz or more), valid until the next call; empty while the
+  /// line is closed. Nothing but zero goes out while the base is being configured or in emergency.
+  std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
+
+  /// Motors off until reset().
+  void emergency_stop() { emergency_ = true; }
+  /// An operator asks to balance again. Has no effect without an emergency.
+  void reset();
+
+  /// The settings were all sent.
+  bool configured() const { return step_ >= kSteps * kRepeats; }
+  bool emergency() const { return emergency_; }
+  Mode mode(Time now) const;
+  /// Why it does not drive, or a warning; empty when all is well.
+  const std::string& reason() const { return reason_; }
+
+  const PacketDecoder& decoder() const { return decoder_; }
+  const FeedbackAssembler& assembler() const { return assembler_; }
+
+ private:
+  static constexpr int kSteps = 6;
+  static constexpr int kRepeats = 3;
+
+  std::optional<SegwayFeedback> take(const Packet& packet, Time now);
+
+  Parameters parameters_;
+  PacketDecoder decoder_;
+  FeedbackAssembler assembler_;
+  bool open_ = false;
+  Time opened_at_{};
+  int step_ = 0;
+  bool emergency_ = false;
+  std::optional<Time> feedback_at_;
+  Mode reported_ = Mode::kDisconnected;
+  std::uint16_t status_1_ = 0;
+  std::uint16_t status_2_ = 0;
+  std::string reason_ = "not connected";
+  PacketBytes output_{};
+};
+
+}  // namespace usher::segway_rmp

@@ -1,0 +1,49 @@
+#include "drivers/segway_rmp/core/odometry.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace usher::segway_rmp {
+
+Odometry::Odometry() : Odometry(Parameters{}) {}
+
+Odometry::Odometry(const Parameters& parameters) : parameters_(parameters) {
+  assert(parameters.wheel_radius > 0.0 && parameters.track > 0.0 && parameters.longest_step > 0.0);
+}
+
+bool Odometry::update(const SegwayFeedback& feedback) {
+  const double values[] = {feedback.pitch,        feedback.pitch_rate,    feedback.left_travel,
+                           feedback.right_travel, feedback.left_velocity, feedback.right_velocity};
+  for (const double value : values) {
+    if (!std::isfinite(value)) {
+      ++rejected_;
+      return false;
+    }
+  }
+  const double left = feedback.left_travel - last_left_;
+  const double right = feedback.right_travel - last_right_;
+  const double lean = feedback.pitch - last_pitch_;
+  const bool first = !started_;
+  started_ = true;
+  last_left_ = feedback.left_travel;
+  last_right_ = feedback.right_travel;
+  last_pitch_ = feedback.pitch;
+  if (!first && std::abs(left) + std::abs(right) > 2.0 * parameters_.longest_step) {
+    ++rejected_;
+    return false;
+  }
+
+  const double turn_rate = (feedback.right_velocity - feedback.left_velocity) / parameters_.track;
+  raw_twist_ = {0.5 * (feedback.left_velocity + feedback.right_velocity), turn_rate};
+  twist_ = {raw_twist_.v + parameters_.wheel_radius * feedback.pitch_rate, turn_rate};
+  if (first) return true;
+
+  const double length = 0.5 * (left + right);
+  const double turn = (right - left) / parameters_.track;
+  // An arc of unit time.
+  raw_pose_ = geometry::integrate(raw_pose_, {length, turn}, 1.0);
+  pose_ = geometry::integrate(pose_, {length + parameters_.wheel_radius * lean, turn}, 1.0);
+  return true;
+}
+
+}  // namespace usher::segway_rmp

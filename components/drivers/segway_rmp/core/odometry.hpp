@@ -1,0 +1,48 @@
+#pragma once
+
+#include "drivers/segway_rmp/core/device.hpp"
+#include "foundation/geometry/pose2.hpp"
+
+namespace usher::segway_rmp {
+
+/// Where the wheels say that the robot is.
+///
+/// The odometers turn with the body: a base that leans forward by an angle over standing wheels
+/// counts wheel radius times angle backward, which the thesis saw as drift at every acceleration
+/// (section 8.1.1). The pitch is measured, so this is taken out: what remains is the way over the
+/// floor. The raw pose stays available for comparison.
+class Odometry {
+ public:
+  struct Parameters {
+    double wheel_radius = 0.2355;  ///< [m] {> 0}
+    double track = 0.5398;         ///< [m] {> 0} effective, for turning
+    double longest_step = 1.0;     ///< [m] {> 0} between two cycles; more is not believed
+  };
+
+  Odometry();
+  explicit Odometry(const Parameters& parameters);
+
+  /// One cycle of the base. False, and nothing changed but the reference for the next one, when it
+  /// is not finite or a leap.
+  bool update(const SegwayFeedback& feedback);
+
+  const geometry::Pose2& pose() const { return pose_; }          ///< of base_footprint in odom
+  const geometry::Twist2& twist() const { return twist_; }       ///< over the floor
+  const geometry::Pose2& raw_pose() const { return raw_pose_; }  ///< without the pitch taken out
+  const geometry::Twist2& raw_twist() const { return raw_twist_; }
+  std::uint64_t rejected() const { return rejected_; }
+
+ private:
+  Parameters parameters_;
+  bool started_ = false;
+  double last_left_ = 0.0;
+  double last_right_ = 0.0;
+  double last_pitch_ = 0.0;
+  geometry::Pose2 pose_;
+  geometry::Twist2 twist_;
+  geometry::Pose2 raw_pose_;
+  geometry::Twist2 raw_twist_;
+  std::uint64_t rejected_ = 0;
+};
+
+}  // namespace usher::segway_rmp

@@ -1,0 +1,114 @@
+#include "drivers/segway_rmp/core/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "foundation/geometry/angle.hpp"
+
+namespace usher::segway_rmp {
+namespace {
+
+constexpr double kRadius = 0.2355;
+constexpr double kTrack = 0.5398;
+constexpr double kPeriod = 0.01;
+
+/// A base whose true motion is known; its odometers turn with the leaning body.
+struct TrueBase {
+  double left = 0.0, right = 0.0;  ///< [m] over the floor
+  double pitch = 0.0, pitch_rate = 0.0;
+  double v = 0.0, w = 0.0;
+
+  SegwayFeedback feedback() const {
+    SegwayFeedback feedback;
+    feedback.pitch = pitch;
+    feedback.pitch_rate = pitch_rate;
+    feedback.left_travel = left - kRadius * pitch;
+    feedback.right_travel = right - kRadius * pitch;
+    feedback.left_velocity = v - 0.5 * kTrack * w - kRadius * pitch_rate;
+    feedback.right_velocity = v + 0.5 * kTrack * w - kRadius * pitch_rate;
+    return feedback;
+  }
+  void lean(double to) {
+    pitch_rate = (to - pitch) / kPeriod;
+    pitch = to;
+  }
+  void drive(double speed, double turn) {
+    v = speed;
+    w = turn;
+    left += (v - 0.5 * kTrack * w) * kPeriod;
+    right += (v + 0.5 * kTrack * w) * kPeriod;
+  }
+};
+
+TEST(Odometry, LeaningIsNotDriving) {
+  Odometry odometry;
+  TrueBase base;
+  odometry.update(base.feedback());
+  double least_raw_speed = 0.0;
+  for (int i = 1; i <= 20; ++i) {  // leans to 7.5 deg in 0.2 s over standing wheels
+    base.lean(geometry::radians(7.5) * i / 20.0);
+    ASSERT_TRUE(odometry.update(base.feedback()));
+    EXPECT_NEAR(odometry.pose().x, 0.0, 1e-12);
+    EXPECT_NEAR(odometry.twist().v, 0.0, 1e-12);
+    least_raw_speed = std::min(least_raw_speed, odometry.raw_twist().v);
+  }
+  EXPECT_NEAR(odometry.raw_pose().x, -kRadius * geometry::radians(7.5), 1e-12);
+  EXPECT_LT(least_raw_speed, -0.1) << "the backward speed that the thesis saw";
+}
+
+TEST(Odometry, FollowsAnAcceleratingTurningLeaningBase) {
+  Odometry odometry;
+  TrueBase base;
+  odometry.update(base.feedback());
+  geometry::Pose2 truth;
+  for (int i = 1; i <= 2000; ++i) {
+    const double t = i * kPeriod;
+    base.lean(geometry::radians(10.0) * std::sin(1.3 * t));
+    base.drive(0.8 + 0.5 * std::sin(t), 0.4 * std::cos(0.7 * t));
+    truth = geometry::integrate(truth, {base.v, base.w}, kPeriod);
+    ASSERT_TRUE(odometry.update(base.feedback()));
+  }
+  EXPECT_NEAR(odometry.pose().x, truth.x, 1e-6);
+  EXPECT_NEAR(odometry.pose().y, truth.y, 1e-6);
+  EXPECT_NEAR(odometry.pose().yaw, truth.yaw, 1e-9);
+  EXPECT_NEAR(odometry.twist().v, base.v, 1e-9);
+  EXPECT_NEAR(odometry.twist().w, base.w, 1e-9);
+  EXPECT_GT(geometry::distance(odometry.raw_pose(), truth), 0.02);
+}
+
+TEST(Odometry, StartsWhereverTheCountersStand) {
+  Odometry odometry;
+  TrueBase base;
+  base.left = base.right = 1234.5;
+  base.pitch = 0.1;
+  EXPECT_TRUE(odometry.update(base.feedback()));
+  EXPECT_EQ(odometry.pose(), geometry::Pose2{});
+  base.drive(1.0, 0.0);
+  EXPECT_TRUE(odometry.update(base.feedback()));
+  EXPECT_NEAR(odometry.pose().x, 0.01, 1e-9);
+}
+
+TEST(Odometry, RejectsLeapsAndNonsenseAndGoesOn) {
+  Odometry odometry;
+  TrueBase base;
+  odometry.update(base.feedback());
+  base.left += 5.0;
+  EXPECT_FALSE(odometry.update(base.feedback()));
+  EXPECT_EQ(odometry.pose(), geometry::Pose2{});
+  SegwayFeedback broken = base.feedback();
+  broken.pitch = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(odometry.update(broken));
+  broken = base.feedback();
+  broken.right_travel = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(odometry.update(broken));
+  EXPECT_EQ(odometry.rejected(), 3U);
+  base.drive(1.0, 0.0);
+  EXPECT_TRUE(odometry.update(base.feedback()));
+  EXPECT_NEAR(odometry.pose().x, 0.01, 1e-9);
+  EXPECT_NEAR(odometry.pose().yaw, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace usher::segway_rmp
