@@ -17,6 +17,12 @@ constexpr int kSpareRows =
 constexpr double kFarAway =
     1e6;  // [cells] poses beyond are outside any grid and would overflow an int
 
+/// The smallest whole number not below a value that is not negative.
+int rounded_up(double value) {
+  const int whole = static_cast<int>(value);
+  return whole + (value > whole ? 1 : 0);
+}
+
 /// 16 costs to 16 bits, 1 = lethal.
 std::uint64_t lethal_bits16(const std::uint8_t* costs, bool unknown_is_lethal) {
 #if defined(__SSE2__)
@@ -138,35 +144,40 @@ void ContactTest::turn(double cosine, double sine, double resolution,
 
 bool ContactTest::touches(const LethalBits& bits, const TurnedFootprint& turned, double x,
                           double y) const {
-  if (!(std::abs(x) < kFarAway && std::abs(y) < kFarAway)) return true;
   detail::Rows rows;
   rows.x = x + bits.rim() - 0.5;
   rows.y = y + bits.rim() - 0.5;
-  rows.first = static_cast<int>(std::ceil(rows.y + turned.min_y));
-  rows.last = static_cast<int>(std::floor(rows.y + turned.max_y));
-  rows.first_column = static_cast<int>(std::ceil(rows.x + turned.min_x));
-  rows.last_column = static_cast<int>(std::floor(rows.x + turned.max_x));
-  if (rows.first < 0 || rows.last >= bits.rows() || rows.first_column < 0 ||
-      rows.last_column >= bits.columns()) {
+  const double low_x = rows.x + turned.min_x;
+  const double low_y = rows.y + turned.min_y;
+  const double high_x = rows.x + turned.max_x;
+  const double high_y = rows.y + turned.max_y;
+  // A corner beyond the rim's middle lies in the rim: a contact. So is what is not finite.
+  if (!(low_x >= 0.0 && low_y >= 0.0 && high_x < bits.columns() && high_y < bits.rows())) {
     return true;
   }
+  rows.first = rounded_up(low_y);
+  rows.last = static_cast<int>(high_y);
+  rows.first_column = rounded_up(low_x);
+  rows.last_column = static_cast<int>(high_x);
   return avx2_ ? detail::touches_avx2(bits, turned, rows)
                : detail::touches_portable(bits, turned, rows);
 }
 
 bool ContactTest::clear_around(const LethalBits& bits, double x, double y) const {
-  if (!(std::abs(x) < kFarAway && std::abs(y) < kFarAway)) return false;
-  detail::Rows rows;
   const double reach = circumscribed_ * bits.cells_per_metre();
   // Cells whose square is within reach along both axes: a superset of what any yaw touches.
-  rows.first = static_cast<int>(std::floor(y + bits.rim() - reach));
-  rows.last = static_cast<int>(std::floor(y + bits.rim() + reach));
-  rows.first_column = static_cast<int>(std::floor(x + bits.rim() - reach));
-  rows.last_column = static_cast<int>(std::floor(x + bits.rim() + reach));
-  if (rows.first < 0 || rows.last >= bits.rows() || rows.first_column < 0 ||
-      rows.last_column >= bits.columns()) {
+  const double low_x = x + bits.rim() - reach;
+  const double low_y = y + bits.rim() - reach;
+  const double high_x = x + bits.rim() + reach;
+  const double high_y = y + bits.rim() + reach;
+  if (!(low_x >= 0.0 && low_y >= 0.0 && high_x < bits.columns() && high_y < bits.rows())) {
     return false;
   }
+  detail::Rows rows;
+  rows.first = static_cast<int>(low_y);
+  rows.last = static_cast<int>(high_y);
+  rows.first_column = static_cast<int>(low_x);
+  rows.last_column = static_cast<int>(high_x);
   return !(avx2_ ? detail::any_avx2(bits, rows) : detail::any_portable(bits, rows));
 }
 

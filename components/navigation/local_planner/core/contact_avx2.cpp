@@ -84,10 +84,10 @@ USHER_AVX2 bool any_avx2(const LethalBits& bits, const Rows& rows) {
     const int width = std::min(LethalBits::kSpan, rows.last_column - base + 1);
     const std::uint64_t box = (~std::uint64_t{0} >> (64 - width)) << (base % LethalBits::kStride);
     __m256i any = _mm256_setzero_si256();
-    for (int row = rows.first; row <= rows.last; row += 4) {
-      any = _mm256_or_si256(
-          any, _mm256_and_si256(load_rows(words + row), row_mask(rows.last - row + 1)));
-    }
+    int row = rows.first;
+    for (; row + 3 <= rows.last; row += 4) any = _mm256_or_si256(any, load_rows(words + row));
+    any = _mm256_or_si256(any,
+                          _mm256_and_si256(load_rows(words + row), row_mask(rows.last - row + 1)));
     const __m256i mask = _mm256_set1_epi64x(static_cast<long long>(box));
     if (!_mm256_testz_si256(any, mask)) return true;
   }

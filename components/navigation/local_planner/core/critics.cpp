@@ -11,6 +11,7 @@ constexpr double kBehind = 0.3;  // [m] of path behind the robot that still coun
 constexpr double kStandsStill =
     0.3;                            // [m/s] a disc slower than this is in the way until it has gone
 constexpr double kForesight = 3.0;  // [s] that moving discs are foreseen
+constexpr double kPolylineStep = 0.1;      // [m] 3 mm off an arc of 0.5 m
 constexpr double kTurnOnSpot = 0.15;       // [m/s] slower than this a turn is one on the spot
 constexpr double kTurnMatters = 0.05;      // [rad/s]
 constexpr double kOscillationWay = 0.05;   // [m] after which the other sense is allowed again
@@ -153,12 +154,11 @@ void DynamicWindow::sample(const Input& input, double fastest) {
 }
 
 void DynamicWindow::measure_path(const Input& input) {
-  const grid::GridGeometry& geometry = input.costs.geometry();
   // Relative to the robot, so that single precision is exact to micrometres.
   path_distance_.clear();
   const double begin = path_.progress() - kBehind;
   const double end = local_goal_arc_ + config_.forward_point;
-  const double step = std::max(geometry.resolution, (end - begin) / 128.0);
+  const double step = std::max(kPolylineStep, (end - begin) / 128.0);
   geometry::Point2 a = path_.point(begin);
   for (double arc = begin; arc < end; arc += step) {
     const geometry::Point2 b = path_.point(std::min(arc + step, end));
@@ -168,7 +168,8 @@ void DynamicWindow::measure_path(const Input& input) {
     a = b;
   }
   const std::size_t count = rollout_.trajectories().size();
-  points_x_.resize(4 * count), points_y_.resize(4 * count), point_distances_.resize(4 * count);
+  const std::size_t padded = (4 * count + 7) / 8 * 8;
+  points_x_.resize(padded), points_y_.resize(padded), point_distances_.resize(padded);
   const auto ahead = static_cast<float>(config_.forward_point);
   for (std::size_t i = 0; i < 3 * count; ++i)
     points_x_[i] = rollout_.x()[i], points_y_[i] = rollout_.y()[i];

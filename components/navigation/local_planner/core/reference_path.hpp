@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -50,7 +51,7 @@ class PolylineDistance {
  public:
   explicit PolylineDistance(cpu::Simd simd = cpu::best_simd()) : avx2_(simd == cpu::Simd::kAvx2) {}
 
-  void clear() { ax_.clear(), ay_.clear(), dx_.clear(), dy_.clear(), inverse_.clear(); }
+  void clear() { sides_.clear(); }
   void add(float ax, float ay, float bx, float by);
   /// distances[i] = distance of (x[i], y[i]) to the nearest point of the polyline; infinite without
   /// sides.
@@ -59,7 +60,8 @@ class PolylineDistance {
 
  private:
   bool avx2_ = false;
-  std::vector<float> ax_, ay_, dx_, dy_, inverse_;
+  using Side = std::array<float, 5>;  // start, way to the end, 1 / squared length
+  std::vector<Side> sides_;
 };
 
 }  // namespace usher::navigation

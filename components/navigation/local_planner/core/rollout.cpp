@@ -75,9 +75,9 @@ void Rollout::directions(double yaw, const SpeedProfile& turn) {
 bool Rollout::touches(const Frame& frame, double x, double y, int step, int contact) {
   const auto c = static_cast<std::size_t>(contact);
   const ContactTest& test = *frame.contacts[c];
-  if (test.clear_around(frame.bits, x, y)) return false;
   const auto k = static_cast<std::size_t>(step);
   if ((turned_ready_[c] >> k & 1U) == 0) {
+    if (test.clear_around(frame.bits, x, y)) return false;
     test.turn(cosine_[k], sine_[k], frame.costs.resolution(), turned_[c][k]);
     turned_ready_[c] |= std::uint64_t{1} << k;
   }
@@ -139,14 +139,16 @@ void Rollout::simulate(const Frame& frame, const SpeedProfile& speed, std::size_
                           half_step * 0.5;
     const double next_x = x + length * (cosine_[k - 1] + cosine_[k]);
     const double next_y = y + length * (sine_[k - 1] + sine_[k]);
-    result.contact = touches(frame, next_x, next_y, k, speed.contact);
+    // The wider outline first: where it is free, so is the narrower one.
+    const bool wide = touches(frame, next_x, next_y, k, 1);
+    result.contact = wide && (speed.contact == 1 || touches(frame, next_x, next_y, k, 0));
     if (!result.contact && !frame.discs.empty()) {
       result.disc = meets_disc(frame, next_x, next_y, k, speed.contact, result.disc_cost);
     }
     if (result.contact || result.disc) break;
     x = next_x, y = next_y;
     if (k > scored) continue;
-    if (speed.contact == 0 && touches(frame, x, y, k, 1)) ++close;
+    close += wide;
     const int cost = frame.costs.value_or({static_cast<int>(x), static_cast<int>(y)}, kCostLethal);
     cost_sum += cost == kCostUnknown && !settings_.unknown_is_lethal ? 0 : cost;
     if (k == parts[part]) keep_point(x, y);

@@ -182,7 +182,7 @@ Cycle narrow_cycle() {
   DynamicWindowConfig config;
   config.footprint = Footprint::rectangle(0.72, 0.56);
   config.clearance = 0.0;
-  config.careful_speed = 3.0;
+  config.careful_speed = 0.0;
   config.pace = 0.55;
   config.limits = {.acceleration = 2.5, .deceleration = 2.5, .angular_acceleration = 0.3};
   config.speed_samples = 32;

@@ -139,7 +139,7 @@ TEST(PolylineDistance, IsTheSameOnEveryInstructionSet) {
     portable.add(c[0], c[1], c[2], c[3]);
     best.add(c[0], c[1], c[2], c[3]);
   }
-  std::vector<float> x(1003), y(1003), one(1003), other(1003);
+  std::vector<float> x(1000), y(1000), one(1000), other(1000);
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] = static_cast<float>(random.uniform(-4, 4)),
     y[i] = static_cast<float>(random.uniform(-4, 4));
@@ -153,11 +153,11 @@ TEST(PolylineDistance, KnowsSidesEndsAndPoints) {
   PolylineDistance line;
   line.add(0, 0, 2, 0);
   line.add(2, 0, 2, 0);
-  const std::vector<float> x{1, -3, 5, 2};
-  const std::vector<float> y{2, 4, 4, 0};
-  std::vector<float> d(4);
+  const std::vector<float> x{1, -3, 5, 2, 0, 0, 0, 0};
+  const std::vector<float> y{2, 4, 4, 0, 0, 0, 0, 3};
+  std::vector<float> d(8);
   line.measure(x, y, d);
-  EXPECT_EQ(d, (std::vector<float>{2, 5, 5, 0}));
+  EXPECT_EQ(d, (std::vector<float>{2, 5, 5, 0, 0, 0, 0, 3}));
   line.clear();
   line.measure(x, y, d);
   EXPECT_EQ(d[0], std::numeric_limits<float>::infinity());

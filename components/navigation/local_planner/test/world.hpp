@@ -101,13 +101,13 @@ class World {
     double nearest = 10.0;
     const double reach = footprint.circumscribed_radius();
     for (const Disc& d : discs_) {
-      if (std::hypot(d.x - pose.x, d.y - pose.y) > reach + d.radius + 1.0) continue;
+      if (std::hypot(d.x - pose.x, d.y - pose.y) > reach + d.radius + 0.5) continue;
       nearest = std::min(nearest, footprint.distance(inverse(pose) * Point2(d.x, d.y)) - d.radius);
     }
     for (const Box& b : boxes_) {
       const double dx = std::max({b.x0 - pose.x, pose.x - b.x1, 0.0});
       const double dy = std::max({b.y0 - pose.y, pose.y - b.y1, 0.0});
-      if (std::hypot(dx, dy) > reach + 1.0) continue;
+      if (std::hypot(dx, dy) > reach + 0.3) continue;
       nearest = std::min(nearest, box_distance(footprint, pose, b));
     }
     return std::max(0.0, nearest);
