@@ -385,7 +385,6 @@ void Navigator::handle_reply(const Situation& s) {
 }
 
 void Navigator::handle_failed_plan(const Situation& s, Failure failure, const std::string& reason) {
-  if (phase_ == Phase::kBlocked && replanned_at_) replanned_at_ = s.time;
   if (phase_ != Phase::kPlanning) return;  // the old path still leads there
   waiting_for_ = reason;
   next_attempt_ = s.time + config_.plan_retry;

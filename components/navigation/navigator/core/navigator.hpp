@@ -130,7 +130,7 @@ struct Situation {
       missing;  ///< planners not heard yet, for people; empty = all are there (Initialise ends)
   std::string stale;  ///< an input that is too old to drive on, for people; empty = none
   std::string hold;   ///< why the robot may not drive now, for people ("movement is switched off");
-                     ///< empty = it may
+                      ///< empty = it may
   Localization localization = Localization::kLost;
   std::optional<geometry::Pose2> pose;  ///< in map; absent or not finite counts as lost
   geometry::Twist2 velocity;            ///< measured

@@ -184,14 +184,27 @@ TEST(Navigator, TakesARepeatedGoalOnce) {
     rig.go();
     rig.run(0.2);
   }
-  EXPECT_EQ(rig.status().replans, 1u);
+  EXPECT_EQ(rig.plans.size(), 1u);
   ASSERT_FALSE(std::isnan(rig.run_to_end(60.0)));
+  const std::size_t plans = rig.plans.size();
   rig.go();
   rig.run(1.0);
+  EXPECT_EQ(rig.plans.size(), plans);
   EXPECT_EQ(rig.navigator.state(), State::kInactive) << "a late repetition does not start again";
   rig.go(9.0, 2);
   rig.run(1.0);
   EXPECT_EQ(rig.navigator.state(), State::kActive);
+}
+
+TEST(Navigator, TellsClientsWithTheSameIdApart) {
+  Rig rig;
+  rig.go();
+  rig.run(1.0);
+  rig.navigator.request({1, "another", "kitchen", {}, 0.0});
+  rig.step();
+  EXPECT_EQ(rig.status().client, "another");
+  ASSERT_EQ(rig.asides.size(), 1u);
+  EXPECT_EQ(rig.asides[0].client, "test");
 }
 
 TEST(Navigator, CancelsByIdOrWhateverRuns) {
@@ -314,11 +327,13 @@ TEST(Navigator, PlansPeriodicallyButKeepsAPathThatIsAsGood) {
   rig.answer = [](Rig& r, const PlanRequest& request) {  // a door closed: the way is longer now
     PlanReply reply{request.id,
                     "",
-                    {request.start, {request.start.x, 4.0, 0.0}, {30.0, 4.0, 0.0}, request.goal}};
+                    {request.start, {request.start.x, 40.0, 0.0}, {30.0, 40.0, 0.0}, request.goal}};
     r.navigator.plan_reply(reply);
   };
+  const double progress = rig.status().progress;
   rig.run(5.0);
   EXPECT_EQ(rig.navigator.path().size(), 4u);
+  EXPECT_GE(rig.status().progress, progress) << "though more is left now";
   EXPECT_EQ(rig.motions.size(), 2u) << "the same task, so it does not stop to change over";
 
   NavigatorConfig never;
