@@ -132,7 +132,10 @@ void Scene::index(std::span<const Segment> segments) {
     any = true;
   };
   for (const Segment& s : segments) include(s.a, 0.0), include(s.b, 0.0);
-  for (const Bound& bound : prisms_) include(bound.center, bound.radius);
+  for (const Thing& thing : things_) {
+    for (const Point2& corner : thing.outline) include(corner, 0.0);
+    if (thing.radius > 0.0) include(thing.center, thing.radius);
+  }
 
   cells_ = {.width = static_cast<int>((upper_.x() - lower_.x()) / kCell) + 1,
             .height = static_cast<int>((upper_.y() - lower_.y()) / kCell) + 1,

@@ -66,8 +66,8 @@ class Scene {
     Point2 point = Point2::Zero();                              ///< the thing's nearest point
   };
   /// The nearest thing that reaches below `height`, when it is nearer than `limit` [m]: to a convex
-  /// polygon (counter-clockwise) or to a point. Glass counts. Inside a "map" only the border of the
-  /// occupied cells is known.
+  /// polygon (counter-clockwise) or to a point. Glass counts. Walls and map know only
+  /// their border: a polygon wholly inside one is as far from it as from the border.
   Nearest nearest(std::span<const Point2> polygon, double height, double limit) const;
   Nearest nearest(const Point2& point, double height, double limit) const;
 

@@ -78,8 +78,7 @@ struct SonarConfig {
   double range_max = 6.0;                 ///< [m]
   double step = 0.0254;                   ///< [m] resolution
   double noise = 0.008;                   ///< [m] standard deviation
-  double max_incidence =
-      geometry::radians(55.0);  ///< [rad] a flatter surface throws the sound away
+  double max_incidence = geometry::radians(50.0);  ///< [rad] beyond, the sound is thrown away
 
   /// Of sensor i, counted from the right.
   Mount mount(int i) const;

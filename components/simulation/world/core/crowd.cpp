@@ -1,0 +1,263 @@
+#include "simulation/world/core/crowd.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/world/core/base.hpp"
+#include "simulation/world/core/shapes.hpp"
+
+namespace usher::world {
+namespace {
+
+constexpr double kArrived = 0.25;   // [m]
+constexpr double kTrailStep = 0.1;  // [m]
+constexpr std::size_t kTrailLength = 400;
+constexpr double kStandsFirm = 0.5;   // [m/s^2] a weaker push does not make a standing person step
+constexpr double kProgress = 0.3;     // [m] less than this within the patience is none
+constexpr double kFastestTurn = 4.0;  // [rad/s] of the eyes
+
+Point2 unit(const Point2& v) {
+  const double length = v.norm();
+  return length > 1e-9 ? Point2(v / length) : Point2(0.0, 0.0);
+}
+
+Point2 capped(const Point2& v, double length) {
+  const double norm = v.norm();
+  return norm > length ? Point2(v * (length / norm)) : v;
+}
+
+// Somewhere on the closed line, and the corner after it.
+Point2 point_on_loop(const std::vector<Point2>& loop, double share, std::size_t& next) {
+  const double whole = share * static_cast<double>(loop.size());
+  const auto leg = std::min(static_cast<std::size_t>(whole), loop.size() - 1);
+  next = (leg + 1) % loop.size();
+  return loop[leg] + (whole - static_cast<double>(leg)) * (loop[next] - loop[leg]);
+}
+
+}  // namespace
+
+Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const Point2& robot,
+             std::uint64_t seed)
+    : config_(config), random_(stream_seed(seed, "crowd")) {
+  for (const PersonPlan& plan : plans) {
+    Person person{
+        .name = plan.name, .scripted = plan.loop.empty(), .position = plan.start, .yaw = plan.yaw};
+    Mind mind{.speed = plan.speed, .loop = plan.loop, .pause = plan.pause};
+    if (!plan.loop.empty()) {
+      constexpr int kTries = 20;
+      constexpr double kFarEnough = 2.0;  // [m]
+      mind.speed *= std::max(0.5, random_.gaussian(1.0, config.speed_spread));
+      for (int i = 0; i < kTries; ++i) {
+        person.position = point_on_loop(mind.loop, random_.uniform(), mind.next);
+        if ((person.position - robot).norm() > kFarEnough) break;
+      }
+    }
+    mind.stuck_at = person.position;
+    movers_.push_back({person.position, config.radius, config.top});
+    people_.push_back(std::move(person));
+    minds_.push_back(std::move(mind));
+  }
+}
+
+Status Crowd::send(const std::string& name, const Point2& goal, double speed, bool follow) {
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    if (people_[i].name != name) continue;
+    if (!people_[i].scripted) return Error{"person '" + name + "' walks a loop, nobody sends it"};
+    if (!(speed >= 0.0 && speed <= 2.5)) {
+      return Error{"speed of person '" + name + "' must be in [0, 2.5] m/s, got " +
+                   std::to_string(speed)};
+    }
+    if (!goal.allFinite()) return Error{"goal of person '" + name + "' must be finite"};
+    minds_[i].goal = goal;
+    minds_[i].speed = speed;
+    minds_[i].follow = follow;
+    minds_[i].has_goal = speed > 0.0;
+    return {};
+  }
+  return Error{"no person is named '" + name + "'"};
+}
+
+void Crowd::step(const Scene& scene, const RobotView& robot) {
+  remember_robot(robot);
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    Person& person = people_[i];
+    Mind& mind = minds_[i];
+    choose_goal(person, mind, robot);
+    const Point2 wanted = wanted_velocity(person, mind, robot);
+    const bool walks = mind.has_goal && mind.pause_left <= 0.0;
+
+    Point2 push = push_of_people(i) + push_of_robot(person, walks, robot);
+    constexpr double kWallSight = 0.8;  // [m]
+    const auto wall = scene.nearest(person.position, config_.top, config_.radius + kWallSight);
+    if (wall.thing >= 0) {
+      push += config_.wall_push * std::exp((config_.radius - wall.distance) / config_.wall_reach) *
+              unit(person.position - wall.point);
+    }
+    if (!walks && push.norm() < kStandsFirm) push.setZero();
+    move(i, (wanted - person.velocity) / config_.relaxation + push, scene, robot);
+    lose_patience(person, mind);
+  }
+}
+
+void Crowd::remember_robot(const RobotView& robot) {
+  if (robot.footprint.empty()) return;
+  const Point2 here = robot.pose.position();
+  if (!trail_.empty() && (trail_.back() - here).norm() < kTrailStep) return;
+  trail_.push_back(here);
+  if (trail_.size() > kTrailLength) trail_.pop_front();
+}
+
+void Crowd::choose_goal(Person& person, Mind& mind, const RobotView& robot) {
+  if (mind.follow && mind.has_goal && !trail_.empty()) {
+    // Along the robot's way, so that no wall comes between, up to the distance behind it.
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < trail_.size(); ++i) {
+      if ((trail_[i] - person.position).norm() <= (trail_[nearest] - person.position).norm()) {
+        nearest = i;
+      }
+    }
+    constexpr std::size_t kAhead = 8;  // points of the trail
+    mind.goal = trail_[std::min(nearest + kAhead, trail_.size() - 1)];
+    if ((robot.pose.position() - person.position).norm() < config_.follow_distance) {
+      mind.goal = person.position;
+    }
+    return;
+  }
+  if (mind.loop.empty()) return;
+  mind.pause_left = std::max(0.0, mind.pause_left - kStep);
+  mind.goal = mind.loop[mind.next];
+  mind.has_goal = true;
+  if ((mind.goal - person.position).norm() < kArrived) {
+    const std::size_t count = mind.loop.size();
+    mind.next = (mind.next + (mind.reversed ? count - 1 : 1)) % count;
+    mind.pause_left = mind.pause;
+  }
+}
+
+void Crowd::turn_round(Mind& mind) const {
+  const std::size_t count = mind.loop.size();
+  mind.reversed = !mind.reversed;
+  mind.next = (mind.next + (mind.reversed ? count - 1 : 1)) % count;
+}
+
+void Crowd::lose_patience(Person& person, Mind& mind) {
+  if (mind.loop.empty() || mind.pause_left > 0.0) {
+    mind.stuck = 0.0;
+    return;
+  }
+  mind.stuck += kStep;
+  if ((person.position - mind.stuck_at).norm() > kProgress) {
+    mind.stuck = 0.0;
+    mind.stuck_at = person.position;
+  } else if (mind.stuck > config_.patience) {
+    mind.stuck = 0.0;
+    turn_round(mind);
+  }
+}
+
+Point2 Crowd::wanted_velocity(const Person& person, const Mind& mind,
+                              const RobotView& robot) const {
+  if (!mind.has_goal || mind.pause_left > 0.0) return Point2::Zero();
+  const Point2 way = mind.goal - person.position;
+  const double left = way.norm();
+  // Slows down in time for the end of the way; a corner of a loop is taken in full walk.
+  const bool ends_here = mind.loop.empty() || mind.pause > 0.0;
+  if (ends_here && left < 0.05) return Point2::Zero();
+  const double speed = ends_here ? std::min(mind.speed, left / config_.relaxation) : mind.speed;
+  const Point2 direction = unit(way);
+  if (robot.footprint.empty()) return speed * direction;
+
+  const shapes::Polygon body(robot.footprint);
+  const double apart = (body.center() - person.position).norm();
+  if (apart > body.radius() + config_.radius + config_.robot_see) return speed * direction;
+  const shapes::Gap gap = body.gap_to_disc(person.position, config_.radius);
+  const Point2 to_robot = unit(body.center() - person.position);
+  const bool ahead = to_robot.dot(direction) > 0.5;
+  if (!ahead) return speed * direction;
+  if (gap.distance < config_.robot_stop) return Point2::Zero();
+  const double caution =
+      std::min(1.0, (gap.distance - config_.robot_stop) / (0.5 * config_.robot_see));
+  return speed * (0.3 + 0.7 * caution) * direction;
+}
+
+Point2 Crowd::push_of_people(std::size_t index) const {
+  const Point2 here = people_[index].position;
+  const Point2 looking(std::cos(people_[index].yaw), std::sin(people_[index].yaw));
+  Point2 push = Point2::Zero();
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    const Point2 away = here - people_[i].position;
+    const double distance = away.norm();
+    if (i == index || distance > 3.0) continue;
+    // What is behind matters less; of two who meet, both keep to the right.
+    const Point2 out = distance > 1e-6 ? Point2(away / distance) : Point2(0.0, 1.0);
+    const double ahead = -out.dot(looking);
+    const double strength = config_.person_push * (0.35 + 0.65 * 0.5 * (1.0 + ahead)) *
+                            std::exp((2.0 * config_.radius - distance) / config_.person_reach);
+    push += strength * out;
+    if (ahead > 0.7) push += 0.5 * strength * Point2(looking.y(), -looking.x());
+  }
+  return push;
+}
+
+Point2 Crowd::push_of_robot(const Person& person, bool walks, const RobotView& robot) const {
+  if (robot.footprint.empty()) return Point2::Zero();
+  const shapes::Polygon body(robot.footprint);
+  const Point2 away = person.position - body.center();
+  const double apart = away.norm();
+  if (apart > body.radius() + config_.radius + config_.robot_see) return Point2::Zero();
+  const double gap = body.gap_to_disc(person.position, config_.radius).distance;
+  Point2 push = config_.robot_push * std::exp(-gap / config_.robot_reach) * unit(away);
+
+  const Point2 looking(std::cos(person.yaw), std::sin(person.yaw));
+  const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));
+  if (walks && -unit(away).dot(looking) > 0.7) {
+    // Meets the robot: passes on the right.
+    push += 1.5 * std::exp(-gap / 1.2) * Point2(looking.y(), -looking.x());
+  } else if (!walks && unit(away).dot(heading) > 0.7 && gap < 0.8) {
+    // Stands in its way: steps out of it, to the side where the person already is.
+    const Point2 left(-heading.y(), heading.x());
+    push += 1.5 * (away.dot(left) >= 0.0 ? left : Point2(-left));
+  }
+  return push;
+}
+
+void Crowd::move(std::size_t index, const Point2& acceleration, const Scene& scene,
+                 const RobotView& robot) {
+  Person& person = people_[index];
+  person.velocity += capped(acceleration, config_.max_acceleration) * kStep;
+  person.velocity = capped(person.velocity, 1.3 * std::max(minds_[index].speed, 0.6));
+  const Point2 before = person.position;
+  person.position += person.velocity * kStep;
+
+  const bool robot_here = !robot.footprint.empty();
+  const auto robot_gap = [&] {
+    return shapes::Polygon(robot.footprint).gap_to_disc(person.position, config_.radius).distance;
+  };
+  constexpr double kSkin = 0.01;  // [m] nobody touches the robot by own will
+  if (robot_here && robot_gap() < kSkin) {
+    // Stays where it was; what still overlaps is the robot's doing and shoves the person away.
+    person.position = before;
+    person.velocity.setZero();
+    if (robot_gap() < kSkin) {
+      person.position += 1.5 * kStep * unit(before - shapes::Polygon(robot.footprint).center());
+    }
+  }
+  const auto wall = scene.nearest(person.position, config_.top, config_.radius);
+  if (wall.thing >= 0) {
+    const Point2 out = unit(person.position - wall.point);
+    person.position = wall.distance > 0.0
+                          ? Point2(person.position + (config_.radius - wall.distance) * out)
+                          : before;
+    const double into = person.velocity.dot(out);
+    if (into < 0.0) person.velocity -= into * out;
+  }
+  if (person.velocity.norm() > 0.15) {
+    const double turn =
+        geometry::shortest_turn(person.yaw, std::atan2(person.velocity.y(), person.velocity.x()));
+    person.yaw = geometry::normalized(
+        person.yaw + std::clamp(turn, -kFastestTurn * kStep, kFastestTurn * kStep));
+  }
+  movers_[index].center = person.position;
+}
+
+}  // namespace usher::world
