@@ -230,7 +230,7 @@ Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_nam
       qos.latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   writer.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   writer.history().depth = qos.depth;
-  writer.resource_limits().allocated_samples = qos.depth;
+  writer.resource_limits().allocated_samples = 4;
   writer.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   writer.data_sharing().off();
   // A sample that the network lost is noticed by the next one or by the next heartbeat; 3 s would
@@ -254,7 +254,7 @@ Result<dds::DataReader*> Participant::create_reader(const std::string& topic_nam
       qos.latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   reader.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   reader.history().depth = std::max(qos.depth, kReaderHistory);
-  reader.resource_limits().allocated_samples = reader.history().depth;
+  reader.resource_limits().allocated_samples = 4;
   reader.data_sharing().off();
   reader.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
   reader.reliable_reader_qos().times.initialAcknackDelay = milliseconds(10);
