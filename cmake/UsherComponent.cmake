@@ -53,15 +53,18 @@ endfunction()
 
 # usher_component(NAME CLASS HEADER CORE ... SHELL ... [CORE_DEPENDS ...] [SHELL_DEPENDS ...])
 # From the folder it is called in: usher_<name>_core, usher_<name>_shell, the program usher-<name> with a generated
-# main, its contract as a file, installation of both, and an entry in the table of all components (usher_components).
+# main (the core may be left out where another component of the folder has it), its contract as a file, installation of both, and an entry in the table of all components (usher_components).
 function(usher_component NAME)
   cmake_parse_arguments(ARG "" "CLASS;HEADER" "CORE;SHELL;CORE_DEPENDS;SHELL_DEPENDS" ${ARGN})
-  usher_library(usher_${NAME}_core SOURCES ${ARG_CORE} DEPENDS ${ARG_CORE_DEPENDS})
+  if(ARG_CORE)
+    usher_library(usher_${NAME}_core SOURCES ${ARG_CORE} DEPENDS ${ARG_CORE_DEPENDS})
+    set(CORE usher_${NAME}_core)
+  endif()
   if(NOT ARG_SHELL OR NOT TARGET usher_runtime_dds)
     return()  # a build narrowed by USHER_ROOMS to cores and their tests
   endif()
   usher_library(usher_${NAME}_shell SOURCES ${ARG_SHELL}
-                DEPENDS usher_${NAME}_core usher_wire usher_runtime ${ARG_SHELL_DEPENDS})
+                DEPENDS ${CORE} usher_wire usher_runtime ${ARG_SHELL_DEPENDS})
 
   set(COMPONENT_NAME ${NAME})
   set(COMPONENT_CLASS ${ARG_CLASS})

@@ -37,9 +37,8 @@ BaseDriver::BaseDriver(runtime::Host& host, Device device)
     : host_(host),
       device_(std::move(device)),
       obedience_(read_limits(host.parameters())),
-      odometry_(read_odometry(host.parameters())),
-      axle_height_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
-                                            "Of the driven wheels; also the axle's height.")),
+      geometry_(read_odometry(host.parameters())),
+      odometry_(geometry_),
       rejected_feedback_(host.health().counter("feedback: rejected")),
       foreign_(host.health().counter("commands: foreign writer")) {
   grant_ = host.input(
@@ -113,7 +112,7 @@ void BaseDriver::publish_odometry(const SegwayFeedback& feedback) {
   odom_.publish(message);
 
   geometry::Pose3 footprint_T_base;
-  footprint_T_base.translation.z() = axle_height_;
+  footprint_T_base.translation.z() = geometry_.wheel_radius;
   footprint_T_base.rotation = geometry::from_roll_pitch_yaw(0.0, feedback.pitch, 0.0);
   tf2_msgs::msg::TFMessage frames;
   frames.transforms().push_back(wire::transform(stamp, frames::kOdom, frames::kBaseFootprint,

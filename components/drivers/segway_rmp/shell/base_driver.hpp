@@ -38,8 +38,8 @@ class BaseDriver {
   runtime::Host& host_;
   Device device_;
   drive::BaseObedience obedience_;
+  Odometry::Parameters geometry_;
   Odometry odometry_;
-  double axle_height_;
   drive::Decision decision_;
   SegwayFeedback feedback_;
   std::string disconnected_ = "not heard yet";

@@ -1,0 +1,243 @@
+#include "simulation/world/shell/component.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/grid/map_file.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::world {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+using namespace usher_sim_msgs::msg;
+
+constexpr auto kStepTime = milliseconds(10);
+static_assert(kStep == 0.01);
+constexpr int kScanEvery = 2;   // steps: 50 Hz
+constexpr int kBoardEvery = 2;  // 50 Hz
+constexpr int kTruthEvery = 2;  // 50 Hz
+/// The firmware of the base holds a command for so long, then it stops.
+constexpr auto kCommandHold = milliseconds(400);
+/// More than this in one go would be a jump for the robot; the rest is time that the simulation
+/// loses.
+constexpr std::uint64_t kMostStepsAtOnce = 5;
+constexpr float kRangeMin = 0.5F;  // [m] of the LMS100
+constexpr double kBehind = 0.1;    // [s] of lag from which the simulation says that it is behind
+
+}  // namespace
+
+WorldConfig WorldComponent::read_robot(runtime::Host& host) {
+  auto& p = host.parameters();
+  WorldConfig config;
+  RobotConfig& robot = config.robot;
+  const auto corners =
+      p.numbers("robot.footprint", "m", {-5, 5}, 6, 24,
+                "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
+  if (!corners.empty()) robot.footprint.clear();
+  double front = 0.0, side = 0.0;
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2) {
+    robot.footprint.emplace_back(corners[i], corners[i + 1]);
+    front = std::max(front, corners[i]);
+    side = std::max(side, corners[i + 1]);
+  }
+  // The world wants its polygons counter-clockwise.
+  double area = 0.0;
+  for (std::size_t i = 0; i < robot.footprint.size(); ++i) {
+    const auto& a = robot.footprint[i];
+    const auto& b = robot.footprint[(i + 1) % robot.footprint.size()];
+    area += a.x() * b.y() - a.y() * b.x();
+  }
+  if (area < 0.0) std::reverse(robot.footprint.begin(), robot.footprint.end());
+  robot.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
+                               "Of the driven wheels; also the axle's height.");
+  robot.lasers.front().mount.x =
+      p.number("robot.laser.mount_x", "m", {-2, 2}, "Laser ahead of the axle's middle.");
+  robot.lasers.front().mount.z =
+      p.number("robot.laser.mount_z", "m", {-1, 3}, "Laser above the axle's middle.");
+  robot.sonar.ring_radius = p.number("robot.ultrasonic.mount_x", "m", {-2, 2},
+                                     "Ring of the ultrasonic sensors ahead of the axle's middle.");
+  robot.sonar.z = p.number("robot.ultrasonic.mount_z", "m", {-1, 3},
+                           "Ring of the ultrasonic sensors above the axle's middle.");
+  robot.sonar.spacing = p.number("robot.ultrasonic.spacing", "rad", {0.05, 1.6},
+                                 "Angle between two ultrasonic sensors.");
+  if (front > 0.0) robot.whiskers.x = front;
+  if (side > 0.0) robot.whiskers.y = side;
+  return config;
+}
+
+std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
+  auto& p = host.parameters();
+  const WorldConfig config = read_robot(host);
+  const std::string building_file = p.file(
+      "site.world", "", "The building (world.yaml); without it the walls of the site's map.");
+  const std::string map_file =
+      p.file("site.map", "", "YAML of the site's map, in map_server form.");
+  const std::string people_file = p.file("site.people", "", "Who walks there (people.yaml).");
+  const bool with_people = p.flag("people", false, "Whether anybody walks there.");
+  const auto start = p.numbers("site.initial_pose", "-", {-1e4, 1e4}, 3, 3, {0, 0, 0},
+                               "Where the robot usually starts: x in m, y in m, yaw in rad.");
+  if (building_file.empty() && map_file.empty()) return nullptr;
+
+  std::vector<PersonPlan> people;
+  if (with_people && !people_file.empty()) {
+    auto loaded = load_people(people_file);
+    if (!loaded) host.fault(loaded.error());
+    people = std::move(loaded).value();
+  }
+  const Pose2 robot{start[0], start[1], start[2]};
+  const std::uint64_t seed = host.random("world").next();
+  if (!building_file.empty()) {
+    auto building = load_building(building_file);
+    if (!building) host.fault(building.error());
+    return std::make_unique<World>(config, std::move(building).value(), people, robot, seed);
+  }
+  auto map = grid::load_map(map_file);
+  if (!map) host.fault(map.error());
+  return std::make_unique<World>(config, std::move(map).value(), people, robot, seed);
+}
+
+WorldComponent::WorldComponent(runtime::Host& host)
+    : host_(host),
+      world_(make(host)),
+      rejected_(host.health().counter("commands: rejected")),
+      late_steps_(host.health().counter("steps: late")) {
+  command_ = host.input(
+      topics::kSimBaseCommand,
+      {.max_age = kCommandHold, .on_loss = "the base stops, as its firmware does"},
+      [this](const auto& command, const auto&) { take_command(command); },
+      [this] {
+        if (world_) world_->base().command({});
+      });
+  person_goal_ = host.input(topics::kSimPersonGoal, {.optional = true},
+                            [this](const auto& goal, const auto&) { take_person_goal(goal); });
+  feedback_ = host.output(topics::kSimBaseFeedback);
+  scans_ = host.output(topics::kSimScan);
+  boards_ = host.output(topics::kSimSensorBoard);
+  truth_ = host.output(topics::kSimGroundTruth);
+  timer_ = host.timer("step", kStepTime, [this](std::uint64_t skipped) { advance(skipped); });
+  start_ = host.now();
+  if (!world_)
+    host.health().set(HealthState::kDegraded,
+                      "neither a world nor a map is set (site.world, site.map)");
+}
+
+void WorldComponent::take_command(const BaseCommand& command) {
+  if (!world_) return;
+  if (!std::isfinite(command.v()) || !std::isfinite(command.w())) {
+    ++rejected_;
+    return;
+  }
+  switch (command.mode()) {
+    case BaseCommand_Constants::MODE_EMERGENCY_STOP:
+      world_->base().emergency_stop();
+      break;
+    case BaseCommand_Constants::MODE_RESET:
+      world_->base().reset();
+      break;
+    default:
+      world_->base().command({command.v(), command.w()});
+  }
+}
+
+void WorldComponent::take_person_goal(const PersonGoal& goal) {
+  if (!world_ ||
+      !world_->send_person(goal.name(), {goal.x(), goal.y()}, goal.speed(), goal.follow()))
+    ++rejected_;
+}
+
+void WorldComponent::advance(std::uint64_t skipped) {
+  if (!world_) return;
+  late_steps_ += skipped;
+  const std::uint64_t due = std::min<std::uint64_t>(skipped + 1, kMostStepsAtOnce);
+  bool scan = false, board = false, truth = false;
+  for (std::uint64_t i = 0; i < due; ++i) {
+    world_->step();
+    ++steps_;
+    scan = scan || steps_ % kScanEvery == 0;
+    board = board || steps_ % kBoardEvery == 0;
+    truth = truth || steps_ % kTruthEvery == 0;
+  }
+  publish_feedback();
+  if (scan) publish_scan();
+  if (board) publish_sensor_board();
+  if (truth) publish_truth();
+  const double lag = runtime::seconds(host_.now() - start_) - static_cast<double>(steps_) * kStep;
+  host_.health().set(lag > kBehind ? HealthState::kDegraded : HealthState::kOk,
+                     lag > kBehind ? "the simulation is " + std::to_string(lag) + " s behind" : "");
+}
+
+void WorldComponent::publish_feedback() {
+  const BaseReadings& readings = world_->base().readings();
+  BaseFeedback message;
+  message.header(wire::header(host_.now(), frames::kBaseLink));
+  message.balancing(readings.motors_on);
+  message.emergency(readings.emergency);
+  message.pitch(readings.pitch);
+  message.pitch_rate(readings.pitch_rate);
+  message.left_travel(readings.left_travel);
+  message.right_travel(readings.right_travel);
+  message.left_velocity(readings.left_velocity);
+  message.right_velocity(readings.right_velocity);
+  message.yaw_rate(readings.yaw_rate);
+  message.battery_percent(static_cast<float>(readings.battery_percent));
+  feedback_.publish(message);
+}
+
+void WorldComponent::publish_scan() {
+  const LaserConfig& laser = world_->config().robot.lasers.front();
+  world_->scan(0, scan_.ranges());
+  scan_.header(wire::header(host_.now(), "laser"));
+  scan_.angle_min(static_cast<float>(laser.angle_min));
+  scan_.angle_increment(static_cast<float>(laser.increment));
+  scan_.angle_max(static_cast<float>(
+      laser.angle_min + laser.increment * (static_cast<double>(scan_.ranges().size()) - 1.0)));
+  scan_.scan_time(0.02F);
+  scan_.range_min(kRangeMin);
+  scan_.range_max(static_cast<float>(laser.range_max));
+  scans_.publish(scan_);
+}
+
+void WorldComponent::publish_sensor_board() {
+  world_->sonar(board_.ranges());
+  const WhiskerContacts contacts = world_->whiskers();
+  board_.header(wire::header(host_.now(), frames::kBaseLink));
+  board_.front_left(contacts.front_left);
+  board_.front_right(contacts.front_right);
+  board_.back_left(contacts.back_left);
+  board_.back_right(contacts.back_right);
+  boards_.publish(board_);
+}
+
+void WorldComponent::publish_truth() {
+  const BaseTruth& base = world_->base().truth();
+  const GroundTruth& judge = world_->truth();
+  usher_sim_msgs::msg::GroundTruth message;
+  message.header(wire::header(host_.now(), frames::kMap));
+  message.pose(wire::to_message(base.pose));
+  message.v(base.twist.v);
+  message.w(base.twist.w);
+  message.pitch(base.pitch);
+  message.clearance(judge.clearance);
+  message.contacts(judge.contacts);
+  message.touches(judge.touches);
+  message.contact_with(judge.contact_with);
+  message.lag(
+      std::max(0.0, runtime::seconds(host_.now() - start_) - static_cast<double>(steps_) * kStep));
+  std::uint32_t id = 0;
+  for (const auto& person : world_->people()) {
+    auto& entry = message.people().emplace_back();
+    entry.id(id++);
+    entry.name(person.scripted ? person.name : "");
+    entry.x(person.position.x());
+    entry.y(person.position.y());
+    entry.yaw(person.yaw);
+    entry.v(person.velocity.norm());
+  }
+  truth_.publish(message);
+}
+
+}  // namespace usher::world

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+#include "simulation/world/core/world.hpp"
+
+namespace usher::world {
+
+/// The world as one component: simulated devices and ground truth out, commands of the wheels and
+/// of scripted people in. Paced by its host's clock; says how far it is behind.
+class WorldComponent final : public runtime::Component {
+ public:
+  explicit WorldComponent(runtime::Host& host);
+
+ private:
+  static WorldConfig read_robot(runtime::Host& host);
+  std::unique_ptr<World> make(runtime::Host& host);
+  void take_command(const usher_sim_msgs::msg::BaseCommand& command);
+  void take_person_goal(const usher_sim_msgs::msg::PersonGoal& goal);
+  void advance(std::uint64_t skipped);
+  void publish_feedback();
+  void publish_scan();
+  void publish_sensor_board();
+  void publish_truth();
+
+  runtime::Host& host_;
+  std::unique_ptr<World> world_;  ///< null while the component is only described
+  runtime::Time start_{};
+  std::int64_t steps_ = 0;
+  sensor_msgs::msg::LaserScan scan_;
+  usher_sim_msgs::msg::SensorBoardReading board_;
+  std::uint64_t& rejected_;
+  std::uint64_t& late_steps_;
+
+  runtime::Input<usher_sim_msgs::msg::BaseCommand> command_;
+  runtime::Input<usher_sim_msgs::msg::PersonGoal> person_goal_;
+  runtime::Output<usher_sim_msgs::msg::BaseFeedback> feedback_;
+  runtime::Output<sensor_msgs::msg::LaserScan> scans_;
+  runtime::Output<usher_sim_msgs::msg::SensorBoardReading> boards_;
+  runtime::Output<usher_sim_msgs::msg::GroundTruth> truth_;
+  runtime::Timer timer_;
+};
+
+}  // namespace usher::world
