@@ -198,6 +198,22 @@ TEST_P(CornerOf, IsTakenWithADeadTimeAndALagThatThePlannerUnderestimates) {
   expect_arrival(result, goal, marvin());
 }
 
+TEST_P(CornerOf, IsTakenByABaseThatAnswersAsLateAsABalancingOne) {
+  const World world = corner(GetParam());
+  const Pose2 start{0, 0, 0};
+  const Pose2 goal{5, 5, kPi / 2};
+  DynamicWindowConfig config = marvin();
+  config.response.latency = 0.75;
+  config.pace = GetParam() < 1.3 ? 0.8 : 1.0;  // MARVIN's limits in such corridors
+  DynamicWindow planner = planner_for(config, world.plan(start, goal).value());
+  Base base;
+  base.dead_time = 0.7;
+  const Drive result = drive(planner, world, base, 60);
+  print("corner, late base", result);
+  expect_arrival(result, goal, config);
+  EXPECT_LE(result.turn_reversals, 4);
+}
+
 TEST(GoalBehind, IsReachedByTurningFirst) {
   World world(-8, -4, 4, 4);
   world.finish(0.305);
@@ -241,13 +257,15 @@ TEST(GoalYaw, IsTurnedToOnTheSpot) {
 }
 
 class BlockedBy : public testing::TestWithParam<double> {};  // the dead time of the base
-INSTANTIATE_TEST_SUITE_P(DeadTimes, BlockedBy, testing::Values(0.0, 0.3));
+INSTANTIATE_TEST_SUITE_P(DeadTimes, BlockedBy, testing::Values(0.0, 0.3, 0.7));
 
 TEST_P(BlockedBy, AWallItStopsBeforeItAndSaysSo) {
   World world = corridor(1.4);
   world.add(Box{6, -1, 6.2, 1});
   world.finish(0.305);
-  DynamicWindow planner = planner_for(marvin(), {{0, 0, 0}, {10, 0, 0}});
+  DynamicWindowConfig config = marvin();
+  config.response.latency = 0.05 + GetParam();
+  DynamicWindow planner = planner_for(config, {{0, 0, 0}, {10, 0, 0}});
   Base base;
   base.dead_time = GetParam();
   const Drive result = drive(planner, world, base, 40, 3.0);
