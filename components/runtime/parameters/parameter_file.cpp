@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <functional>
@@ -26,7 +27,7 @@ class Document {
   explicit Document(std::string where) : where_(std::move(where)) {}
 
   std::string at(const YAML::Node& node) const {
-    return where_ + ":" + std::to_string(node.Mark().line + 1);
+    return where_ + ":" + std::to_string(std::max(node.Mark().line, 0) + 1);
   }
   [[noreturn]] void fail(const YAML::Node& node, const std::string& text) const {
     throw Problem(text + " (" + at(node) + ")");
@@ -54,8 +55,8 @@ class Document {
     return value;
   }
   /// The value as text of one line, the way it can be read again.
-  std::string yaml(const YAML::Node& node, const std::string& name) const {
-    if (node.IsNull()) fail(node, name + " has no value");
+  std::string yaml(const YAML::Node& key, const YAML::Node& node, const std::string& name) const {
+    if (node.IsNull()) fail(key, name + " has no value");
     check_depth(node, 0);
     YAML::Emitter emitter;
     emitter.SetSeqFormat(YAML::Flow);
@@ -106,13 +107,13 @@ Result<std::string> content_of(const std::string& path) {
 
 ParameterValue read_value(const Document& document, const std::string& name, const YAML::Node& key,
                           const YAML::Node& node) {
-  if (!node.IsMap()) return {name, document.yaml(node, name), document.at(key)};
+  if (!node.IsMap()) return {name, document.yaml(key, node, name), document.at(key)};
   ParameterValue value{name, "", document.at(key)};
   bool given = false;
   document.each(
       node, [&](const std::string& part, const YAML::Node& part_key, const YAML::Node& content) {
         if (part == "value") {
-          value.yaml = document.yaml(content, name);
+          value.yaml = document.yaml(part_key, content, name);
           given = true;
         } else if (part == "origin") {
           value.origin = document.scalar(content, "origin of " + name);
@@ -177,17 +178,16 @@ ParameterFile read_file(const Document& document, const YAML::Node& root) {
 void flatten_into(const Document& document, const YAML::Node& map, const std::string& prefix,
                   int depth, std::set<std::string>& seen, std::vector<ParameterValue>& values) {
   if (depth > kDeepest) document.fail(map, "nested deeper than " + std::to_string(kDeepest));
-  document.each(map,
-                [&](const std::string& key, const YAML::Node& key_node, const YAML::Node& node) {
-                  const std::string name = prefix + key;
-                  if (node.IsMap()) {
-                    flatten_into(document, node, name + ".", depth + 1, seen, values);
-                    return;
-                  }
-                  if (!seen.insert(name).second)
-                    document.fail(key_node, "key " + name + " is given twice");
-                  values.push_back({name, document.yaml(node, name), document.at(key_node)});
-                });
+  document.each(
+      map, [&](const std::string& key, const YAML::Node& key_node, const YAML::Node& node) {
+        const std::string name = prefix + key;
+        if (node.IsMap()) {
+          flatten_into(document, node, name + ".", depth + 1, seen, values);
+          return;
+        }
+        if (!seen.insert(name).second) document.fail(key_node, "key " + name + " is given twice");
+        values.push_back({name, document.yaml(key_node, node, name), document.at(key_node)});
+      });
 }
 
 }  // namespace
