@@ -1,0 +1,236 @@
+#include "sensing/scan_filter/core/scan_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "foundation/geometry/pose3.hpp"
+
+namespace usher::scan_filter {
+namespace {
+
+constexpr double kSteepest = 0.6;  // [rad]
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+// Two ends belong together while their distances differ by less than this; 0.06 allows a wall seen
+// at up to 81 degrees from its normal at half a degree between beams.
+constexpr float kJump = 0.05f;       // [m]
+constexpr float kJumpShare = 0.06f;  // of the nearer
+constexpr double kWidest = 4.0;      // beams' angles between two ends that belong together
+constexpr float kSameAngle = 1e-6f;  // [rad] closer than this an end lies on an angle
+
+bool in(double value, double low, double high) { return value >= low && value <= high; }
+
+// Takes the nearer where two surfaces meet one angle.
+void offer(float& out, float range) {
+  if (!(out <= range)) out = range;
+}
+
+}  // namespace
+
+Result<ScanFilter> ScanFilter::make(const ScanFilterConfig& c) {
+  const auto bad = [](const char* name, double value, const char* range) {
+    return Error{std::string(name) + " must be in " + range + ", got " + std::to_string(value)};
+  };
+  if (!in(c.mount_x, -2, 2)) return bad("mount_x", c.mount_x, "[-2, 2] m");
+  if (!in(c.mount_y, -2, 2)) return bad("mount_y", c.mount_y, "[-2, 2] m");
+  if (!in(c.mount_z, -1, 3)) return bad("mount_z", c.mount_z, "[-1, 3] m");
+  if (!in(c.mount_yaw, -4, 4)) return bad("mount_yaw", c.mount_yaw, "[-4, 4] rad");
+  if (!in(c.mount_pitch, -0.6, 0.6)) return bad("mount_pitch", c.mount_pitch, "[-0.6, 0.6] rad");
+  if (!in(c.axle_height, 0, 1)) return bad("axle_height", c.axle_height, "[0, 1] m");
+  if (!in(c.bearing_limit, 0.01, 3.1)) {
+    return bad("bearing_limit", c.bearing_limit, "[0.01, 3.1] rad");
+  }
+  if (!in(c.floor_margin, 0, 1)) return bad("floor_margin", c.floor_margin, "[0, 1] m");
+  if (!in(c.floor_angle, 0, 0.1)) return bad("floor_angle", c.floor_angle, "[0, 0.1] rad");
+  if (!in(c.floor_time, 0, 0.1)) return bad("floor_time", c.floor_time, "[0, 0.1] s");
+  if (!in(c.max_height, 0.1, 10)) return bad("max_height", c.max_height, "[0.1, 10] m");
+  return ScanFilter(c);
+}
+
+Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> ranges,
+                          const Pitch& pitch, PlanarScan& out) {
+  const auto reject = [&](Error error) {
+    ++counts_.rejected;
+    return error;
+  };
+  if (!(std::abs(pitch.angle) <= kSteepest) || !std::isfinite(pitch.rate)) {
+    return reject({"pitch must be within 0.6 rad, got " + std::to_string(pitch.angle)});
+  }
+  if (geometry != geometry_ || ranges.size() != beams_) {
+    if (const Status status = adopt(geometry, ranges.size()); !status) {
+      return reject({status.error()});
+    }
+  }
+  project(ranges, pitch);
+  out.base_T_scan = {config_.mount_x, config_.mount_y, config_.mount_yaw};
+  out.geometry = {geometry.angle_min + static_cast<double>(first_) * geometry.angle_increment,
+                  geometry.angle_increment, 0.5 * geometry.range_min, geometry.range_max + 0.5};
+  out.ranges.assign(cos_.size(), kNothing);
+  if (config_.joined) join_ends(out.ranges);
+  place_lone_ends(out.ranges);
+  fill_free(out.ranges);
+  ++counts_.scans;
+  return {};
+}
+
+Status ScanFilter::adopt(const ScanGeometry& g, std::size_t beams) {
+  if (beams == 0 || beams > kMaxBeams) {
+    return Error{"a scan must have 1 to 10000 beams, got " + std::to_string(beams)};
+  }
+  if (!in(g.angle_min, -7, 7) || !in(g.angle_increment, 1e-5, 4.0) ||
+      static_cast<double>(beams - 1) * g.angle_increment > 2.0 * geometry::kPi + 1e-6) {
+    return Error{"angles of a scan must rise within one turn, got " + std::to_string(beams) +
+                 " beams from " + std::to_string(g.angle_min) + " rad every " +
+                 std::to_string(g.angle_increment) + " rad"};
+  }
+  if (!(g.range_min >= 0.0 && g.range_min < g.range_max && g.range_max <= 1000.0)) {
+    return Error{"ranges of a scan must be 0 <= range_min < range_max <= 1000 m, got " +
+                 std::to_string(g.range_min) + " and " + std::to_string(g.range_max)};
+  }
+  std::size_t first = beams;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < beams; ++i) {
+    const double angle = g.angle_min + static_cast<double>(i) * g.angle_increment;
+    if (std::abs(angle) > config_.bearing_limit + 1e-9) continue;
+    first = std::min(first, i);
+    end = i + 1;
+  }
+  if (first >= end) return Error{"no beam of the scan lies within the bearing limit"};
+  geometry_ = g;
+  widest_ = static_cast<float>(std::tan(std::min(kWidest * g.angle_increment, 1.4)));
+  beams_ = beams;
+  first_ = first;
+  cos_.clear();
+  sin_.clear();
+  for (std::size_t i = first; i < end; ++i) {
+    const double angle = g.angle_min + static_cast<double>(i) * g.angle_increment;
+    cos_.push_back(static_cast<float>(std::cos(angle)));
+    sin_.push_back(static_cast<float>(std::sin(angle)));
+  }
+  x_.resize(cos_.size());
+  y_.resize(cos_.size());
+  away_.resize(cos_.size());
+  kind_.resize(cos_.size());
+  return {};
+}
+
+// Where each beam ends, seen from the upright sensor's place (4.2, 4.3), and whether that is an
+// obstacle.
+void ScanFilter::project(std::span<const float> ranges, const Pitch& pitch) {
+  const Eigen::Quaterniond lean = geometry::from_roll_pitch_yaw(0.0, pitch.angle, 0.0);
+  const Eigen::Quaterniond mount =
+      geometry::from_roll_pitch_yaw(0.0, config_.mount_pitch, config_.mount_yaw);
+  const Eigen::Vector3d place(config_.mount_x, config_.mount_y, config_.mount_z);
+  const Eigen::Quaterniond to_scan(Eigen::AngleAxisd(-config_.mount_yaw, Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3f origin =
+      (to_scan * (lean * place - Eigen::Vector3d(config_.mount_x, config_.mount_y, 0.0)) +
+       Eigen::Vector3d(0.0, 0.0, config_.axle_height))
+          .cast<float>();
+  const Eigen::Matrix3f turn = (to_scan * lean * mount).toRotationMatrix().cast<float>();
+
+  const float range_min = static_cast<float>(geometry_.range_min);
+  const float range_max = static_cast<float>(geometry_.range_max);
+  const float margin = static_cast<float>(config_.floor_margin);
+  const float margin_slope =
+      static_cast<float>(config_.floor_angle + config_.floor_time * std::abs(pitch.rate));
+  const float max_height = static_cast<float>(config_.max_height);
+  for (std::size_t i = 0; i < cos_.size(); ++i) {
+    const float range = ranges[first_ + i];
+    const bool echo = range <= range_max;
+    const float length = echo ? range : range_max;
+    x_[i] = origin.x() + length * (cos_[i] * turn(0, 0) + sin_[i] * turn(0, 1));
+    y_[i] = origin.y() + length * (cos_[i] * turn(1, 0) + sin_[i] * turn(1, 1));
+    away_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i]);
+    const float height = origin.z() + length * (cos_[i] * turn(2, 0) + sin_[i] * turn(2, 1));
+    if (!(range >= range_min)) {  // NaN too
+      kind_[i] = Kind::kUnknown;
+      ++counts_.invalid;
+    } else if (echo && height < margin + margin_slope * length) {
+      kind_[i] = Kind::kUnknown;
+      ++counts_.floor;
+    } else if (height > max_height || height < 0.0f) {
+      kind_[i] = Kind::kUnknown;
+      ++(height < 0.0f ? counts_.floor : counts_.high);
+    } else {
+      kind_[i] = echo ? Kind::kEnd : Kind::kFree;
+    }
+  }
+}
+
+// Whether beams i and i + 1 end on one surface, seen in rising angle.
+bool ScanFilter::belong_together(std::size_t i) const {
+  if (i + 1 >= kind_.size() || kind_[i] != kind_[i + 1]) return false;
+  if (kind_[i] == Kind::kUnknown) return false;
+  const float across = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
+  const float along = x_[i] * x_[i + 1] + y_[i] * y_[i + 1];
+  if (across <= 0.0f || across > widest_ * along) return false;
+  const float nearer = std::min(away_[i], away_[i + 1]);
+  return std::abs(away_[i] - away_[i + 1]) < kJump + kJumpShare * nearer;
+}
+
+// The first of the regular angles that is not clockwise of a point; the count of angles when there
+// is none.
+std::size_t ScanFilter::first_angle_after(float x, float y, std::size_t guess) const {
+  const float tolerance = kSameAngle * (std::abs(x) + std::abs(y));
+  const auto before = [&](std::size_t k) { return x * sin_[k] - y * cos_[k] < -tolerance; };
+  std::size_t k = guess;
+  while (k < cos_.size() && before(k)) ++k;
+  while (k > 0 && !before(k - 1)) --k;
+  return k;
+}
+
+// Whether a regular angle is counter-clockwise of an end, or past the last.
+bool ScanFilter::beyond(std::size_t k, std::size_t i) const {
+  const float tolerance = kSameAngle * (std::abs(x_[i]) + std::abs(y_[i]));
+  return k >= cos_.size() || x_[i] * sin_[k] - y_[i] * cos_[k] > tolerance;
+}
+
+void ScanFilter::join_ends(std::vector<float>& out) const {
+  for (std::size_t i = 0; i + 1 < kind_.size(); ++i) {
+    if (kind_[i] != Kind::kEnd || !belong_together(i)) continue;
+    const float dx = x_[i + 1] - x_[i];
+    const float dy = y_[i + 1] - y_[i];
+    const float across = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
+    for (std::size_t k = first_angle_after(x_[i], y_[i], i); !beyond(k, i + 1); ++k) {
+      const float rate = cos_[k] * dy - sin_[k] * dx;
+      if (rate > 0.0f) offer(out[k], across / rate);
+    }
+  }
+}
+
+std::size_t ScanFilter::nearest_angle(std::size_t i) const {
+  const auto off = [&](std::size_t k) { return std::abs(x_[i] * sin_[k] - y_[i] * cos_[k]); };
+  const std::size_t after = std::min(first_angle_after(x_[i], y_[i], i), cos_.size() - 1);
+  return after > 0 && off(after - 1) < off(after) ? after - 1 : after;
+}
+
+void ScanFilter::place_lone_ends(std::vector<float>& out) const {
+  bool before = false;  // belongs to the end before
+  for (std::size_t i = 0; i < kind_.size(); ++i) {
+    const bool after = config_.joined && belong_together(i);
+    if (kind_[i] == Kind::kEnd && !(before && after)) {
+      // The last end of a surface only fills what that surface left open.
+      float& place = out[nearest_angle(i)];
+      if (!(before || after) || std::isnan(place)) offer(place, away_[i]);
+    }
+    before = after;
+  }
+}
+
+void ScanFilter::fill_free(std::vector<float>& out) const {
+  const auto free = [](float& place) {
+    if (std::isnan(place)) place = kInfinity;
+  };
+  for (std::size_t i = 0; i < kind_.size(); ++i) {
+    if (kind_[i] != Kind::kFree) continue;
+    if (!config_.joined || !belong_together(i)) {
+      free(out[nearest_angle(i)]);
+      continue;
+    }
+    for (std::size_t k = first_angle_after(x_[i], y_[i], i); !beyond(k, i + 1); ++k) free(out[k]);
+  }
+}
+
+}  // namespace usher::scan_filter
