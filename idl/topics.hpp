@@ -34,7 +34,7 @@ inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTf{
     "tf", Kind::kStream, 32, 100, "segway_rmp amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
-    "tf_static", Kind::kLatched, 1, 0, "lms100 sensor_board", "Mounts of the sensors on base_link."};
+    "tf_static", Kind::kLatched, 1, 0, "lms100 sensor_board scan_filter", "Mounts of the sensors."};
 
 // --- Base and drive chain
 inline constexpr Topic<usher_msgs::msg::BaseStatus> kBaseStatus{

@@ -45,7 +45,7 @@ std::vector<PersonPlan> people() {
 
 std::vector<Location> locations() {
   std::vector<Location> result;
-  for (const YAML::Node& node : YAML::LoadFile(kSite + "locations.yaml")["locations"]) {
+  for (const YAML::Node& node : YAML::LoadFile(kSite + "site.yaml")["locations"]) {
     result.push_back({node["name"].as<std::string>(),
                       {node["x"].as<double>(), node["y"].as<double>(), node["yaw"].as<double>()}});
   }

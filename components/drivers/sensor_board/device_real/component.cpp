@@ -1,0 +1,51 @@
+#include "drivers/sensor_board/device_real/component.hpp"
+
+namespace usher::sensor_board {
+
+namespace {
+constexpr auto kTick = std::chrono::milliseconds(20);
+}
+
+Link::Parameters SensorBoardComponent::read_parameters(runtime::Parameters& parameters) {
+  Link::Parameters p;
+  p.median_window = static_cast<std::size_t>(
+      parameters.integer("median_window", "-", {1, 15}, static_cast<std::int64_t>(p.median_window),
+                         "Rolling window of each ultrasonic sensor."));
+  return p;
+}
+
+SensorBoardComponent::SensorBoardComponent(runtime::Host& host)
+    : host_(host),
+      publisher_(host),
+      link_(read_parameters(host.parameters())),
+      lost_(host.health().counter("messages: lost")),
+      damaged_(host.health().counter("frames: damaged")) {
+  const std::string line =
+      host.parameters().text("address", "serial:///dev/ttyACM0?baud=115200", "The board's line.");
+  stream_ = &host.open_stream(
+      line, {.on_open = [this] { link_.opened(now()); },
+             .on_bytes =
+                 [this](std::span<const std::uint8_t> bytes) {
+                   link_.received(bytes, now(),
+                                  [this](const Reading& reading) { publisher_.publish(reading); });
+                 },
+             .on_close =
+                 [this](const std::string& reason) {
+                   link_.closed();
+                   host_.health().set(runtime::HealthState::kDegraded, reason);
+                 }});
+  timer_ = host.timer("tick", kTick, [this](auto) { tick(); });
+}
+
+void SensorBoardComponent::tick() {
+  link_.tick(now());
+  const auto output = link_.take_output();
+  if (!output.empty()) stream_->write(output);
+  lost_ = link_.lost_messages();
+  damaged_ = link_.damaged();
+  const bool healthy = link_.healthy(now());
+  host_.health().set(healthy ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
+                     healthy ? "" : link_.reason(now()));
+}
+
+}  // namespace usher::sensor_board

@@ -1,0 +1,38 @@
+#include "drivers/sensor_board/device_sim/component.hpp"
+
+#include <algorithm>
+
+#include "wire/conversions.hpp"
+
+namespace usher::sensor_board {
+
+namespace {
+constexpr auto kSilence = std::chrono::milliseconds(200);
+}
+
+SensorBoardSimComponent::SensorBoardSimComponent(runtime::Host& host)
+    : host_(host),
+      publisher_(host),
+      rejected_(host.health().counter("readings: rejected")),
+      input_(host.input(
+          topics::kSimSensorBoard,
+          {.max_age = kSilence, .on_loss = "publishes nothing and says so"},
+          [this](const auto& message, const auto&) { take(message); },
+          [this] { host_.health().set(runtime::HealthState::kDegraded, "the board is silent"); })) {
+}
+
+void SensorBoardSimComponent::take(const usher_sim_msgs::msg::SensorBoardReading& message) {
+  if (message.ranges().size() != kSonars) {
+    ++rejected_;
+    return;
+  }
+  Reading reading;
+  reading.stamp = wire::from_message(message.header().stamp()).time_since_epoch();
+  std::copy(message.ranges().begin(), message.ranges().end(), reading.ranges.begin());
+  reading.whiskers = {message.front_left(), message.front_right(), message.back_left(),
+                      message.back_right()};
+  publisher_.publish(reading);
+  host_.health().set(runtime::HealthState::kOk);
+}
+
+}  // namespace usher::sensor_board
