@@ -10,9 +10,9 @@ void Visitor::see(const Screen& screen, double now) {
   if (!another) return;
   seen_at_ = now;
   answered_ = false;
-  if (screen.state == "guiding") follows_ = true;
-  if (screen.state == "arrived") arrived_ = true;
-  if (screen.state == "end" || screen.state == "failed") follows_ = false;
+  if (screen.state == "guide_active") follows_ = true;
+  if (screen.state == "guide_success") arrived_ = true;
+  if (screen.state == "end" || screen.state == "guide_error") follows_ = false;
 }
 
 std::optional<std::string> Visitor::answer(double now) {
