@@ -1,0 +1,24 @@
+#include "runtime/engine/test/counted_new.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace usher::runtime::test {
+namespace {
+
+std::atomic<std::uint64_t> allocations{0};
+
+}  // namespace
+
+std::uint64_t allocation_count() { return allocations; }
+
+}  // namespace usher::runtime::test
+
+void* operator new(std::size_t size) {
+  ++usher::runtime::test::allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }

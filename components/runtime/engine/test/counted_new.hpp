@@ -1,0 +1,10 @@
+#pragma once
+
+#include <cstdint>
+
+namespace usher::runtime::test {
+
+/// How often this program has called operator new, which counted_new.cpp replaces.
+std::uint64_t allocation_count();
+
+}  // namespace usher::runtime::test
