@@ -115,7 +115,7 @@ Status Costmap::set_static_map(const grid::OccupancyGrid& map) {
       !status.ok()) {
     return status;
   }
-  static_dirty_ = raster_.all();
+  static_stale_ = true;
   return {};
 }
 
@@ -127,7 +127,7 @@ Status Costmap::set_static_transform(const geometry::Pose2& map_T_window) {
   }
   if (map_T_window == map_T_window_) return {};
   map_T_window_ = map_T_window;
-  static_dirty_ = raster_.all();
+  static_stale_ = true;
   return {};
 }
 
@@ -144,26 +144,27 @@ Status Costmap::move_to(const geometry::Pose2& base) {
   const int dy = cell.y - raster_.height / 2;
   if (dx == 0 && dy == 0) return {};
   for (ObstacleLayer& layer : layers_) layer.shift(dx, dy);
-  // What the static layer must sample: what it still had to, and the strips that came into the
-  // window.
-  shift_cells(static_states_.values(), raster_.width, raster_.height, dx, dy, kUnseen);
-  const bool all_new = std::abs(dx) >= raster_.width || std::abs(dy) >= raster_.height;
-  static_dirty_ = all_new ? raster_.all() : static_dirty_.moved(-dx, -dy);
   raster_.first_x += dx;
   raster_.first_y += dy;
   const grid::GridGeometry geometry = window_geometry(raster_);
   static_states_.set_origin(geometry.origin_x, geometry.origin_y);
-  if (!all_new) {
-    const CellRect columns = dx > 0 ? CellRect{raster_.width - dx, 0, raster_.width, raster_.height}
-                                    : CellRect{0, 0, -dx, raster_.height};
-    const CellRect rows = dy > 0 ? CellRect{0, raster_.height - dy, raster_.width, raster_.height}
-                                 : CellRect{0, 0, raster_.width, -dy};
-    static_layer_.sample(map_T_window_, raster_, columns, static_states_);
-    static_layer_.sample(map_T_window_, raster_, rows, static_states_);
-  }
+  shift_cells(static_states_.values(), raster_.width, raster_.height, dx, dy, kUnseen);
+  if (!static_stale_) sample_entered(dx, dy);
   moving_ = true;
   dirty_ = raster_.all();
   return {};
+}
+
+/// Samples the static map in the strips that came into the window.
+void Costmap::sample_entered(int dx, int dy) {
+  const int width = raster_.width;
+  const int height = raster_.height;
+  const CellRect columns =
+      dx > 0 ? CellRect{width - dx, 0, width, height} : CellRect{0, 0, -dx, height};
+  const CellRect rows =
+      dy > 0 ? CellRect{0, height - dy, width, height} : CellRect{0, 0, width, -dy};
+  static_layer_.sample(map_T_window_, raster_, columns, static_states_);
+  static_layer_.sample(map_T_window_, raster_, rows, static_states_);
 }
 
 Status Costmap::observe(LayerId layer, const RangeObservation& observation) {
@@ -187,20 +188,21 @@ void Costmap::forget() {
 }
 
 void Costmap::invalidate() {
-  static_dirty_ = raster_.all();
+  static_stale_ = true;
   dirty_ = raster_.all();
 }
 
 const grid::Grid<std::uint8_t>& Costmap::update(double now) {
   for (ObstacleLayer& layer : layers_) touch(layer.expire(now));
   clear_footprint();
-  static_layer_.sample(map_T_window_, raster_, static_dirty_, static_states_);
-  touch(static_dirty_.within(raster_.all()));
+  if (std::exchange(static_stale_, false)) {
+    static_layer_.sample(map_T_window_, raster_, raster_.all(), static_states_);
+    touch(raster_.all());
+  }
   for (int y = dirty_.y0; y < dirty_.y1; ++y) combine_row(y, dirty_.x0, dirty_.x1);
   changed_ = inflation_.update(dirty_, master_);
   const grid::GridGeometry geometry = window_geometry(raster_);
   master_.set_origin(geometry.origin_x, geometry.origin_y);
-  static_dirty_ = {};
   dirty_ = {};
   moved_ = std::exchange(moving_, false);
   return master_;

@@ -102,6 +102,7 @@ class Costmap {
   Costmap(CostmapConfig config, Footprint footprint);
   void touch(const CellRect& cells) { dirty_ = dirty_.united(cells); }
   void clear_footprint();
+  void sample_entered(int dx, int dy);
   void combine_row(int y, int x0, int x1);
 
   CostmapConfig config_;
@@ -110,7 +111,7 @@ class Costmap {
   StaticLayer static_layer_;
   geometry::Pose2 map_T_window_;
   grid::Grid<std::uint8_t> static_states_;
-  CellRect static_dirty_;
+  bool static_stale_ = true;  // the whole window is to be sampled anew
   std::vector<ObstacleLayer> layers_;
   Inflation inflation_;
   grid::Grid<std::uint8_t> master_;

@@ -130,8 +130,8 @@ CellRect Inflation::update(const CellRect& changed, grid::Grid<std::uint8_t>& ma
 }
 
 // Distances within the row for whole blocks. The scratch rows start `reach` cells left of the first
-// block, since those cells can reach into it, and are padded by another `reach` on both sides for
-// the widest step.
+// block and end as far right of the last, since those cells can reach into them. Another `reach` on
+// both sides can be read by a step, but is too far away to matter.
 void Inflation::measure_row(int y, int first_block, int last_block) {
   const int first = first_block * kBlock;
   const int count = (last_block - first_block) * kBlock;
@@ -148,9 +148,7 @@ void Inflation::measure_row(int y, int first_block, int last_block) {
   const int span = count + 2 * reach_;
   std::uint8_t* a = scratch_a_.data() + reach_;
   std::uint8_t* b = scratch_b_.data() + reach_;
-  std::memset(a - reach_, none_, static_cast<std::size_t>(span + 2 * reach_));
-  std::memset(b + span, none_,
-              static_cast<std::size_t>(reach_));  // an earlier, wider span may lie there
+  std::memset(a, none_, static_cast<std::size_t>(span));
   seed_(states + from, none_, to - from, a + (from - (first - reach_)));
   for (const int step : steps_) {
     spread_(a, step, span, b);

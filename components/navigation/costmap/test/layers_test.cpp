@@ -129,6 +129,14 @@ TEST(ObstacleLayer, MarksAnEchoThatAnotherBeamOfTheScanPasses) {
   EXPECT_EQ(state(layer, 60), kSeenOccupied);
 }
 
+TEST(ObstacleLayer, ClearsTheLastCellOfABeamThatPassesNextToOneThatEndsThere) {
+  ObstacleLayer layer(config(), raster());
+  const std::vector<Point2> two = {{1.0, 0.0}, {1.0, 0.0}};
+  const std::vector<float> ranges = {2.99F, 3.05F};  // both rays end in cell 80
+  ASSERT_TRUE(layer.observe({kSensor, two, ranges, 0.0}, raster()).ok());
+  EXPECT_EQ(state(layer, 80), kSeenFree);
+}
+
 TEST(ObstacleLayer, RefusesWhatIsNoScan) {
   ObstacleLayer layer(config(), raster());
   const std::vector<float> two = {1.0F, 1.0F};
