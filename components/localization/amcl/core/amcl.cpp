@@ -14,11 +14,19 @@
 namespace usher::amcl {
 namespace {
 
-constexpr double kRecoveryRatio =
-    2.0;  // [gutmann2002]: how far the likelihood must fall before hypotheses are drawn
 constexpr double kSearchShare = 0.1;    // of hypotheses among the particles during a global start
 constexpr double kWonWeight = 0.95;     // the cluster of this share ends a global start
 constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
+
+// Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
+constexpr double kLostRatio = 0.5;    // the short-term mean, anywhere on the map [gutmann2002]
+constexpr double kDoubtRatio = 0.7;   // one scan, near the estimate
+constexpr double kNearbyShare = 0.2;  // of hypotheses among the particles then
+constexpr double kNearbySigma =
+    0.5;  // [m] wheels that slipped, or counted backwards, between two updates
+constexpr double kNearbyYawSigma = 0.2;  // [rad]
+constexpr std::size_t kNearbyCandidates = 1000;
+constexpr std::size_t kGuidedEvery = 5;  // particles that follow the refinement of the estimate
 
 bool finite(const LaserBeams& scan) {
   return scan.base_T_laser.finite() && std::isfinite(scan.angle_min) &&
@@ -39,8 +47,8 @@ Amcl::Amcl(const AmclConfig& config, std::uint64_t seed, cpu::Simd simd)
   assert(config.validate().ok());
   const std::size_t most = most_particles(config);
   for (Particles* particles : {&particles_, &next_}) particles->reserve(most);
-  candidates_.reserve(config.search_candidates);
-  likelihood_.reserve(std::max(most, config.search_candidates));
+  candidates_.reserve(std::max(config.search_candidates, kNearbyCandidates));
+  log_likelihood_.reserve(std::max({most, config.search_candidates, kNearbyCandidates}));
   for (auto* indices : {&bin_, &picked_}) indices->reserve(most);
   beams_.reserve(config.max_beams);
   dense_beams_.reserve(std::max<std::size_t>(config.refine_beams, 2));
@@ -73,7 +81,7 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
   }
   spread_pending_ = searching_ = false;
   force_update_ = true;
-  slow_likelihood_ = fast_likelihood_ = 0.0;
+  likelihood_updates_ = 0.0;
   estimate_ = Estimate{map_T_base, last_odom_T_base_.value_or(geometry::Pose2{}), covariance, {}};
   return {};
 }
@@ -81,7 +89,7 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
 void Amcl::start_globally() {
   particles_.resize(0);
   spread_pending_ = force_update_ = true;
-  slow_likelihood_ = fast_likelihood_ = 0.0;
+  likelihood_updates_ = 0.0;
   estimate_.reset();
 }
 
@@ -90,6 +98,13 @@ geometry::Pose2 Amcl::random_free_pose() {
   const double x = map_.origin_x + (cell.x + random_.uniform()) * map_.resolution;
   const double y = map_.origin_y + (cell.y + random_.uniform()) * map_.resolution;
   return {x, y, random_.uniform(-geometry::kPi, geometry::kPi)};
+}
+
+geometry::Pose2 Amcl::random_nearby_pose() {
+  const geometry::Pose2& center = estimate_->map_T_base;
+  const double x = random_.gaussian(center.x, kNearbySigma);
+  const double y = random_.gaussian(center.y, kNearbySigma);
+  return {x, y, geometry::normalized(random_.gaussian(center.yaw, kNearbyYawSigma))};
 }
 
 void Amcl::spread_over_free_space() {
@@ -137,14 +152,15 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
 
   if (spread_pending_) spread_over_free_space();
   scan_likelihood(scan, particles_);
-  const double likelihood = weigh();
+  const double log_likelihood = weigh();
   find_bins();
   const Cluster cluster = heaviest_cluster();
   searching_ = searching_ && cluster.weight < kWonWeight;
   make_estimate(cluster, odom_T_base);
-  result.injected = recovery_share(likelihood);
-  if (++updates_since_resampling_ >= config_.resample_interval || result.injected > 0.0) {
-    resample(scan, result.injected);
+  const Recovery recovery = this->recovery(log_likelihood);
+  result.injected = recovery.share;
+  if (++updates_since_resampling_ >= config_.resample_interval || recovery.share > 0.0) {
+    resample(scan, recovery, cluster);
     result.resampled = true;
     updates_since_resampling_ = 0;
   }
@@ -154,39 +170,48 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
 }
 
 void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {
-  likelihood_.resize(particles.size());
+  log_likelihood_.resize(particles.size());
   if (config_.sensor_model == SensorModel::kLikelihoodField) {
-    field_.likelihood(particles, beams_, likelihood_, simd_);
+    field_.log_likelihood(particles, beams_, log_likelihood_, simd_);
   } else {
-    beam_model_likelihood(field_.distances(), config_.sensor,
-                          std::min(config_.sensor.max_range, scan.range_max), particles,
-                          scan.base_T_laser, beams_, likelihood_);
+    const double max_range = std::min(config_.sensor.max_range, scan.range_max);
+    beam_model_log_likelihood(field_.distances(), config_.sensor, max_range, particles,
+                              scan.base_T_laser, beams_, log_likelihood_);
   }
 }
 
-/// Multiplies the weights with the scan's likelihood and normalizes them; returns the belief's mean
-/// likelihood.
+/// Multiplies the weights with the scan's likelihood and normalizes them; returns how well the
+/// belief then explains a beam of the scan, its mean log likelihood.
 double Amcl::weigh() {
-  const auto beams = static_cast<double>(beams_.size());
-  double mean = 0.0;
+  const double evidence = std::min(static_cast<double>(beams_.size()), config_.independent_beams);
+  const double best = *std::max_element(log_likelihood_.begin(), log_likelihood_.end());
   double total = 0.0;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    mean += particles_.weight[i] * likelihood_[i];
-    particles_.weight[i] *= 1.0 + beams * likelihood_[i];
+    particles_.weight[i] *= std::exp(evidence * (log_likelihood_[i] - best));
     total += particles_.weight[i];
   }
-  for (double& weight : particles_.weight) weight /= total;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    particles_.weight[i] /= total;
+    mean += particles_.weight[i] * log_likelihood_[i];
+  }
   return mean;
 }
 
-/// Augmented MCL: the share of new hypotheses [thrun2005, table 8.3].
-double Amcl::recovery_share(double likelihood) {
-  if (searching_) return kSearchShare;
-  if (config_.recovery_slow <= 0.0) return 0.0;
-  if (slow_likelihood_ <= 0.0) slow_likelihood_ = fast_likelihood_ = likelihood;
-  slow_likelihood_ += config_.recovery_slow * (likelihood - slow_likelihood_);
-  fast_likelihood_ += config_.recovery_fast * (likelihood - fast_likelihood_);
-  return std::max(0.0, 1.0 - kRecoveryRatio * fast_likelihood_ / slow_likelihood_);
+/// Augmented MCL [thrun2005, table 8.3], with a search nearby as soon as a scan fits badly.
+Amcl::Recovery Amcl::recovery(double log_likelihood) {
+  if (searching_) return {Recovery::Where::kEverywhere, kSearchShare};
+  if (config_.recovery_slow <= 0.0) return {};
+  const double likelihood = std::exp(log_likelihood);
+  likelihood_updates_ += 1.0;  // plain means until the decay is slower than 1 / n
+  slow_likelihood_ +=
+      std::max(config_.recovery_slow, 1.0 / likelihood_updates_) * (likelihood - slow_likelihood_);
+  fast_likelihood_ +=
+      std::max(config_.recovery_fast, 1.0 / likelihood_updates_) * (likelihood - fast_likelihood_);
+  const double share = 1.0 - fast_likelihood_ / (kLostRatio * slow_likelihood_);
+  if (share > 0.0) return {Recovery::Where::kEverywhere, share};
+  if (likelihood < kDoubtRatio * slow_likelihood_) return {Recovery::Where::kNearby, kNearbyShare};
+  return {};
 }
 
 void Amcl::find_bins() {
@@ -205,7 +230,8 @@ Amcl::Cluster Amcl::heaviest_cluster() {
   const auto statistics = estimation::pose_statistics(
       particles_.size(), [&](std::size_t i) { return particles_.pose(i); },
       [&](std::size_t i) { return cluster_of[bin_[i]] == best ? particles_.weight[i] : 0.0; });
-  return {statistics.mean, statistics.covariance, cluster_weight_[best]};
+  return {statistics.mean, statistics.covariance, cluster_weight_[best],
+          static_cast<std::uint32_t>(best)};
 }
 
 void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base) {
@@ -262,19 +288,24 @@ std::size_t Amcl::adapted_count() {
   return std::clamp(static_cast<std::size_t>(bound), config_.min_particles, config_.max_particles);
 }
 
-void Amcl::resample(const LaserBeams& scan, double injected_share) {
+void Amcl::resample(const LaserBeams& scan, const Recovery& recovery, const Cluster& cluster) {
   const std::size_t count = adapted_count();
   const auto injected =
       std::min<std::size_t>(config_.search_hypotheses,
-                            static_cast<std::size_t>(injected_share * static_cast<double>(count)));
+                            static_cast<std::size_t>(recovery.share * static_cast<double>(count)));
   picked_.resize(count - injected);
   estimation::low_variance_resample(particles_.weight, random_.uniform(), picked_);
   next_.resize(count);
   const double weight = 1.0 / static_cast<double>(count);
-  for (std::size_t i = 0; i < picked_.size(); ++i)
-    next_.set(i, particles_.pose(picked_[i]), weight);
+  const geometry::Pose2 refinement = estimate_->map_T_base * inverse(cluster.mean);
+  const auto cluster_of = histogram_.clusters();
+  for (std::size_t i = 0; i < picked_.size(); ++i) {
+    const std::uint32_t from = picked_[i];
+    const bool guided = i % kGuidedEvery == 0 && cluster_of[bin_[from]] == cluster.number;
+    next_.set(i, guided ? refinement * particles_.pose(from) : particles_.pose(from), weight);
+  }
   if (injected > 0) {
-    search(scan, injected);
+    search(scan, recovery, injected);
     for (std::size_t i = 0; i < injected; ++i)
       next_.set(picked_.size() + i, candidates_.pose(order_[i]), weight);
   }
@@ -283,14 +314,18 @@ void Amcl::resample(const LaserBeams& scan, double injected_share) {
 
 /// Tries random poses against the scan and leaves the best `count`, refined, as
 /// candidates_[order_[0 .. count - 1]].
-void Amcl::search(const LaserBeams& scan, std::size_t count) {
-  candidates_.resize(config_.search_candidates);
-  for (std::size_t i = 0; i < candidates_.size(); ++i) candidates_.set(i, random_free_pose(), 1.0);
+void Amcl::search(const LaserBeams& scan, const Recovery& recovery, std::size_t count) {
+  const bool nearby = recovery.where == Recovery::Where::kNearby;
+  candidates_.resize(nearby ? kNearbyCandidates : config_.search_candidates);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    candidates_.set(i, nearby ? random_nearby_pose() : random_free_pose(), 1.0);
+  }
   scan_likelihood(scan, candidates_);
   order_.resize(candidates_.size());
   std::iota(order_.begin(), order_.end(), 0U);
   const auto better = [&](std::uint32_t a, std::uint32_t b) {
-    return likelihood_[a] != likelihood_[b] ? likelihood_[a] > likelihood_[b] : a < b;
+    return log_likelihood_[a] != log_likelihood_[b] ? log_likelihood_[a] > log_likelihood_[b]
+                                                    : a < b;
   };
   std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
                     order_.end(), better);

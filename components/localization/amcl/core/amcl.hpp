@@ -66,11 +66,15 @@ struct UpdateResult {
 
 /// Adaptive Monte-Carlo localization [thrun2005, chapter 8]: particles moved by odometry, weighted
 /// by the scan (likelihood field or beam model), resampled with low variance, their number adapted
-/// to the spread of the belief [fox2003kld], with recovery from being lost or carried away
-/// (augmented MCL): while the scan likelihood of now is less than half of its long-term mean
-/// [gutmann2002], random poses of the free space are tried against the scan and the best of them,
-/// refined, join the particles. The published pose is the mean of the heaviest cluster of
-/// particles, refined on the scan by a few Gauss-Newton steps.
+/// to the spread of the belief [fox2003kld]. The published pose is the mean of the heaviest cluster
+/// of particles, refined on the scan by a few Gauss-Newton steps; every fifth particle of that
+/// cluster follows the refinement.
+///
+/// Recovery: the likelihood of scans has a short-term and a long-term mean (augmented MCL). While
+/// the short one is below half of the long one [gutmann2002], the robot was carried away: random
+/// poses of the free space are tried against the scan and the best of them, refined, join the
+/// particles. After a single scan that fits badly, the same is done with poses near the estimate:
+/// wheels slip, and some odometries count backwards driving as forwards.
 ///
 /// Deterministic: the same seed and inputs give the same estimates on every instruction set. No
 /// allocation in update() once its buffers have grown.
@@ -105,20 +109,28 @@ class Amcl {
   struct Cluster {
     geometry::Pose2 mean;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    double weight = 0.0;  // share of the belief
+    double weight = 0.0;       // share of the belief
+    std::uint32_t number = 0;  // of the histogram
+  };
+
+  /// New hypotheses to draw: where, and what share of the particles.
+  struct Recovery {
+    enum class Where { kNowhere, kNearby, kEverywhere } where = Where::kNowhere;
+    double share = 0.0;
   };
 
   bool due(const geometry::Pose2& base0_T_base1) const;
   void spread_over_free_space();
   geometry::Pose2 random_free_pose();
+  geometry::Pose2 random_nearby_pose();
   void scan_likelihood(const LaserBeams& scan, const Particles& particles);
   double weigh();
-  double recovery_share(double likelihood);
+  Recovery recovery(double log_likelihood);
   void find_bins();
   Cluster heaviest_cluster();
-  void resample(const LaserBeams& scan, double injected_share);
+  void resample(const LaserBeams& scan, const Recovery& recovery, const Cluster& cluster);
   std::size_t adapted_count();
-  void search(const LaserBeams& scan, std::size_t count);
+  void search(const LaserBeams& scan, const Recovery& recovery, std::size_t count);
   void make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base);
   Quality quality_of(const geometry::Pose2& pose, const Cluster& cluster) const;
 
@@ -130,7 +142,7 @@ class Amcl {
   LikelihoodField field_;
 
   Particles particles_, next_, candidates_;
-  std::vector<double> likelihood_;
+  std::vector<double> log_likelihood_;
   std::vector<Beam> beams_, dense_beams_;
   estimation::PoseHistogram histogram_;
   std::vector<std::uint32_t> bin_;  // of each particle
@@ -144,6 +156,7 @@ class Amcl {
   bool searching_ = false;       // since a global start, until one cluster has won
   int updates_since_resampling_ = 0;
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;
+  double likelihood_updates_ = 0.0;
   std::optional<Estimate> estimate_;
 };
 

@@ -29,6 +29,10 @@ struct AmclConfig {
   SensorModel sensor_model = SensorModel::kLikelihoodField;
   SensorParameters sensor;
   std::size_t max_beams = 60;
+  /// How many independent measurements a scan is worth: its beams hit the same walls and share the
+  /// map's errors, so their plain product would make the filter far too sure. The mean log
+  /// likelihood of a beam counts this often.
+  double independent_beams = 10.0;
   MotionNoise noise;
 
   std::size_t min_particles = 200;

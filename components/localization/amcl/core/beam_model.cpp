@@ -29,9 +29,8 @@ void beam_model_log_likelihood(const grid::DistanceField& field, const SensorPar
     double sum = 0.0;
     for (const Beam& beam : beams) {
       const auto hit = field.cast_ray(laser, map_T_base.yaw + beam.angle, max_range);
-      const double p =
-          beam_likelihood(parameters, max_range, beam.range, hit ? hit->range : max_range);
-      sum += p * p * p;
+      const double expected = hit ? hit->range : max_range;
+      sum += std::log(beam_likelihood(parameters, max_range, beam.range, expected));
     }
     log_likelihood[i] = sum * share;
   }

@@ -9,10 +9,10 @@ namespace usher::amcl {
 /// Noise of wheel odometry [thrun2005, table 5.6]: the variance of each part of a step is the sum
 /// of alpha times the square of its cause.
 struct MotionNoise {
-  double alpha1 = 0.2;  ///< [rad^2/rad^2] rotation from rotation
-  double alpha2 = 0.2;  ///< [rad^2/m^2] rotation from translation
-  double alpha3 = 0.2;  ///< [m^2/m^2] translation from translation
-  double alpha4 = 0.2;  ///< [m^2/rad^2] translation from rotation
+  double alpha1 = 0.1;  ///< [rad^2/rad^2] rotation from rotation
+  double alpha2 = 0.1;  ///< [rad^2/m^2] rotation from translation
+  double alpha3 = 0.1;  ///< [m^2/m^2] translation from translation
+  double alpha4 = 0.1;  ///< [m^2/rad^2] translation from rotation
 
   bool operator==(const MotionNoise&) const = default;
 };

@@ -40,10 +40,11 @@ struct SensorUpdate {
 
   void operator()() {
     choose_beams(as_beams(ranges), max_beams, 30.0, false, beams);
-    field.likelihood(particles, beams, likelihood);
+    field.log_likelihood(particles, beams, likelihood);
+    const double best = *std::max_element(likelihood.begin(), likelihood.end());
     double total = 0.0;
     for (std::size_t i = 0; i < likelihood.size(); ++i) {
-      particles.weight[i] *= 1.0 + static_cast<double>(beams.size()) * likelihood[i];
+      particles.weight[i] *= std::exp(AmclConfig{}.independent_beams * (likelihood[i] - best));
       total += particles.weight[i];
     }
     for (double& weight : particles.weight) weight /= total;
