@@ -46,6 +46,15 @@ std::string object(const Map& map, const Value& value_of) {
   return out + "}";
 }
 
+/// Adds the metrics that are true or false to an object of numbers.
+std::string with_flags(std::string object, const std::map<std::string, bool>& flags) {
+  object.pop_back();
+  for (const auto& [key, flag] : flags) {
+    object += (object.size() > 1 ? ", " : "") + quoted(key) + ": " + (flag ? "true" : "false");
+  }
+  return object + "}";
+}
+
 bool holds(const ResultSheet::Target& target, double value) {
   return target.bound == Bound::kAtMost ? value <= target.value : value >= target.value;
 }
@@ -53,6 +62,9 @@ bool holds(const ResultSheet::Target& target, double value) {
 }  // namespace
 
 bool ResultSheet::pass() const {
+  for (const auto& [key, flag] : flags) {
+    if (!flag) return false;
+  }
   for (const auto& [key, target] : targets) {
     const auto metric = metrics.find(key);
     if (metric == metrics.end() || !holds(target, metric->second)) return false;
@@ -63,7 +75,7 @@ bool ResultSheet::pass() const {
 std::string ResultSheet::json() const {
   const auto plain = [](double value) { return value; };
   return "{\"name\": " + quoted(name) + ", \"input\": " + quoted(input) +
-         ",\n \"metrics\": " + object(metrics, plain) +
+         ",\n \"metrics\": " + with_flags(object(metrics, plain), flags) +
          ",\n \"published\": " + object(published, plain) +
          ",\n \"targets\": " + object(targets, [](const Target& target) { return target.value; }) +
          ",\n \"pass\": " + (pass() ? "true" : "false") + "}\n";
@@ -71,6 +83,7 @@ std::string ResultSheet::json() const {
 
 std::string ResultSheet::markdown() const {
   Table table({"figure", "found", "target", "published"});
+  for (const auto& [key, flag] : flags) table.add({key, flag ? "yes" : "no", "yes", ""});
   for (const auto& [key, value] : metrics) {
     const auto target = targets.find(key);
     const auto other = published.find(key);

@@ -21,6 +21,7 @@ struct ResultSheet {
   std::string name;
   std::string input;
   std::map<std::string, double> metrics;
+  std::map<std::string, bool> flags;  ///< metrics that are true or false; each must be true to pass
   std::map<std::string, double> published;  ///< what others reach
   std::map<std::string, Target> targets;
 

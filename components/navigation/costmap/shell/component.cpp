@@ -48,8 +48,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   static_in_local_ = parameters.flag("static_in_local", true,
                                      "The static map fills what no sensor has seen in the window.");
   settings_.inflation_radius =
-      parameters.number("inflation_radius", "m", {0.1, 3}, 0.6, "No cost beyond this distance.");
-  settings_.cost_scaling = parameters.number("cost_scaling", "-", {0, 100}, 6.0,
+      parameters.number("inflation_radius", "m", {0.1, 3}, 0.75, "No cost beyond this distance.");
+  settings_.cost_scaling = parameters.number("cost_scaling", "-", {0, 100}, 4.0,
                                              "How fast costs fall with distance, per meter.");
   settings_.unseen =
       parameters.flag("unknown_is_free", true, "Space that nobody has seen yet costs nothing.")

@@ -1,0 +1,81 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/installation.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+/// Becomes another program of the installation.
+int become(const std::string& program, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  std::cout << std::flush;
+  execv(program.c_str(), pointers.data());
+  return fail("cannot run " + program + ": " + std::strerror(errno));
+}
+
+constexpr const char* kBenchPrefix = "usher-bench-";
+
+std::vector<std::string> benchmarks(const std::string& programs) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(programs)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kBenchPrefix)) names.push_back(name.substr(std::strlen(kBenchPrefix)));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+int bench(const std::string& name, bool list, const std::vector<std::string>& rest) {
+  const auto installation = Installation::of_this_program();
+  const auto names = benchmarks(installation.programs);
+  if (list || name.empty()) {
+    for (const auto& known : names) std::cout << known << "\n";
+    return name.empty() && !list ? fail("name a benchmark of the list above") : 0;
+  }
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    return fail("unknown benchmark '" + name + "'; see usher bench --list");
+  return become(installation.programs + "/" + kBenchPrefix + name, rest);
+}
+
+}  // namespace
+
+void add_measuring_commands(CLI::App& app, int& exit_code) {
+  auto name = std::make_shared<std::string>();
+  auto list = std::make_shared<bool>(false);
+  auto* bench_command = app.add_subcommand(
+      "bench", "Measure performance: usher bench NAME [--json] [--instructions]");
+  bench_command->add_option("name", *name, "Which one");
+  bench_command->add_flag("--list", *list, "Name them all");
+  bench_command->allow_extras();
+  bench_command->callback(
+      [=, &exit_code] { exit_code = bench(*name, *list, bench_command->remaining()); });
+
+  auto* experiment_command = app.add_subcommand(
+      "experiment",
+      "Run an experiment: usher experiment NAME [--seeds N] [--out DIR]; --list names them all");
+  experiment_command->prefix_command();
+  experiment_command->callback([=, &exit_code] {
+    exit_code = become(Installation::of_this_program().programs + "/usher-experiment",
+                       experiment_command->remaining());
+  });
+}
+
+}  // namespace usher::operations

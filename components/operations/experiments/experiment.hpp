@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "operations/command_line/installation.hpp"
+#include "operations/results/result_sheet.hpp"
+
+namespace usher::operations {
+
+/// What every experiment is given.
+struct ExperimentOptions {
+  int seeds = 0;     ///< 0 = the experiment's own number
+  std::string out;   ///< folder for result.json, table.md, *.csv, *.png; exists
+  std::string data;  ///< folder with real data, empty = none
+  std::string only;  ///< one of the experiment's inputs; empty = all
+  Installation installation;
+};
+
+struct Experiment {
+  const char* name;
+  const char* text;
+  /// The error says why it could not run; a sheet that does not pass is a result.
+  std::function<Result<ResultSheet>(const ExperimentOptions&)> run;
+};
+
+Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);
+
+/// `usher map from-log`: a map from a CARMEN log with reference poses.
+int map_from_log(const std::string& log, const std::string& reference, const std::string& yaml,
+                 int every);
+
+/// One line that is rewritten: "17 of 100  ...".
+void show_progress(const std::string& line);
+
+}  // namespace usher::operations

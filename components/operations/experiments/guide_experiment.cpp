@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include "foundation/grid/map_file.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/experiment.hpp"
+#include "operations/experiments/lockstep_run.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using std::chrono::seconds;
+
+constexpr int kSeeds = 100;
+constexpr auto kLongest = seconds(300);
+constexpr double kArrival = 0.4;  // [m]
+constexpr double kVisitor = 3.5;  // [m]
+
+struct Visit {
+  std::string destination;
+  bool arrived = false;
+  std::string outcome;
+  double simulated = 0.0, wall = 0.0;  // [s]
+  RunRecord::Summary summary;
+  std::uint64_t digest = 0;
+};
+
+/// The places of the site, as the navigator was given them.
+std::vector<std::string> places(const Deployment& deployment) {
+  std::vector<std::string> names;
+  for (const auto& file : deployment.files) {
+    for (const auto& value : file.values) {
+      if (value.name != "site.locations") continue;
+      const auto tree = parse_tree(value.yaml, value.origin);
+      if (!tree) continue;
+      for (const auto& item : tree->items) {
+        if (const auto* name = item.find("name")) names.push_back(name->scalar);
+      }
+      return names;
+    }
+  }
+  return names;
+}
+
+void set_destination(Deployment& deployment, const std::string& place) {
+  for (auto& file : deployment.files) {
+    if (file.component != "visitor") continue;
+    std::erase_if(file.values, [](const auto& value) { return value.name == "destination"; });
+    file.values.push_back({"destination", place, "experiment guide"});
+  }
+}
+
+Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64_t seed,
+                    const std::string& picture, const grid::OccupancyGrid* map) {
+  set_destination(deployment, place);
+  auto run = LockstepRun::create(deployment, seed);
+  if (!run) return Error{run.error()};
+  Visit visit;
+  visit.destination = place;
+  const auto start = std::chrono::steady_clock::now();
+  auto& world = (*run)->world();
+  const auto& record = (*run)->record();
+  const auto over = [&] {
+    return !record.dialogue().empty() &&
+           (record.dialogue().back() == "end" || record.dialogue().back() == "guide_error");
+  };
+  while (world.elapsed() < kLongest && !over()) world.run_for(std::chrono::milliseconds(500));
+  visit.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  visit.simulated = runtime::seconds(world.elapsed());
+  visit.summary = record.summary();
+  visit.digest = world.digest();
+  const auto truth = record.truth();
+  const auto person = record.person("visitor");
+  const bool served = std::find(record.dialogue().begin(), record.dialogue().end(),
+                                "guide_success") != record.dialogue().end();
+  if (truth && person && record.navigation()) {
+    const auto& goal = record.navigation()->goal().pose().position();
+    visit.arrived = served && std::hypot(truth->x - goal.x(), truth->y - goal.y()) < kArrival &&
+                    (truth->position() - *person).norm() < kVisitor;
+  }
+  visit.outcome = record.dialogue().empty() ? "no dialogue" : record.dialogue().back();
+  if (record.navigation() && !record.navigation()->reason().empty())
+    visit.outcome += ": " + record.navigation()->reason();
+  if (!picture.empty() && map != nullptr) {
+    if (auto drawn = draw_run(record, *map, "seed " + std::to_string(seed) + ": " + place, picture);
+        !drawn)
+      return Error{drawn.error()};
+  }
+  return visit;
+}
+
+/// The map that the robot was given.
+std::optional<grid::OccupancyGrid> site_map(const Deployment& deployment) {
+  for (const auto& file : deployment.files) {
+    for (const auto& value : file.values) {
+      if (value.name != "site.map") continue;
+      if (auto map = grid::load_map(value.yaml)) return std::move(map).value();
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
+  const auto deployment =
+      load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
+  if (!deployment) return Error{deployment.error()};
+  const auto names = places(*deployment);
+  if (names.empty()) return Error{"the site has no locations"};
+  const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
+
+  std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));
+  std::atomic<int> next{0}, done{0};
+  std::mutex mutex;
+  std::string error;
+  const auto work = [&] {
+    for (int i = next++; i < seeds; i = next++) {
+      const auto seed = static_cast<std::uint64_t>(i + 1);
+      // Every place gets its turn; the first one is where the robot stands.
+      const auto& place = names[1 + static_cast<std::size_t>(i) % (names.size() - 1)];
+      auto result = visit(*deployment, place, seed, "", nullptr);
+      const std::lock_guard lock(mutex);
+      if (!result) {
+        error = result.error();
+        next = seeds;
+        return;
+      }
+      if (!result->arrived || result->summary.contacts > 0) {
+        show_progress("");
+        std::printf(
+            "seed %d to %s: %s, %u contacts %s (replay: usher experiment guide --only %d)\n", i + 1,
+            place.c_str(), result->arrived ? "arrived" : result->outcome.c_str(),
+            result->summary.contacts, result->summary.contact_with.c_str(), i + 1);
+      }
+      visits[static_cast<std::size_t>(i)] = std::move(result).value();
+      show_progress(std::to_string(++done) + " of " + std::to_string(seeds) + " visits");
+    }
+  };
+  if (!options.only.empty()) {
+    next = std::atoi(options.only.c_str()) - 1;
+    work();
+  } else {
+    std::vector<std::jthread> threads;
+    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
+      threads.emplace_back(work);
+  }
+  show_progress("");
+  if (!error.empty()) return Error{error};
+
+  ResultSheet sheet;
+  sheet.name = "guide";
+  sheet.input = std::to_string(seeds) + " seeded visits in the office, lock-step";
+  Table table({"seed", "to", "arrived", "s", "m", "m/s", "clearance m", "error mean m",
+               "error max m", "contacts", "touches", "outcome"});
+  std::string csv =
+      "seed,destination,arrived,seconds,path,speed,clearance,error_mean,error_max,contacts,"
+      "touches\n";
+  double arrivals = 0, contacts = 0, touches = 0, error_sum = 0, estimates = 0, worst_error = 0,
+         simulated = 0, wall = 0, path = 0, time = 0;
+  double clearance = 1e9;
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    if (!visits[i]) continue;
+    const Visit& v = *visits[i];
+    const auto& s = v.summary;
+    arrivals += v.arrived ? 1 : 0;
+    contacts += s.contacts;
+    touches += s.touches;
+    error_sum += s.localization_mean * static_cast<double>(s.estimates);
+    estimates += static_cast<double>(s.estimates);
+    worst_error = std::max(worst_error, s.localization_max);
+    simulated += v.simulated;
+    wall += v.wall;
+    path += s.path;
+    time += s.seconds;
+    clearance = std::min(clearance, s.smallest_clearance);
+    table.add({std::to_string(i + 1), v.destination, v.arrived ? "yes" : "no",
+               format("%.0f", s.seconds), format("%.1f", s.path), format("%.2f", s.mean_speed),
+               format("%.2f", s.smallest_clearance), format("%.3f", s.localization_mean),
+               format("%.3f", s.localization_max), std::to_string(s.contacts),
+               std::to_string(s.touches), v.outcome});
+    csv += std::to_string(i + 1) + "," + v.destination + "," + (v.arrived ? "1" : "0") +
+           format(",%.2f", s.seconds) + format(",%.2f", s.path) + format(",%.3f", s.mean_speed) +
+           format(",%.3f", s.smallest_clearance) + format(",%.4f", s.localization_mean) +
+           format(",%.4f", s.localization_max) + "," + std::to_string(s.contacts) + "," +
+           std::to_string(s.touches) + "\n";
+  }
+  sheet.metrics = {{"arrivals", arrivals},
+                   {"contacts", contacts},
+                   {"touches", touches},
+                   {"localization_error_mean_m", estimates > 0 ? error_sum / estimates : NAN},
+                   {"localization_error_max_m", worst_error},
+                   {"smallest_clearance_m", clearance},
+                   {"mean_speed_m_s", time > 0 ? path / time : 0.0},
+                   {"simulated_s_per_wall_s_and_thread", wall > 0 ? simulated / wall : 0.0}};
+  sheet.published = {{"localization_error_mean_m", 0.019}, {"mean_speed_m_s", 0.72}};
+  sheet.targets = {
+      {"arrivals", {Bound::kAtLeast, options.only.empty() ? static_cast<double>(seeds) : 1.0}},
+      {"contacts", {Bound::kAtMost, 0.0}},
+      {"localization_error_mean_m", {Bound::kAtMost, 0.019}}};
+  // The first seed once more, with a picture: the same bytes.
+  const std::size_t shown =
+      options.only.empty() ? 0 : static_cast<std::size_t>(std::atoi(options.only.c_str()) - 1);
+  const auto map = site_map(*deployment);
+  const auto again = visit(*deployment, visits[shown]->destination, shown + 1,
+                           options.out + "/run.png", map ? &*map : nullptr);
+  if (!again) return Error{again.error()};
+  sheet.flags["digest_repeats"] = again->digest == visits[shown]->digest;
+  if (auto saved = write_file(options.out + "/visits.csv", csv); !saved)
+    return Error{saved.error()};
+  if (auto saved = write_file(options.out + "/visits.md", table.markdown()); !saved)
+    return Error{saved.error()};
+  return sheet;
+}
+
+}  // namespace usher::operations
