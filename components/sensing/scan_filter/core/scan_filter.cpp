@@ -68,7 +68,8 @@ Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> r
   out.geometry = {geometry.angle_min + static_cast<double>(first_) * geometry.angle_increment,
                   geometry.angle_increment, 0.5 * geometry.range_min, geometry.range_max + 0.5};
   out.ranges.assign(cos_.size(), kNothing);
-  if (config_.joined) join_ends(out.ranges);
+  if (config_.joined) find_surfaces();
+  join_ends(out.ranges);
   place_lone_ends(out.ranges);
   fill_free(out.ranges);
   ++counts_.scans;
@@ -113,6 +114,7 @@ Status ScanFilter::adopt(const ScanGeometry& g, std::size_t beams) {
   y_.resize(cos_.size());
   away_.resize(cos_.size());
   kind_.resize(cos_.size());
+  joined_.assign(cos_.size(), 0);
   return {};
 }
 
@@ -159,15 +161,17 @@ void ScanFilter::project(std::span<const float> ranges, const Pitch& pitch) {
   }
 }
 
-// Whether beams i and i + 1 end on one surface, seen in rising angle.
-bool ScanFilter::belong_together(std::size_t i) const {
-  if (i + 1 >= kind_.size() || kind_[i] != kind_[i + 1]) return false;
-  if (kind_[i] == Kind::kUnknown) return false;
-  const float across = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
-  const float along = x_[i] * x_[i + 1] + y_[i] * y_[i + 1];
-  if (across <= 0.0f || across > widest_ * along) return false;
-  const float nearer = std::min(away_[i], away_[i + 1]);
-  return std::abs(away_[i] - away_[i + 1]) < kJump + kJumpShare * nearer;
+// Which beams i and i + 1 end on one surface, seen in rising angle (or both in free space).
+void ScanFilter::find_surfaces() {
+  for (std::size_t i = 0; i + 1 < kind_.size(); ++i) {
+    const float across = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
+    const float along = x_[i] * x_[i + 1] + y_[i] * y_[i + 1];
+    const float step = std::abs(away_[i] - away_[i + 1]);
+    const float limit = kJump + kJumpShare * std::min(away_[i], away_[i + 1]);
+    joined_[i] =
+        static_cast<std::uint8_t>((kind_[i] == kind_[i + 1]) & (kind_[i] != Kind::kUnknown) &
+                                  (across > 0.0f) & (across <= widest_ * along) & (step < limit));
+  }
 }
 
 // The first of the regular angles that is not clockwise of a point; the count of angles when there
@@ -181,23 +185,36 @@ std::size_t ScanFilter::first_angle_after(float x, float y, std::size_t guess) c
   return k;
 }
 
-// Whether a regular angle is counter-clockwise of an end, or past the last.
-bool ScanFilter::beyond(std::size_t k, std::size_t i) const {
-  const float tolerance = kSameAngle * (std::abs(x_[i]) + std::abs(y_[i]));
-  return k >= cos_.size() || x_[i] * sin_[k] - y_[i] * cos_[k] > tolerance;
+// Calls visit(angle, i) for each regular angle between the ends i and i + 1 of every joined pair of
+// a kind.
+template <class Visit>
+void ScanFilter::between_joined(Kind kind, Visit&& visit) const {
+  const std::size_t count = cos_.size();
+  const float* cosines = cos_.data();
+  const float* sines = sin_.data();
+  std::size_t k = 0;
+  bool goes_on = false;  // the pair before ends where this one begins
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    if (kind_[i] != kind || joined_[i] == 0) {
+      goes_on = false;
+      continue;
+    }
+    if (!goes_on) k = first_angle_after(x_[i], y_[i], k);
+    goes_on = true;
+    const float x = x_[i + 1];
+    const float y = y_[i + 1];
+    const float tolerance = kSameAngle * (std::abs(x) + std::abs(y));
+    for (; k < count && x * sines[k] - y * cosines[k] <= tolerance; ++k) visit(k, i);
+  }
 }
 
 void ScanFilter::join_ends(std::vector<float>& out) const {
-  for (std::size_t i = 0; i + 1 < kind_.size(); ++i) {
-    if (kind_[i] != Kind::kEnd || !belong_together(i)) continue;
+  between_joined(Kind::kEnd, [&](std::size_t k, std::size_t i) {
     const float dx = x_[i + 1] - x_[i];
     const float dy = y_[i + 1] - y_[i];
-    const float across = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
-    for (std::size_t k = first_angle_after(x_[i], y_[i], i); !beyond(k, i + 1); ++k) {
-      const float rate = cos_[k] * dy - sin_[k] * dx;
-      if (rate > 0.0f) offer(out[k], across / rate);
-    }
-  }
+    const float rate = cos_[k] * dy - sin_[k] * dx;
+    if (rate > 0.0f) offer(out[k], (x_[i] * dy - y_[i] * dx) / rate);
+  });
 }
 
 std::size_t ScanFilter::nearest_angle(std::size_t i) const {
@@ -209,7 +226,7 @@ std::size_t ScanFilter::nearest_angle(std::size_t i) const {
 void ScanFilter::place_lone_ends(std::vector<float>& out) const {
   bool before = false;  // belongs to the end before
   for (std::size_t i = 0; i < kind_.size(); ++i) {
-    const bool after = config_.joined && belong_together(i);
+    const bool after = joined_[i] != 0;
     if (kind_[i] == Kind::kEnd && !(before && after)) {
       // The last end of a surface only fills what that surface left open.
       float& place = out[nearest_angle(i)];
@@ -225,12 +242,9 @@ void ScanFilter::fill_free(std::vector<float>& out) const {
   };
   for (std::size_t i = 0; i < kind_.size(); ++i) {
     if (kind_[i] != Kind::kFree) continue;
-    if (!config_.joined || !belong_together(i)) {
-      free(out[nearest_angle(i)]);
-      continue;
-    }
-    for (std::size_t k = first_angle_after(x_[i], y_[i], i); !beyond(k, i + 1); ++k) free(out[k]);
+    if (joined_[i] == 0) free(out[nearest_angle(i)]);
   }
+  between_joined(Kind::kFree, [&](std::size_t k, std::size_t) { free(out[k]); });
 }
 
 }  // namespace usher::scan_filter

@@ -103,13 +103,14 @@ class ScanFilter {
 
   Status adopt(const ScanGeometry& geometry, std::size_t beams);
   void project(std::span<const float> ranges, const Pitch& pitch);
+  void find_surfaces();
   void join_ends(std::vector<float>& out) const;
   void place_lone_ends(std::vector<float>& out) const;
   void fill_free(std::vector<float>& out) const;
-  bool belong_together(std::size_t i) const;
   std::size_t first_angle_after(float x, float y, std::size_t guess) const;
   std::size_t nearest_angle(std::size_t i) const;
-  bool beyond(std::size_t k, std::size_t i) const;
+  template <class Visit>
+  void between_joined(Kind kind, Visit&& visit) const;
 
   ScanFilterConfig config_;
   FilterCounts counts_;
@@ -123,6 +124,7 @@ class ScanFilter {
   std::vector<float> x_, y_;  // [m] seen from base_T_scan
   std::vector<float> away_;   // [m] distance of that
   std::vector<Kind> kind_;
+  std::vector<std::uint8_t> joined_;  // with the next
 };
 
 }  // namespace usher::scan_filter

@@ -94,7 +94,8 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
               unit(person.position - wall.point);
     }
     if (!walks && push.norm() < kStandsFirm) push.setZero();
-    move(i, (wanted - person.velocity) / config_.relaxation + push, scene, robot);
+    const bool by_a_wall = wall.distance < config_.radius + 0.1;
+    move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
     lose_patience(person, mind);
   }
 }
@@ -221,7 +222,7 @@ Point2 Crowd::push_of_robot(const Person& person, bool walks, const RobotView& r
   return push;
 }
 
-void Crowd::move(std::size_t index, const Point2& acceleration, const Scene& scene,
+void Crowd::move(std::size_t index, const Point2& acceleration, bool by_a_wall, const Scene& scene,
                  const RobotView& robot) {
   Person& person = people_[index];
   person.velocity += capped(acceleration, config_.max_acceleration) * kStep;
@@ -242,7 +243,8 @@ void Crowd::move(std::size_t index, const Point2& acceleration, const Scene& sce
       person.position += 1.5 * kStep * unit(before - shapes::Polygon(robot.footprint).center());
     }
   }
-  const auto wall = scene.nearest(person.position, config_.top, config_.radius);
+  const auto wall =
+      by_a_wall ? scene.nearest(person.position, config_.top, config_.radius) : Scene::Nearest{};
   if (wall.thing >= 0) {
     const Point2 out = unit(person.position - wall.point);
     person.position = wall.distance > 0.0

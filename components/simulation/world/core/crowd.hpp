@@ -91,7 +91,7 @@ class Crowd {
   Point2 wanted_velocity(const Person& person, const Mind& mind, const RobotView& robot) const;
   Point2 push_of_people(std::size_t index) const;
   Point2 push_of_robot(const Person& person, bool walks, const RobotView& robot) const;
-  void move(std::size_t index, const Point2& acceleration, const Scene& scene,
+  void move(std::size_t index, const Point2& acceleration, bool by_a_wall, const Scene& scene,
             const RobotView& robot);
 
   CrowdConfig config_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -86,9 +87,9 @@ void RayCaster::cast(const Scene& scene, const Fan& fan, const geometry::Pose3& 
   hits.what.resize(count);
   farthest_.resize((count + kBlock - 1) / kBlock);
   cast_background(scene);
-  cast_prisms(scene, movers);
   refresh({{{0, fan.count() - 1}, {0, -1}}});
   cast_walls(scene);
+  cast_prisms(scene, movers);
 }
 
 RayCaster::Intervals RayCaster::beams_between(float low, float high) const {
@@ -137,9 +138,11 @@ void RayCaster::refresh(const Intervals& beams) {
     for (int block = part.first / kBlock; block <= part.last / kBlock; ++block) {
       const float* begin = hits_->range.data() + block * kBlock;
       const float* end = hits_->range.data() + std::min((block + 1) * kBlock, fan_->count());
-      float farthest = 0.0f;
-      for (; begin != end; ++begin) farthest = std::max(farthest, *begin);
-      farthest_[static_cast<std::size_t>(block)] = farthest;
+      // Positive floats are ordered like their bits, and a maximum of integers is vectorized.
+      std::int32_t farthest = 0;
+      for (; begin != end; ++begin)
+        farthest = std::max(farthest, std::bit_cast<std::int32_t>(*begin));
+      farthest_[static_cast<std::size_t>(block)] = std::bit_cast<float>(farthest);
     }
   }
 }
@@ -168,12 +171,13 @@ void RayCaster::cast_prisms(const Scene& scene, std::span<const Mover> movers) {
     const float radius = static_cast<float>(bound.radius) * stretch_;
     if (center.squaredNorm() > (max_range + radius) * (max_range + radius)) continue;
     const Intervals beams = beams_around(center, radius);
+    if (hidden(beams, center.norm() - radius)) continue;
     const Thing& thing = scene.things_[static_cast<std::size_t>(bound.thing)];
     if (thing.outline.empty()) {
       cast_disc(thing.center, thing.radius, thing.bottom, thing.top,
                 thing.material == Material::kGlass, bound.thing, beams);
     } else {
-      cast_outline(thing, bound.thing, beams);
+      cast_outline(thing, bound.thing, center);
     }
   }
   auto id = static_cast<std::int32_t>(scene.things_.size());
@@ -208,7 +212,7 @@ void RayCaster::offer(int beam, float enter, float leave, float bottom, float to
   }
 }
 
-void RayCaster::cast_outline(const Thing& thing, std::int32_t id, const Intervals& beams) {
+void RayCaster::cast_outline(const Thing& thing, std::int32_t id, const Eigen::Vector2f& center) {
   // Each side as a line in beam coordinates: its direction, and its cross product with the sensor.
   struct Side {
     float x = 0.0f, y = 0.0f, numerator = 0.0f;
@@ -218,11 +222,18 @@ void RayCaster::cast_outline(const Thing& thing, std::int32_t id, const Interval
     return unplane_ * (p.cast<float>() - origin_.head<2>());
   };
   std::array<Side, Thing::kMaxCorners> sides{};
+  float low = 0.0f;   // bearings of the corners
+  float high = 0.0f;  // from the middle
   for (std::size_t k = 0; k < corners; ++k) {
     const Eigen::Vector2f a = in_plane(thing.outline[k]);
     const Eigen::Vector2f b = in_plane(thing.outline[(k + 1) % corners]);
     sides[k] = {b.x() - a.x(), b.y() - a.y(), cross(a, b)};
+    const float bearing = quick_atan2(cross(center, a), center.dot(a));
+    low = std::min(low, bearing);
+    high = std::max(high, bearing);
   }
+  const float middle = quick_atan2(center.y(), center.x());
+  const Intervals beams = beams_between(middle + low - kAngleError, middle + high + kAngleError);
 
   for (const Interval& part : beams.part) {
     for (int beam = part.first; beam <= part.last; ++beam) {

@@ -76,7 +76,7 @@ class RayCaster {
   void refresh(const Intervals& beams);
   void cast_background(const Scene& scene);
   void cast_prisms(const Scene& scene, std::span<const Mover> movers);
-  void cast_outline(const Thing& thing, std::int32_t id, const Intervals& beams);
+  void cast_outline(const Thing& thing, std::int32_t id, const Eigen::Vector2f& center);
   void cast_disc(const Point2& center, double radius, double bottom, double top, bool glass,
                  std::int32_t id, const Intervals& beams);
   void cast_walls(const Scene& scene);

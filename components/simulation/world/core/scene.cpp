@@ -200,15 +200,16 @@ Scene::Nearest Scene::nearest(std::span<const Point2> polygon, double height, do
     if (gap.distance < best.distance) best = {gap.distance, thing, gap.on_other};
   };
   for (const Bound& bound : prisms_) {
+    const double reach = bound.radius + shape.radius() + best.distance;
+    if ((bound.center - shape.center()).squaredNorm() >= reach * reach) continue;
     const Thing& thing = things_[static_cast<std::size_t>(bound.thing)];
     if (thing.bottom >= height) continue;
-    const double apart = (bound.center - shape.center()).norm();
-    if (apart - bound.radius - shape.radius() >= best.distance) continue;
     offer(thing.outline.empty() ? shape.gap_to_disc(thing.center, thing.radius)
                                 : shape.gap_to_polygon(thing.outline),
           bound.thing);
   }
-  const Point2 reach(shape.radius() + best.distance, shape.radius() + best.distance);
+  const double around = shape.radius() + best.distance;
+  const Point2 reach(around, around);
   const grid::Cell from = cells_.cell_at((shape.center() - reach).cwiseMax(lower_));
   const grid::Cell to = cells_.cell_at((shape.center() + reach).cwiseMin(upper_));
   for (int y = from.y; y <= std::min(to.y, cells_.height - 1); ++y) {

@@ -28,10 +28,18 @@ std::vector<float> normal_table(double sigma, Random& random) {
   return table;
 }
 
-// A draw with 12 of the bits.
-bool chance(std::uint64_t bits, unsigned shift, double share) {
-  return static_cast<double>((bits >> shift) & kNoiseMask) <
-         share * static_cast<double>(kNoiseMask + 1);
+// One draw a beam serves all its lotteries, 12 bits each.
+constexpr unsigned kGlassShift = kNoiseBits;
+constexpr unsigned kMixedShift = 2 * kNoiseBits;
+constexpr unsigned kMixShift = 3 * kNoiseBits;
+
+std::uint32_t lottery(std::uint64_t bits, unsigned shift) {
+  return static_cast<std::uint32_t>((bits >> shift) & kNoiseMask);
+}
+
+// A lottery below this is won.
+std::uint32_t threshold(double share) {
+  return static_cast<std::uint32_t>(share * static_cast<double>(kNoiseMask + 1));
 }
 
 }  // namespace
@@ -54,41 +62,53 @@ Laser::Laser(const LaserConfig& config, std::uint64_t seed)
     self_.push_back(
         own ? static_cast<float>(config.self_range * (1.0 + 0.15 * std::sin(7.0 * angle))) : 0.0f);
   }
+  bits_.resize(static_cast<std::size_t>(config.count));
   glass_.resize(static_cast<std::size_t>(config.count));
 }
 
 void Laser::scan(const Scene& scene, std::span<const Mover> movers,
                  const geometry::Pose3& world_T_base, std::vector<float>& ranges) {
-  for (std::uint8_t& flag : glass_) flag = chance(random_.next(), 0, config_.glass_share) ? 1 : 0;
+  const auto count = static_cast<std::size_t>(config_.count);
+  const std::uint32_t glass_below = threshold(config_.glass_share);
+  for (std::size_t i = 0; i < count; ++i) {
+    bits_[i] = random_.next();
+    glass_[i] = lottery(bits_[i], kGlassShift) < glass_below ? 1 : 0;
+  }
   caster_.cast(scene, fan_, world_T_base * config_.mount.base_T_sensor(),
                {.max_range = config_.range_max, .glass_flags = glass_}, movers, hits_);
-  const auto count = static_cast<std::size_t>(config_.count);
   ranges.resize(count);
+  const std::uint32_t mixed_below = threshold(config_.mixed_share);
   const float step = static_cast<float>(config_.step);
-  const float per_step = 1.0f / step;
+  const float steps_per_metre = 1.0f / step;
+  constexpr float kBinsPerMetre = 1.0f / static_cast<float>(kSystematicStep);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t bits = random_.next();
     float range = hits_.range[i];
-    const bool returns = self_[i] > 0.0f || hits_.what[i] != kNothing;
-    if (!returns) {
-      ranges[i] = kInfinity;
-      continue;
-    }
     if (self_[i] > 0.0f) {
       range = self_[i];
-    } else {
-      const std::size_t next = std::min(i + 1, count - 1);
-      const float jump = hits_.range[next] - range;
-      if (std::abs(jump) > kEdge && hits_.what[next] != kNothing &&
-          chance(bits, kNoiseBits, config_.mixed_share)) {
-        range += jump * static_cast<float>((bits >> 40) & 255U) / 255.0f;
-      }
+    } else if (hits_.what[i] == kNothing) {
+      ranges[i] = kInfinity;
+      continue;
+    } else if (lottery(bits_[i], kMixedShift) < mixed_below) {
+      range = mixed(i);
     }
-    range += systematic_[static_cast<std::size_t>(range / static_cast<float>(kSystematicStep))] +
-             noise_[bits & kNoiseMask];
-    ranges[i] =
-        static_cast<float>(static_cast<int>(std::max(range, step) * per_step + 0.5f)) * step;
+    range += systematic_[static_cast<std::size_t>(static_cast<int>(range * kBinsPerMetre))] +
+             noise_[bits_[i] & kNoiseMask];
+    const int whole = static_cast<int>(range * steps_per_metre + 0.5f);
+    ranges[i] = static_cast<float>(std::max(whole, 1)) * step;
   }
+}
+
+// The range of a beam that falls on an edge of a thing: somewhere between both surfaces; of any
+// other beam: its own.
+float Laser::mixed(std::size_t beam) const {
+  const std::size_t next = std::min(beam + 1, hits_.range.size() - 1);
+  const float jump = hits_.range[next] - hits_.range[beam];
+  const bool things = hits_.what[beam] >= 0 && hits_.what[next] >= 0;
+  if (!things || hits_.what[beam] == hits_.what[next] || std::abs(jump) < kEdge) {
+    return hits_.range[beam];
+  }
+  return hits_.range[beam] + jump * static_cast<float>(lottery(bits_[beam], kMixShift)) /
+                                 static_cast<float>(kNoiseMask);
 }
 
 Mount SonarConfig::mount(int i) const {

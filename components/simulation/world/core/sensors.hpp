@@ -55,13 +55,16 @@ class Laser {
             std::vector<float>& ranges);
 
  private:
+  float mixed(std::size_t beam) const;
+
   LaserConfig config_;
   Fan fan_;
   Random random_;
-  std::vector<float> noise_;       // [m] normal, picked at random
-  std::vector<float> systematic_;  // [m] by range
-  std::vector<float> self_;        // [m] own body by beam; 0: free view
-  std::vector<std::uint8_t> glass_;
+  std::vector<float> noise_;         // [m] normal, picked at random
+  std::vector<float> systematic_;    // [m] by range
+  std::vector<float> self_;          // [m] own body by beam; 0: free view
+  std::vector<std::uint64_t> bits_;  // drawn for each beam of a scan
+  std::vector<std::uint8_t> glass_;  // beams that see glass
   RayCaster caster_;
   FanHits hits_;
 };
