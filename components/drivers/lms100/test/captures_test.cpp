@@ -32,6 +32,11 @@ std::string read_gz(const std::string& path) {
   return text;
 }
 
+std::uint8_t hex_byte(const char* digits) {
+  const auto value = [](char c) { return c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10; };
+  return static_cast<std::uint8_t>(value(digits[0]) * 16 + value(digits[1]));
+}
+
 /// The payloads of all packets, in order.
 std::vector<Bytes> packets(const std::string& json) {
   static const std::string kKey = "\"tcp.payload\": \"";
@@ -40,7 +45,7 @@ std::vector<Bytes> packets(const std::string& json) {
     at += kKey.size();
     Bytes packet;
     while (json[at] != '"') {
-      packet.push_back(static_cast<std::uint8_t>(std::stoul(json.substr(at, 2), nullptr, 16)));
+      packet.push_back(hex_byte(&json[at]));
       at += json[at + 2] == ':' ? 3 : 2;
     }
     result.push_back(std::move(packet));
@@ -74,7 +79,7 @@ struct Tally {
     beams += scan.ranges.size();
     sizes.insert(scan.ranges.size());
     for (const float range : scan.ranges) {
-      EXPECT_FALSE(std::isfinite(range) && (range < 0.01F || range > 130.0F)) << range;
+      if (std::isfinite(range) && (range < 0.01F || range > 130.0F)) ++impossible;
       const auto millimeters = std::isfinite(range) ? std::lround(range * 1000.0F) : -1L;
       digest = (digest ^ static_cast<std::uint64_t>(millimeters)) * 1099511628211U;
     }
@@ -125,6 +130,7 @@ TEST(Captures, EveryScanOfEveryScannerIsRead) {
     EXPECT_EQ(whole.scans, capture.scans);
     EXPECT_EQ(whole.errors, capture.errors);
     EXPECT_EQ(whole.unread, 0U);
+    EXPECT_EQ(whole.impossible, 0U);
     for (const std::size_t piece : {1U, 62U, 1460U}) {
       const Tally pieces = tally(all, piece);
       EXPECT_EQ(pieces.telegrams, whole.telegrams);
@@ -198,7 +204,7 @@ TEST(Captures, BothDialectsSayTheSame) {
     const std::string digits = line.substr(line.find_last_of(' ') + 1);
     Bytes frame;
     for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-      frame.push_back(static_cast<std::uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
+      frame.push_back(hex_byte(&digits[i]));
     }
     Decoder decoder;
     decoder.feed(frame);
