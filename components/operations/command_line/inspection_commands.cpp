@@ -186,6 +186,7 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
   topics_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
   topics_command->add_option("--seconds", *seconds, "How long to measure")->capture_default_str();
   auto* echo_command = topics_command->add_subcommand("echo", "Print the samples of a topic");
+  echo_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
   echo_command->add_option("topic", arguments->topic, "Name, for example scan/filtered")
       ->required();
   echo_command->add_option("--count", arguments->count, "How many; 0 = until Ctrl-C")

@@ -26,12 +26,6 @@ struct Experiment {
 };
 
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
-Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
-Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);
-
-/// `usher map from-log`: a map from a CARMEN log with reference poses.
-int map_from_log(const std::string& log, const std::string& reference, const std::string& yaml,
-                 int every);
 
 /// One line that is rewritten: "17 of 100  ...".
 void show_progress(const std::string& line);

@@ -1,0 +1,75 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
+#include "operations/experiments/experiment.hpp"
+
+namespace usher::operations {
+
+void show_progress(const std::string& line) {
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K%s", line.c_str());
+}
+
+namespace {
+
+const std::vector<Experiment>& experiments() {
+  static const std::vector<Experiment> all = {
+      {"guide",
+       "Seeded visits in the office, lock-step: arrivals, contacts, localization error, "
+       "determinism",
+       run_guide_experiment},
+  };
+  return all;
+}
+
+int fail(const std::string& message) {
+  std::cerr << "usher experiment: " << message << "\n";
+  return 1;
+}
+
+int run(const Experiment& experiment, ExperimentOptions options) {
+  if (options.out.empty()) options.out = std::string("build/experiments/") + experiment.name;
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) return fail("cannot make " + options.out + ": " + error.message());
+  const auto sheet = experiment.run(options);
+  if (!sheet) return fail(sheet.error());
+  Status saved = write_file(options.out + "/result.json", sheet->json());
+  if (saved) saved = write_file(options.out + "/table.md", sheet->markdown());
+  if (!saved) return fail(saved.error());
+  std::cout << sheet->markdown() << "\nin " << options.out << "\n";
+  return sheet->pass() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace usher::operations
+
+int main(int argc, char** argv) {
+  using namespace usher::operations;
+  CLI::App app("Reruns experiments and writes result.json, table.md, *.csv and *.png",
+               "usher experiment");
+  std::string name;
+  bool list = false;
+  ExperimentOptions options;
+  options.installation = Installation::of_this_program();
+  if (const char* data = std::getenv("USHER_TEST_DATA")) options.data = data;
+  app.add_option("name", name, "Which one");
+  app.add_flag("--list", list, "Name them all");
+  app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number");
+  app.add_option("--out", options.out, "Folder for the results");
+  app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
+  CLI11_PARSE(app, argc, argv);
+  for (const auto& experiment : experiments()) {
+    if (list) std::cout << experiment.name << ": " << experiment.text << "\n";
+    if (!list && experiment.name == name) return run(experiment, options);
+  }
+  if (list) return 0;
+  std::cerr << "usher experiment: unknown experiment '" << name
+            << "'; see usher experiment --list\n";
+  return 2;
+}
