@@ -60,6 +60,7 @@ struct Tally {
   std::set<std::size_t> sizes;
   std::size_t errors = 0;                       ///< sFA
   std::size_t unread = 0;                       ///< LMDscandata that was refused
+  std::size_t impossible = 0;                   ///< ranges that no scanner measures
   std::uint64_t digest = 1469598103934665603U;  ///< of all scans
 
   void take(const Telegram& telegram) {

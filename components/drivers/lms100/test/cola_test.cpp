@@ -200,8 +200,8 @@ TEST(Cola, OpensTheBinaryErrorWithoutABlank) {
 TEST(FieldReader, FailsForGoodOnTheFirstWrongField) {
   const char* broken[] = {"", "G", "-5", "123456789", "1FFFF", " 1", "0x1"};
   for (const char* text : broken) {
-    const Bytes fields = bytes(std::string(text) + " 1");
-    FieldReader reader(Dialect::kAscii, std::strlen(text) == 0 ? Bytes{} : fields);
+    const Bytes fields = std::strlen(text) == 0 ? Bytes{} : bytes(std::string(text) + " 1");
+    FieldReader reader(Dialect::kAscii, fields);
     EXPECT_EQ(reader.number(2), 0U) << text;
     EXPECT_FALSE(reader.ok()) << text;
     EXPECT_EQ(reader.number(2), 0U);
