@@ -39,4 +39,4 @@ add_library(usher_warnings INTERFACE)
 # A designated initializer leaves the other members at their defaults, by design. GCC 12 warns of overlapping copies in
 # its own std::string at -O3 (GCC bug 105651).
 target_compile_options(usher_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
-                                                -Wno-missing-field-initializers -Wno-restrict)
+                                                -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)

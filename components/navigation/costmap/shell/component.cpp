@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "navigation/costmap/core/echo_check.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -74,6 +75,12 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   ultrasonic_settings_.overrules_static_map = false;
   ultrasonic_settings_.persistence = parameters.number("ultrasonic_persistence", "s", {0, 600}, 5.0,
                                                        "The same for the ultrasonic sensors.");
+
+  echo_half_cone_ =
+      parameters.number("echo_half_cone", "rad", {0, 0.8}, 0.21,
+                        "Half of an ultrasonic cone, where the laser explains echoes.");
+  echo_tolerance_ =
+      parameters.number("echo_tolerance", "m", {0, 1}, 0.3, "How far apart laser and echo may be.");
 
   local_.frame = frames::kOdom;
   global_.frame = frames::kMap;
@@ -192,23 +199,40 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
                                   const geometry::Pose2& odom_T_sensor) {
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
   if (!odom_T_base) return;
-  if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
-  observe(local_, local_.*layer, odom_T_sensor, beams, scan);
-
   const bool is_laser = layer == &Map::laser;
+  const std::span<const float> ranges =
+      is_laser ? std::span<const float>(scan.ranges()) : unexplained(scan, odom_T_sensor);
+  if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
+  observe(local_, local_.*layer, odom_T_sensor, beams, ranges, stamp);
+
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
   if (map_T_odom && global_.costs && (!is_laser || ++global_share_ % kGlobalShare == 0)) {
     if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
-    observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, scan);
+    observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
   }
   if (is_laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
+/// The echoes that the newest laser scan does not explain.
+std::span<const float> CostmapComponent::unexplained(const sensor_msgs::msg::LaserScan& sonar,
+                                                     const geometry::Pose2& odom_T_sonar) {
+  echoes_ = sonar.ranges();
+  const auto* laser = scan_.fresh();
+  if (laser == nullptr || !wire::check(*laser)) return echoes_;
+  const auto odom_T_laser = transforms_.lookup_planar(frames::kOdom, laser->header().frame_id(),
+                                                      wire::from_message(laser->header().stamp()));
+  if (!odom_T_laser) return echoes_;
+  drop_explained_echoes(
+      {*odom_T_laser, laser->angle_min(), laser->angle_increment(), laser->ranges()},
+      {odom_T_sonar, sonar.angle_min(), sonar.angle_increment(), {}}, echo_half_cone_,
+      echo_tolerance_, echoes_);
+  return echoes_;
+}
+
 void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor,
-                               const Beams& beams, const sensor_msgs::msg::LaserScan& scan) {
-  const runtime::Time stamp = wire::from_message(scan.header().stamp());
-  const RangeObservation observation{sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
-  if (!map.costs->observe(layer, observation)) {
+                               const Beams& beams, std::span<const float> ranges,
+                               runtime::Time stamp) {
+  if (!map.costs->observe(layer, {sensor, beams.directions, ranges, in_seconds(stamp)})) {
     ++rejected_scans_;
     return;
   }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "navigation/costmap/core/costmap.hpp"
@@ -40,9 +41,11 @@ class CostmapComponent final : public runtime::Component {
   void place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                   const geometry::Pose2& odom_T_sensor);
+  std::span<const float> unexplained(const sensor_msgs::msg::LaserScan& sonar,
+                                     const geometry::Pose2& odom_T_sonar);
   void take_whiskers(const usher_msgs::msg::Whiskers& message);
   void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
-               const sensor_msgs::msg::LaserScan& scan);
+               std::span<const float> ranges, runtime::Time stamp);
   void publish_local();
   void publish_global();
   void report();
@@ -54,6 +57,9 @@ class CostmapComponent final : public runtime::Component {
   double local_size_, resolution_;
   bool static_in_local_;
   runtime::Duration local_period_;
+
+  double echo_half_cone_, echo_tolerance_;
+  std::vector<float> echoes_;
 
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_maps_;
