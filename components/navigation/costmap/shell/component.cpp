@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(300);
 constexpr auto kWhiskerAge = milliseconds(300);
+constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
 constexpr int kGlobalShare =
     5;  // every fifth scan goes into the global costs, which planning reads once a second
 
@@ -149,6 +150,11 @@ void CostmapComponent::add_layers(Map& map) {
   };
   map.laser = add(laser_settings_);
   map.ultrasonic = add(ultrasonic_settings_);
+  // Where the robot stood there is no wall, whatever the map says at the pose that localization
+  // believes.
+  ObstacleLayerConfig body;
+  body.name = "body";
+  add(body);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
@@ -165,6 +171,11 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   }
   global_.costs.emplace(make(false, map->geometry()));
   add_layers(global_);
+  static_costs_.emplace(make(false, map->geometry()));
+  if (const auto status = static_costs_->set_static_map(*map); !status) {
+    host_.fault("map: " + status.error());
+  }
+  static_costs_->update(0.0);
   for (Map* each : {&local_, &global_}) {
     if (each == &local_ && !static_in_local_) continue;
     if (const auto status = each->costs->set_static_map(*map); !status) {
@@ -275,9 +286,19 @@ void CostmapComponent::publish_local() {
 void CostmapComponent::publish_global() {
   if (!global_.costs) return;
   const auto& costs = global_.costs->update(in_seconds(host_.now()));
-  global_costs_.publish(wire::to_message(host_.now(), global_.frame, costs));
-  if (global_view_.reader_count() > 0)
+  passing_ = costs;
+  // What stands in the way by the map's own free ground may be gone when the robot gets there: the
+  // plan goes round it where that is not much longer, and through it, to wait there, where it is
+  // the only way.
+  const auto& mapped = static_costs_->costs();
+  for (std::size_t i = 0; i < passing_.size(); ++i) {
+    if (passing_[i] >= kInscribedCost && passing_[i] != kUnknownCost && mapped[i] < kInscribedCost)
+      passing_[i] = kPassingCost;
+  }
+  global_costs_.publish(wire::to_message(host_.now(), global_.frame, passing_));
+  if (global_view_.reader_count() > 0) {
     global_view_.publish(wire::to_message(host_.now(), global_.frame, viewed(costs)));
+  }
 }
 
 void CostmapComponent::report() {

@@ -64,6 +64,8 @@ class CostmapComponent final : public runtime::Component {
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_maps_;
   Map local_, global_;
+  std::optional<Costmap> static_costs_;  ///< of the map alone, like global_
+  grid::Grid<std::uint8_t> passing_;     ///< the global costs as published
   Beams laser_beams_, ultrasonic_beams_;
   runtime::Time local_published_{};
   std::uint64_t last_request_ = 0;

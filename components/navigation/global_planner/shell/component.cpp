@@ -12,6 +12,8 @@ constexpr auto kCostsAge = std::chrono::seconds(3);
 
 GridPlannerConfig GlobalPlannerComponent::read_parameters(runtime::Parameters& parameters) {
   GridPlannerConfig config;
+  config.cost_factor = 2.0;  // what stands in the way now (252) costs as much as eleven times its
+                             // width of free floor
   config.algorithm = parameters.choice("algorithm", {"dijkstra", "astar"}, "dijkstra",
                                        "How the path is searched.") == "astar"
                          ? Algorithm::kAstar
