@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(300);
 constexpr auto kWhiskerAge = milliseconds(300);
+constexpr double kWhiskerReach = 0.1;       // [m]
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
 constexpr int kGlobalShare =
     5;  // every fifth scan goes into the global costs, which planning reads once a second
@@ -264,6 +265,10 @@ void CostmapComponent::take_whiskers(const usher_msgs::msg::Whiskers& message) {
   const auto touch = [&](bool pressed, double x, double y) {
     if (pressed) touched.push_back(*odom_T_base * geometry::Point2(x, y));
   };
+  // What bends a whisker is just beyond the corner; on it, the robot would stand in an obstacle and
+  // not find a way out.
+  front += kWhiskerReach;
+  back -= kWhiskerReach;
   touch(message.front_left(), front, side);
   touch(message.front_right(), front, -side);
   touch(message.back_left(), back, side);

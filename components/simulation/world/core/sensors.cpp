@@ -159,9 +159,11 @@ WhiskerContacts Whiskers::touch(const Scene& scene, std::span<const Mover> mover
   };
   const double x = config_.x;
   const double y = config_.y;
-  const double back = geometry::kPi - config_.outward;
-  return {.front_left = bent(x, y, config_.outward),
-          .front_right = bent(x, -y, -config_.outward),
+  // Bent that far it lies along this angle: what reaches in here has closed the switch.
+  const double outward = config_.outward - config_.trigger_bend;
+  const double back = geometry::kPi - outward;
+  return {.front_left = bent(x, y, outward),
+          .front_right = bent(x, -y, -outward),
           .back_left = bent(-x, y, back),
           .back_right = bent(-x, -y, -back)};
 }
