@@ -65,6 +65,12 @@ navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::
       p.number("deceleration", "m/s2", {0.1, 5}, 1.0, "Of the command, toward standstill.");
   c.limits.angular_acceleration =
       p.number("angular_acceleration", "rad/s2", {0.1, 10}, 1.5, "Of the turn command.");
+  c.lateral_acceleration = p.number("lateral_acceleration", "m/s2", {0.1, 3},
+                                    c.lateral_acceleration, "Bounds speed times turn rate.");
+  c.braking =
+      p.number("braking", "m/s2", {0.1, 10}, c.braking, "Slope of the command when it must stop.");
+  c.response.latency = p.number("robot.response.latency", "s", {0, 1}, c.response.latency,
+                                "From a command to the base's first change.");
   c.response.time_constant = p.number("robot.response.time_constant", "s", {0.05, 3},
                                       c.response.time_constant, "Lag of the base's speed.");
   c.response.turn_time_constant =
