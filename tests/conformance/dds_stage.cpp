@@ -11,15 +11,13 @@
 #include "runtime/dds/dds_host.hpp"
 #include "runtime/dds/observer.hpp"
 #include "runtime/parameters/parameter_file.hpp"
+#include "support/test_domain.hpp"
 
 namespace usher::conformance {
 namespace {
 
 using runtime::DdsHost;
 using runtime::Observer;
-
-/// A domain of its own for each test program that runs at the same time.
-std::uint32_t domain() { return 100 + static_cast<std::uint32_t>(::getpid()) % 100; }
 
 /// A component with its dispatcher thread.
 class Actor {
@@ -93,7 +91,7 @@ class DdsStage final : public Stage {
     std::istringstream lines(role.parameters);
     for (std::string line; std::getline(lines, line);) text << "  " << line << '\n';
     auto file = runtime::parse_parameter_file(text.str(), role.name + ".yaml").value();
-    file.domain = domain();
+    file.domain = test_domain();
     file.run_directory = run_directory_;
     file.clock_anchor = kAnchor;
     actors_.erase(role.name);
@@ -176,7 +174,7 @@ class DdsStage final : public Stage {
     Observer::Options options;
     options.name = sender.name;
     options.host = sender.host;
-    options.domain = domain();
+    options.domain = test_domain();
     options.clock_anchor = kAnchor;
     return std::move(Observer::create(options)).value();
   }

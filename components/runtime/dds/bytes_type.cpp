@@ -1,6 +1,6 @@
 #include "runtime/dds/bytes_type.hpp"
 
-#include <cstring>
+#include <algorithm>
 
 namespace usher::runtime {
 
@@ -20,7 +20,7 @@ BytesType::BytesType(const std::string& wire_name) {
 bool BytesType::serialize(void* data, SerializedPayload_t* payload) {
   const auto& cdr = *static_cast<const std::span<const std::uint8_t>*>(data);
   if (cdr.size() > payload->max_size) return false;
-  std::memcpy(payload->data, cdr.data(), cdr.size());
+  std::ranges::copy(cdr, payload->data);
   payload->length = static_cast<std::uint32_t>(cdr.size());
   payload->encapsulation = CDR_LE;
   return true;

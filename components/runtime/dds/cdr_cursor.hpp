@@ -25,10 +25,11 @@ class CdrCursor {
   void fail() { ok_ = false; }
   std::size_t remaining() const { return body_.size() - at_; }
 
-  /// Passes `count` scalars of `size` bytes and returns the first, null when they are not there.
-  const std::uint8_t* scalars(std::size_t size, std::size_t count) {
-    const std::size_t padding = (size - at_ % size) % size;
-    if (!ok_ || padding > remaining() || count > (remaining() - padding) / size) {
+  /// Passes `count` scalars of `size` (1, 2, 4 or 8) bytes and returns the first, null when they
+  /// are not there.
+  const std::uint8_t* scalars(std::size_t size, std::uint32_t count) {
+    const std::size_t padding = (0 - at_) & (size - 1);
+    if (!ok_ || padding + size * count > remaining()) {
       ok_ = false;
       return nullptr;
     }

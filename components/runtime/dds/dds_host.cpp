@@ -12,6 +12,7 @@
 #include <cassert>
 #include <charconv>
 
+#include "idl/topics.hpp"
 #include "runtime/dds/dds_transport.hpp"
 #include "runtime/dds/file_store.hpp"
 #include "runtime/dds/host_clock.hpp"
@@ -148,6 +149,9 @@ class DdsHost::Implementation {
     return ::poll(&entry, 1, 0) > 0;
   }
 
+  /// Sees the last heartbeat off, which the engine has just written.
+  void say_why() { transport->farewell(std::string(topics::kHeartbeat.name)); }
+
   const StopFlag& stop;
   // The engine ends first, then the network and the threads that may still call into what is left
   // of it.
@@ -169,7 +173,9 @@ Result<std::unique_ptr<DdsHost>> DdsHost::create(ParameterFile file, const StopF
 }
 
 Status DdsHost::construct(const ComponentFactory& factory) {
-  return implementation_->engine.construct(factory);
+  const Status status = implementation_->engine.construct(factory);
+  if (implementation_->engine.faulted()) implementation_->say_why();
+  return status;
 }
 
 int DdsHost::run() {
@@ -182,7 +188,7 @@ int DdsHost::run() {
     }
   }
   const bool faulted = engine.faulted();
-  if (faulted) implementation_->transport->flush(std::chrono::milliseconds(200));
+  if (faulted) implementation_->say_why();
   engine.stop();
   return faulted ? 3 : 0;
 }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <mutex>
 #include <set>
+#include <thread>
 
 #include "runtime/dds/bytes_type.hpp"
 #include "runtime/dds/participant.hpp"
@@ -97,6 +98,8 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
         guid_(usher::runtime::to_guid(writer_->guid())) {}
 
   void write(std::shared_ptr<const Bytes> cdr) override {
+    last_ = cdr;
+    matches_at_write_ = matches_.load();
     std::span<const std::uint8_t> payload(*cdr);
     if (!writer_->write(&payload) && !failed_) {
       failed_ = true;
@@ -107,22 +110,26 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
   std::size_t reader_count() const override { return readers_.load(std::memory_order_relaxed); }
   Guid guid() const override { return guid_; }
 
-  void wait_for_readers(Duration limit) {
-    const auto count = limit.count();
-    if (count <= 0) return;
-    writer_->wait_for_acknowledgments({static_cast<std::int32_t>(count / 1'000'000'000),
-                                       static_cast<std::uint32_t>(count % 1'000'000'000)});
+  const std::string& topic() const { return topic_; }
+  /// Writes the last sample again when readers were matched after it.
+  void repeat_for_new_readers() {
+    if (last_ != nullptr && matches_.load() != matches_at_write_) write(last_);
   }
+  void wait_for_readers() { writer_->wait_for_acknowledgments({0, 200'000'000}); }
 
  private:
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) override {
     readers_.store(static_cast<std::size_t>(status.current_count), std::memory_order_relaxed);
+    matches_.store(status.total_count);
   }
 
   const std::string topic_;
-  std::atomic<std::size_t> readers_{
-      0};  // before writer_: the listener may be called while it is being made
+  // Before writer_: the listener may be called while it is being made.
+  std::atomic<std::size_t> readers_{0};
+  std::atomic<std::int32_t> matches_{0};
+  std::int32_t matches_at_write_ = 0;
+  std::shared_ptr<const Bytes> last_;
   dds::DataWriter* writer_;
   Guid guid_;
   bool failed_ = false;
@@ -133,6 +140,7 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
 class DdsTransport::Implementation {
  public:
   MonotonicClock clock;
+  Time begin;
   // The participant goes first: it ends the callbacks into the ports.
   std::vector<std::unique_ptr<DdsReader>> readers;
   std::vector<std::unique_ptr<DdsWriter>> writers;
@@ -149,7 +157,7 @@ Result<std::unique_ptr<DdsTransport>> DdsTransport::create(const Options& option
       Participant::create({options.name, options.host, options.domain, options.peers}, clock);
   if (!participant) return Error{participant.error()};
   auto implementation = std::make_unique<Implementation>(
-      Implementation{clock, {}, {}, std::move(participant).value()});
+      Implementation{clock, clock.now(), {}, {}, std::move(participant).value()});
   return std::unique_ptr<DdsTransport>(new DdsTransport(std::move(implementation)));
 }
 
@@ -177,10 +185,13 @@ void DdsTransport::watch_writers(const std::string& topic,
       });
 }
 
-void DdsTransport::flush(Duration limit) {
-  const Time end = implementation_->clock.now() + limit;
+void DdsTransport::farewell(const std::string& topic) {
+  constexpr Duration kDiscovery = std::chrono::milliseconds(500);
   for (const auto& writer : implementation_->writers) {
-    writer->wait_for_readers(end - implementation_->clock.now());
+    if (writer->topic() != topic) continue;
+    std::this_thread::sleep_for(implementation_->begin + kDiscovery - implementation_->clock.now());
+    writer->repeat_for_new_readers();
+    writer->wait_for_readers();
   }
 }
 

@@ -33,8 +33,11 @@ class DdsTransport final : public Transport {
   void watch_writers(const std::string& topic,
                      std::function<void(const WriterInfo&)> event) override;
 
-  /// Waits until all readers have what was written, at most `limit` in all; for the last heartbeat.
-  void flush(Duration limit);
+  /// After the last sample of `topic`, which says why a component ended: waits until its readers
+  /// have it. A component that ends right after its start has not been discovered yet; for readers
+  /// that are found within the first half second of the participant's life the sample is written
+  /// once more. Takes at most 0.2 s after that.
+  void farewell(const std::string& topic);
 
  private:
   class Implementation;

@@ -193,6 +193,28 @@ TEST(DdsHost, EndsWithCode3AndALastHeartbeatAfterAFault) {
   EXPECT_THAT(last->reason(), HasSubstr("asked to fail"));
 }
 
+TEST(DdsHost, SaysWhyAlsoWhenItEndsBeforeItWasDiscovered) {
+  auto out = observer();
+  auto heartbeats = out->reader(topics::kHeartbeat);
+  ASSERT_TRUE(heartbeats.ok());
+  const auto said = [&](const std::string& reason) {
+    while (const auto beat = heartbeats->take(kLong)) {
+      if (beat->reason().find(reason) != std::string::npos) return true;
+    }
+    return false;
+  };
+  Running constructor(file("no_map"),
+                      Scripted::factory([](Host& host) { host.fault("no such map"); }));
+  EXPECT_FALSE(constructor.status.ok());
+  EXPECT_TRUE(constructor.engine().faulted());
+  EXPECT_TRUE(said("no such map"));
+  Running timer(file("hasty"), Scripted::factory([](Host& host) {
+                  host.timer("first", 1ms, [&host](std::uint64_t) { host.fault("out of chalk"); });
+                }));
+  EXPECT_EQ(timer.join(), 3);
+  EXPECT_TRUE(said("out of chalk"));
+}
+
 TEST(DdsHost, RunsTimersAtTheirRate) {
   std::atomic<int> fired{0};
   Running ticker(file("ticker"), Scripted::factory([&](Host& host) {
