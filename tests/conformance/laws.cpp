@@ -349,6 +349,7 @@ TEST_F(HostLaw, ALatchedInputGetsTheLastValueOfALivingWriterHoweverLate) {
   ASSERT_TRUE(wait_for(seen, 1));
   stage_->run_for(milliseconds(300));
   EXPECT_THAT(texts(seen.all()), ElementsAre("new"));
+  EXPECT_EQ(newest_heartbeat("reader").samples_lost(), 0U) << "only the last value was sent";
 
   stage_->stop("writer");
   stage_->run_for(milliseconds(300));

@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <thread>
+#include <utility>
 
 #include "idl/topics.hpp"
 #include "runtime/engine/test/counted_new.hpp"
@@ -34,7 +35,11 @@ class FakePlatform final : public Platform {
     void reopen(Duration /*delay*/) override {}
   };
 
-  Time now() const override { return Time(Duration(clock.load())); }
+  Time now() const override {
+    const Time read = Time(Duration(clock.load()));
+    if (at_next_look) std::exchange(at_next_look, nullptr)();
+    return read;
+  }
   Duration work_time() const override { return {}; }
   void wake() override { ++wakes; }
   Resources resources() override { return {}; }
@@ -48,6 +53,8 @@ class FakePlatform final : public Platform {
   Status keep(const std::string&, std::span<const std::uint8_t>) override { return {}; }
   Result<Bytes> kept(const std::string&) override { return Error{"nothing"}; }
 
+  /// Called by the next look at the clock: what happens in that very moment.
+  mutable std::function<void()> at_next_look;
   std::atomic<std::int64_t> clock{1'000'000'000};
   std::atomic<int> wakes{0};
   std::deque<std::pair<std::function<void()>, std::function<void()>>> jobs;
@@ -269,6 +276,24 @@ TEST_F(EngineTest, NothingHappensAfterTheEnd) {
   engine_.reset();
   late_deliver(message_, {1}, 3, true);  // a middleware thread that comes late
   EXPECT_EQ(handled, 0);
+}
+
+TEST_F(EngineTest, ASampleThatArrivesAfterTheLookAtTheClockWaitsForTheNextTurn) {
+  std::vector<Duration> ages;
+  make([&](Host& host) {
+    host.input(kEvents, {}, [&](const auto&, const SampleInfo& info) {
+      ages.push_back(host.now() - info.arrival);
+    });
+  });
+  platform_.at_next_look = [&] {
+    advance(milliseconds(1));
+    deliver(1);
+  };
+  EXPECT_TRUE(engine_->run_turn());
+  EXPECT_TRUE(ages.empty());
+  EXPECT_TRUE(engine_->has_work());
+  EXPECT_TRUE(engine_->run_turn());
+  EXPECT_THAT(ages, ElementsAre(Duration::zero()));
 }
 
 TEST_F(EngineTest, AClockThatGoesBackIsNotFollowed) {
