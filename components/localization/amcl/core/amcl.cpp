@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "foundation/estimation/pose_statistics.hpp"
@@ -14,19 +15,31 @@
 namespace usher::amcl {
 namespace {
 
-constexpr double kSearchShare = 0.1;    // of hypotheses among the particles during a global start
-constexpr double kWonWeight = 0.95;     // the cluster of this share ends a global start
+constexpr double kSearchShare = 0.1;  // of hypotheses among the particles during a global start
+constexpr double kSearchEvidence =
+    2.0;  // independent beams then: several places shall live on for a while
+constexpr double kWonWeight = 0.95;     // the cluster of this share ends a search ...
+constexpr int kLeastSearch = 10;        // ... after so many updates
 constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
 
+// Beams that end this much [m] before the map's wall, seen from where the robot must be, met
+// something unmapped and tell nothing about the place. When most beams do, the place is wrong, not
+// the map.
+constexpr double kUnmappedMargin = 0.5;
+constexpr double kMostUnmapped = 0.6;
+
 // Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
-constexpr double kLostRatio = 0.5;    // the short-term mean, anywhere on the map [gutmann2002]
+constexpr double kLostRatio = 0.6;    // the short-term mean, anywhere on the map [gutmann2002]
 constexpr double kDoubtRatio = 0.7;   // one scan, near the estimate
 constexpr double kNearbyShare = 0.2;  // of hypotheses among the particles then
 constexpr double kNearbySigma =
     0.5;  // [m] wheels that slipped, or counted backwards, between two updates
 constexpr double kNearbyYawSigma = 0.2;  // [rad]
 constexpr std::size_t kNearbyCandidates = 1000;
-constexpr std::size_t kGuidedEvery = 5;  // particles that follow the refinement of the estimate
+constexpr double kRangeOffsetGain =
+    0.1;  // of what one scan says; the systematic error changes slowly if at all
+constexpr double kMostRangeOffset = 0.08;  // [m] LMS100: 30 mm, and half a cell
+constexpr std::size_t kGuidedEvery = 5;    // particles that follow the refinement of the estimate
 
 bool finite(const LaserBeams& scan) {
   return scan.base_T_laser.finite() && std::isfinite(scan.angle_min) &&
@@ -51,7 +64,10 @@ Amcl::Amcl(const AmclConfig& config, std::uint64_t seed, cpu::Simd simd)
   log_likelihood_.reserve(std::max({most, config.search_candidates, kNearbyCandidates}));
   for (auto* indices : {&bin_, &picked_}) indices->reserve(most);
   beams_.reserve(config.max_beams);
-  dense_beams_.reserve(std::max<std::size_t>(config.refine_beams, 2));
+  kept_beams_.reserve(config.max_beams);
+  for (auto* dense : {&dense_beams_, &kept_dense_beams_}) {
+    dense->reserve(std::max<std::size_t>(config.refine_beams, 2));
+  }
 }
 
 Status Amcl::set_map(const grid::OccupancyGrid& map) {
@@ -79,7 +95,8 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
   for (std::size_t i = 0; i < count; ++i) {
     particles_.set(i, gaussian->sample(random_), 1.0 / static_cast<double>(count));
   }
-  spread_pending_ = searching_ = false;
+  spread_pending_ = false;
+  search_updates_ = 0;
   force_update_ = true;
   likelihood_updates_ = 0.0;
   estimate_ = Estimate{map_T_base, last_odom_T_base_.value_or(geometry::Pose2{}), covariance, {}};
@@ -107,14 +124,21 @@ geometry::Pose2 Amcl::random_nearby_pose() {
   return {x, y, geometry::normalized(random_.gaussian(center.yaw, kNearbyYawSigma))};
 }
 
-void Amcl::spread_over_free_space() {
-  const std::size_t count = config_.global_particles;
-  particles_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    particles_.set(i, random_free_pose(), 1.0 / static_cast<double>(count));
-  }
+/// A global start: many random poses, thinned to the most particles by what the first scan says of
+/// them.
+void Amcl::spread_over_free_space(const LaserBeams& scan) {
+  next_.resize(config_.global_particles);
+  for (std::size_t i = 0; i < next_.size(); ++i) next_.set(i, random_free_pose(), 1.0);
+  scan_likelihood(scan, next_);
+  weigh(next_, kSearchEvidence);
+  picked_.resize(std::min(config_.max_particles, config_.global_particles));
+  estimation::low_variance_resample(next_.weight, random_.uniform(), picked_);
+  particles_.resize(picked_.size());
+  const double weight = 1.0 / static_cast<double>(picked_.size());
+  for (std::size_t i = 0; i < picked_.size(); ++i)
+    particles_.set(i, next_.pose(picked_[i]), weight);
   spread_pending_ = false;
-  searching_ = true;
+  search_updates_ = 1;
 }
 
 bool Amcl::due(const geometry::Pose2& base0_T_base1) const {
@@ -150,14 +174,16 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   choose_beams(scan, std::max<std::size_t>(config_.refine_beams, 2), config_.sensor.max_range,
                false, dense_beams_);
 
-  if (spread_pending_) spread_over_free_space();
+  if (estimate_ && search_updates_ == 0) result.unmapped = drop_unmapped(scan, odom_T_base);
+  if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
-  const double log_likelihood = weigh();
+  const double log_likelihood =
+      weigh(particles_, search_updates_ > 0 ? kSearchEvidence : config_.independent_beams);
   find_bins();
   const Cluster cluster = heaviest_cluster();
-  searching_ = searching_ && cluster.weight < kWonWeight;
+  end_search(cluster);
   make_estimate(cluster, odom_T_base);
-  const Recovery recovery = this->recovery(log_likelihood);
+  const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - result.unmapped));
   result.injected = recovery.share;
   if (++updates_since_resampling_ >= config_.resample_interval || recovery.share > 0.0) {
     resample(scan, recovery, cluster);
@@ -167,6 +193,30 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   force_update_ = false;
   result.outcome = Outcome::kUpdated;
   return result;
+}
+
+/// Takes beams out of both sets that met people or moved furniture [fox1999dynamic]; returns their
+/// share. Leaves all when they are too many, or nobody knows where the robot is.
+double Amcl::drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T_base) {
+  const geometry::Pose2 map_T_base = estimate_->map_T_odom() * odom_T_base;
+  const geometry::Point2 laser = (map_T_base * scan.base_T_laser).position();
+  const auto mapped = [&](const Beam& beam) {
+    const auto wall = field_.distances().cast_ray(laser, map_T_base.yaw + beam.angle,
+                                                  beam.range + kUnmappedMargin);
+    return wall.has_value();
+  };
+  kept_dense_beams_.clear();
+  std::copy_if(dense_beams_.begin(), dense_beams_.end(), std::back_inserter(kept_dense_beams_),
+               mapped);
+  const double share = 1.0 - static_cast<double>(kept_dense_beams_.size()) /
+                                 static_cast<double>(dense_beams_.size());
+  if (share > kMostUnmapped) return 0.0;
+  kept_beams_.clear();
+  std::copy_if(beams_.begin(), beams_.end(), std::back_inserter(kept_beams_), mapped);
+  if (kept_beams_.size() < kLeastBeams) return 0.0;
+  std::swap(dense_beams_, kept_dense_beams_);
+  std::swap(beams_, kept_beams_);
+  return share;
 }
 
 void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {
@@ -180,36 +230,46 @@ void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {
   }
 }
 
-/// Multiplies the weights with the scan's likelihood and normalizes them; returns how well the
-/// belief then explains a beam of the scan, its mean log likelihood.
-double Amcl::weigh() {
-  const double evidence = std::min(static_cast<double>(beams_.size()), config_.independent_beams);
+/// Multiplies the weights with the likelihood of the scan as `evidence` independent beams and
+/// normalizes them; returns how well the belief then explains a beam, its mean log likelihood.
+double Amcl::weigh(Particles& particles, double evidence) const {
+  const double exponent = std::min(static_cast<double>(beams_.size()), evidence);
   const double best = *std::max_element(log_likelihood_.begin(), log_likelihood_.end());
   double total = 0.0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_.weight[i] *= std::exp(evidence * (log_likelihood_[i] - best));
-    total += particles_.weight[i];
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles.weight[i] *= std::exp(exponent * (log_likelihood_[i] - best));
+    total += particles.weight[i];
   }
   double mean = 0.0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_.weight[i] /= total;
-    mean += particles_.weight[i] * log_likelihood_[i];
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles.weight[i] /= total;
+    mean += particles.weight[i] * log_likelihood_[i];
   }
   return mean;
 }
 
+/// A search ends with one place that has stood several scans.
+void Amcl::end_search(const Cluster& cluster) {
+  if (search_updates_ == 0) return;
+  const bool won = search_updates_ >= kLeastSearch && cluster.weight >= kWonWeight;
+  search_updates_ = won ? 0 : search_updates_ + 1;
+  likelihood_updates_ = 0.0;
+}
+
 /// Augmented MCL [thrun2005, table 8.3], with a search nearby as soon as a scan fits badly.
-Amcl::Recovery Amcl::recovery(double log_likelihood) {
-  if (searching_) return {Recovery::Where::kEverywhere, kSearchShare};
+Amcl::Recovery Amcl::recovery(double likelihood) {
+  if (search_updates_ > 0) return {Recovery::Where::kEverywhere, kSearchShare};
   if (config_.recovery_slow <= 0.0) return {};
-  const double likelihood = std::exp(log_likelihood);
   likelihood_updates_ += 1.0;  // plain means until the decay is slower than 1 / n
   slow_likelihood_ +=
       std::max(config_.recovery_slow, 1.0 / likelihood_updates_) * (likelihood - slow_likelihood_);
   fast_likelihood_ +=
       std::max(config_.recovery_fast, 1.0 / likelihood_updates_) * (likelihood - fast_likelihood_);
   const double share = 1.0 - fast_likelihood_ / (kLostRatio * slow_likelihood_);
-  if (share > 0.0) return {Recovery::Where::kEverywhere, share};
+  if (share > 0.0) {
+    search_updates_ = 1;
+    return {Recovery::Where::kEverywhere, kSearchShare};
+  }
   if (likelihood < kDoubtRatio * slow_likelihood_) return {Recovery::Where::kNearby, kNearbyShare};
   return {};
 }
@@ -240,9 +300,19 @@ void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_b
     // A floor of a millimetre keeps the prior finite when all particles agree.
     const Eigen::Matrix3d prior =
         (cluster.covariance + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
+    for (Beam& beam : dense_beams_) {
+      beam.x += range_offset_ * beam.direction_x;
+      beam.y += range_offset_ * beam.direction_y;
+    }
     pose = refine(field_.distances(), dense_beams_, pose, prior, config_.refinement).pose;
   }
   estimate_ = Estimate{pose, odom_T_base, cluster.covariance, quality_of(pose, cluster)};
+  if (config_.refine_beams > 0 && estimate_->quality.confidence == Confidence::kGood) {
+    const double step =
+        range_offset(field_.distances(), dense_beams_, pose, config_.refinement.sigma);
+    range_offset_ = std::clamp(range_offset_ + kRangeOffsetGain * std::clamp(step, -0.02, 0.02),
+                               -kMostRangeOffset, kMostRangeOffset);
+  }
 }
 
 Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster) const {
@@ -265,7 +335,7 @@ Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster) co
   const ConfidenceLimits& limits = config_.confidence;
   if (quality.explained < limits.lost_explained) {
     quality.confidence = Confidence::kLost;
-  } else if (quality.explained < limits.good_explained ||
+  } else if (search_updates_ > 0 || quality.explained < limits.good_explained ||
              quality.cluster_weight < limits.good_weight || quality.sigma > limits.good_sigma) {
     quality.confidence = Confidence::kDegraded;
   } else {
@@ -331,7 +401,7 @@ void Amcl::search(const LaserBeams& scan, const Recovery& recovery, std::size_t 
                     order_.end(), better);
   RefinementParameters wide = config_.refinement;
   wide.sigma = std::max(wide.sigma, config_.sensor.sigma_hit);
-  wide.max_shift = config_.sensor.field_radius;
+  wide.max_shift = nearby ? kNearbySigma : config_.sensor.field_radius;
   wide.max_turn = 0.5;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = order_[k];

@@ -61,6 +61,7 @@ struct UpdateResult {
   bool odometry_restarted =
       false;  ///< the step was longer than max_step: taken as a restart, the belief stayed put
   double injected = 0.0;  ///< [0, 1] share of new hypotheses drawn to recover
+  double unmapped = 0.0;  ///< [0, 1] share of beams that met what the map does not know: left out
   BeamCounts beams;
 };
 
@@ -120,12 +121,14 @@ class Amcl {
   };
 
   bool due(const geometry::Pose2& base0_T_base1) const;
-  void spread_over_free_space();
+  void spread_over_free_space(const LaserBeams& scan);
   geometry::Pose2 random_free_pose();
   geometry::Pose2 random_nearby_pose();
+  double drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T_base);
   void scan_likelihood(const LaserBeams& scan, const Particles& particles);
-  double weigh();
-  Recovery recovery(double log_likelihood);
+  double weigh(Particles& particles, double evidence) const;
+  void end_search(const Cluster& cluster);
+  Recovery recovery(double likelihood);
   void find_bins();
   Cluster heaviest_cluster();
   void resample(const LaserBeams& scan, const Recovery& recovery, const Cluster& cluster);
@@ -143,7 +146,7 @@ class Amcl {
 
   Particles particles_, next_, candidates_;
   std::vector<double> log_likelihood_;
-  std::vector<Beam> beams_, dense_beams_;
+  std::vector<Beam> beams_, dense_beams_, kept_beams_, kept_dense_beams_;
   estimation::PoseHistogram histogram_;
   std::vector<std::uint32_t> bin_;  // of each particle
   std::vector<std::uint32_t> picked_, order_;
@@ -153,10 +156,11 @@ class Amcl {
   std::optional<geometry::Pose2> last_odom_T_base_;
   bool force_update_ = true;
   bool spread_pending_ = false;  // a global start waits for its map or first scan
-  bool searching_ = false;       // since a global start, until one cluster has won
+  int search_updates_ = 0;       // since a search over the whole map began; 0 without one
   int updates_since_resampling_ = 0;
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;
   double likelihood_updates_ = 0.0;
+  double range_offset_ = 0.0;  ///< [m] that all beams are too short by, learnt while tracking
   std::optional<Estimate> estimate_;
 };
 

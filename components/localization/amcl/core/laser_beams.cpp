@@ -43,9 +43,10 @@ BeamCounts choose_beams(const LaserBeams& scan, std::size_t max_beams, double ma
     if (seen++ != next) continue;
     const double range = std::min<double>(scan.ranges[i], farthest);
     const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    const geometry::Point2 point =
-        scan.base_T_laser * geometry::Point2(range * std::cos(bearing), range * std::sin(bearing));
-    beams.push_back({point.x(), point.y(), range, bearing + scan.base_T_laser.yaw});
+    const double angle = bearing + scan.base_T_laser.yaw;
+    const double c = std::cos(angle), s = std::sin(angle);
+    beams.push_back(
+        {scan.base_T_laser.x + range * c, scan.base_T_laser.y + range * s, range, angle, c, s});
   }
   counts.used = beams.size();
   return counts;

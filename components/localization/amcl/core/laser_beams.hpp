@@ -24,6 +24,7 @@ struct Beam {
                             ///< largest range
   double range = 0.0;       ///< [m]
   double angle = 0.0;       ///< [rad] in base
+  double direction_x = 1.0, direction_y = 0.0;  ///< the same as a unit vector
 };
 
 /// What became of a scan's beams.

@@ -12,6 +12,23 @@ struct Linearized {
   Eigen::Vector3d gradient;
 };
 
+/// The signed distance of a beam's end from the surface that faces the beam. Behind a surface the
+/// field says nothing (it is zero inside walls and rises again beyond thin ones), so the distance
+/// is taken a little before the end, where the beam still flies, and carried on along its gradient.
+/// A beam that grazes something else there is measured at its end.
+grid::DistanceField::Sample facing_distance(const grid::DistanceField& field,
+                                            const geometry::Point2& end,
+                                            const geometry::Point2& direction) {
+  constexpr double kBefore = 3.0;  // [cells]
+  constexpr double kFacing = 0.3;  // cosine of the angle between beam and surface normal
+  const double before = kBefore * field.geometry().resolution;
+  auto sample = field.interpolated(end - before * direction);
+  const double approach = sample.gradient.dot(direction);
+  if (approach > -kFacing) return field.interpolated(end);
+  sample.distance += before * approach;
+  return sample;
+}
+
 Linearized linearize(const grid::DistanceField& field, std::span<const Beam> beams,
                      const geometry::Pose2& pose, const Eigen::Vector3d& from_start,
                      const Eigen::Matrix3d& prior, double sigma) {
@@ -25,7 +42,10 @@ Linearized linearize(const grid::DistanceField& field, std::span<const Beam> bea
   for (const Beam& beam : beams) {
     const double dx = c * beam.x - s * beam.y;
     const double dy = s * beam.x + c * beam.y;
-    const auto sample = field.interpolated({pose.x + dx, pose.y + dy});
+    const geometry::Point2 end(pose.x + dx, pose.y + dy);
+    const geometry::Point2 direction(c * beam.direction_x - s * beam.direction_y,
+                                     s * beam.direction_x + c * beam.direction_y);
+    const auto sample = facing_distance(field, end, direction);
     const double square = sample.distance * sample.distance * information;
     const double weight = information / ((1.0 + square) * (1.0 + square));
     const Eigen::Vector3d jacobian(sample.gradient.x(), sample.gradient.y(),
@@ -68,6 +88,28 @@ Refinement refine(const grid::DistanceField& field, std::span<const Beam> beams,
   const bool near = from_start.head<2>().norm() <= parameters.max_shift &&
                     std::abs(from_start[2]) <= parameters.max_turn;
   return moved && near ? Refinement{pose, true} : Refinement{start, false};
+}
+
+double range_offset(const grid::DistanceField& field, std::span<const Beam> beams,
+                    const geometry::Pose2& pose, double sigma) {
+  constexpr double kHeld = 10.0;  // [beams]
+  const double c = std::cos(pose.yaw);
+  const double s = std::sin(pose.yaw);
+  const double information = 1.0 / (sigma * sigma);
+  double gradient = 0.0;
+  double hessian = kHeld * information;
+  for (const Beam& beam : beams) {
+    const geometry::Point2 end(pose.x + c * beam.x - s * beam.y, pose.y + s * beam.x + c * beam.y);
+    const geometry::Point2 direction(c * beam.direction_x - s * beam.direction_y,
+                                     s * beam.direction_x + c * beam.direction_y);
+    const auto sample = facing_distance(field, end, direction);
+    const double square = sample.distance * sample.distance * information;
+    const double weight = information / ((1.0 + square) * (1.0 + square));
+    const double jacobian = sample.gradient.dot(direction);
+    gradient += weight * sample.distance * jacobian;
+    hessian += weight * jacobian * jacobian;
+  }
+  return -gradient / hessian;
 }
 
 }  // namespace usher::amcl

@@ -31,4 +31,11 @@ Refinement refine(const grid::DistanceField& field, std::span<const Beam> beams,
                   const geometry::Pose2& start, const Eigen::Matrix3d& prior,
                   const RefinementParameters& parameters);
 
+/// By how much [m] all beams of a scan should be longer to end on the obstacles, at a pose: what a
+/// range finder's systematic error (and the half cell between a drawn wall's surface and its cell's
+/// middle) looks like. One Gauss-Newton step under the same kernel, held to zero with the weight of
+/// ten beams. O(beams).
+double range_offset(const grid::DistanceField& field, std::span<const Beam> beams,
+                    const geometry::Pose2& pose, double sigma);
+
 }  // namespace usher::amcl
