@@ -691,6 +691,7 @@ TEST_F(HostLaw, EachLossOfFreshnessIsReportedOnce) {
   stage_->run_for(milliseconds(400));
   // A sample that is stale when it comes is no return to freshness.
   stage_->publish(kEvents, message(0, stage_->now() - seconds(1)));
+  stage_->run_for(milliseconds(100));
   for (int loss = 0; loss < 3; ++loss) {
     for (int i = 0; i < 4; ++i) {
       stage_->publish(kEvents, message(i, stage_->now()));
