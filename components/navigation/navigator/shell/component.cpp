@@ -18,6 +18,7 @@ constexpr auto kFollowAge = milliseconds(500);
 constexpr auto kOdomAge = milliseconds(200);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kSupervisorAge = milliseconds(1000);
+constexpr double kTrail = 0.6;  // [m] of its own way that is taken for free
 constexpr auto kPoseAge = milliseconds(300);
 
 }  // namespace
@@ -107,6 +108,9 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
       host.input(topics::kOdom, {.max_age = kOdomAge, .on_loss = "pauses, fails after a while"});
   supervisor_ = host.input(topics::kSupervisorStatus,
                            {.max_age = kSupervisorAge, .on_loss = "pauses, fails after a while"});
+  whiskers_ =
+      host.input(topics::kWhiskers,
+                 {.max_age = milliseconds(300), .on_loss = "does not back off", .optional = true});
   plan_ = host.output(topics::kPlanRequest);
   motion_ = host.output(topics::kFollowGoal);
   clear_ = host.output(topics::kCostmapRequest);
@@ -195,6 +199,10 @@ Situation NavigatorComponent::situation() {
     const auto pose = transforms_.lookup_planar(frames::kMap, frames::kBaseFootprint, stamp);
     if (pose && host_.now() - stamp < kPoseAge) s.pose = *pose;
   }
+  // Nobody sees behind, but the robot has just come from there, and its rear whiskers feel.
+  const auto* whiskers = whiskers_.fresh();
+  if (whiskers != nullptr && !whiskers->back_left() && !whiskers->back_right())
+    s.rear_clearance = kTrail;
   s.hold = hold();
   return s;
 }

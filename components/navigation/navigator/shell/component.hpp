@@ -49,6 +49,7 @@ class NavigatorComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
   runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
+  runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
   runtime::Output<usher_msgs::msg::PlanRequest> plan_;
   runtime::Output<usher_msgs::msg::FollowGoal> motion_;
   runtime::Output<usher_msgs::msg::CostmapRequest> clear_;
