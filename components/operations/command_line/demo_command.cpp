@@ -140,8 +140,7 @@ int demo(const DemoArguments& arguments) {
   if (!deployment) return fail(deployment.error());
   for (auto& file : deployment->files) file.seed = arguments.seed;
   for (const auto& finding : deployment->findings) {
-    std::cerr << finding.origin << ": " << to_string(finding.verdict) << ": " << finding.text
-              << "\n";
+    std::cerr << to_string(finding) << "\n";
   }
   auto launcher = Launcher::create(
       *deployment,

@@ -41,8 +41,7 @@ int check(const std::vector<std::string>& manifests) {
       continue;
     }
     for (const auto& finding : deployment->findings) {
-      std::cout << finding.origin << ": " << to_string(finding.verdict) << ": " << finding.text
-                << "\n";
+      std::cout << to_string(finding) << "\n";
     }
     if (!deployment->findings.empty()) ++bad;
     if (deployment->findings.empty()) {
@@ -56,7 +55,7 @@ int check(const std::vector<std::string>& manifests) {
 /// The types that a manifest needs, for building no more than those.
 int components(const std::string& path) {
   const auto manifest =
-      read_manifest(path, config_directory(path, Installation::of_this_program()));
+      read_manifest(path, config_directories(path, Installation::of_this_program()));
   if (!manifest) return fail(manifest.error());
   std::set<std::string> types;
   for (const auto& component : manifest->components) {
@@ -71,7 +70,7 @@ int components(const std::string& path) {
 int graph(const std::string& path) {
   const auto installation = Installation::of_this_program();
   const auto contracts = read_contracts(installation.contracts);
-  const auto manifest = read_manifest(path, config_directory(path, installation));
+  const auto manifest = read_manifest(path, config_directories(path, installation));
   if (!contracts) return fail(contracts.error());
   if (!manifest) return fail(manifest.error());
   std::cout << "digraph \"" << manifest->name
@@ -184,8 +183,7 @@ int launch(const LaunchArguments& arguments) {
   const auto deployment = load_deployment(arguments.manifest, installation, overrides);
   if (!deployment) return fail(deployment.error());
   for (const auto& finding : deployment->findings) {
-    std::cerr << finding.origin << ": " << to_string(finding.verdict) << ": " << finding.text
-              << "\n";
+    std::cerr << to_string(finding) << "\n";
   }
   if (!deployment->findings.empty())
     return fail("this deployment could not work; nothing was started");

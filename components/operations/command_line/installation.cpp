@@ -17,11 +17,10 @@ Installation Installation::of_this_program() {
   return {program.parent_path().string(), (share / "contracts").string(), share.string()};
 }
 
-std::string config_directory(const std::string& manifest_path, const Installation& installation) {
-  const fs::path beside =
-      (fs::path(manifest_path).parent_path() / ".." / "config").lexically_normal();
-  std::error_code error;
-  return fs::is_directory(beside, error) ? beside.string() : installation.share + "/config";
+std::vector<std::string> config_directories(const std::string& manifest_path,
+                                            const Installation& installation) {
+  const fs::path beside = fs::path(manifest_path).parent_path() / ".." / "config";
+  return {beside.lexically_normal().string(), installation.share + "/config"};
 }
 
 Result<Deployment> load_deployment(const std::string& manifest_path,
@@ -29,7 +28,8 @@ Result<Deployment> load_deployment(const std::string& manifest_path,
                                    const std::vector<Override>& overrides) {
   const auto contracts = read_contracts(installation.contracts);
   if (!contracts) return Error{contracts.error()};
-  const auto manifest = read_manifest(manifest_path, config_directory(manifest_path, installation));
+  const auto manifest =
+      read_manifest(manifest_path, config_directories(manifest_path, installation));
   if (!manifest) return Error{manifest.error()};
   return resolve(*manifest, *contracts, overrides);
 }

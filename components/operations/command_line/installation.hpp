@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "foundation/result/result.hpp"
 #include "operations/manifest/resolve.hpp"
@@ -17,9 +18,10 @@ struct Installation {
   static Installation of_this_program();
 };
 
-/// The config directory that goes with a manifest: beside its folder where there is one
-/// (deploy/x.yaml and config/), else the installed one.
-std::string config_directory(const std::string& manifest_path, const Installation& installation);
+/// Where a manifest's robot and site are looked for: beside its folder (deploy/x.yaml and config/),
+/// then where the installed ones are.
+std::vector<std::string> config_directories(const std::string& manifest_path,
+                                            const Installation& installation);
 
 /// Reads, resolves and judges. Fails only when there is no manifest to judge.
 Result<Deployment> load_deployment(const std::string& manifest_path,

@@ -94,10 +94,7 @@ std::string to_yaml(const runtime::ParameterFile& file) {
 }
 
 Result<Launcher> Launcher::create(const Deployment& deployment, const LaunchOptions& options) {
-  if (!deployment.findings.empty()) {
-    const auto& first = deployment.findings.front();
-    return Error{to_string(first.verdict) + ": " + first.text + " (" + first.origin + ")"};
-  }
+  if (!deployment.findings.empty()) return Error{to_string(deployment.findings.front())};
   if (!options.host.empty() && deployment.manifest.host(options.host) == nullptr) {
     std::string known;
     for (const auto& host : deployment.manifest.hosts)
@@ -145,6 +142,11 @@ Status Launcher::lock() {
 }
 
 Status Launcher::prepare(const Deployment& deployment) {
+  if (deployment.manifest.fresh_start) {
+    std::error_code error;
+    std::filesystem::remove_all(options_.run_directory + "/kept", error);
+    if (error) return Error{"cannot empty " + options_.run_directory + "/kept: " + error.message()};
+  }
   const std::int64_t anchor = clock_anchor();
   for (std::size_t i = 0; i < deployment.files.size(); ++i) {
     const auto& component = deployment.manifest.components[i];

@@ -1,26 +1,28 @@
 #include "operations/manifest/manifest.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <initializer_list>
-#include <map>
 #include <string_view>
+
+#include "runtime/parameters/units.hpp"
 
 namespace usher::operations {
 
 namespace {
 
-constexpr int kMaxExtends = 8;
+constexpr std::size_t kMaxExtends = 8;
+constexpr std::size_t kLongestName = 64;
 
-std::string at(const Tree& tree) { return " (" + tree.origin + ")"; }
-
-/// Reads a map strictly: every key must be taken, and the first error is kept.
+/// Reads a map strictly: every key must be taken; all that is wrong becomes a finding.
 class Fields {
  public:
-  Fields(const Tree& tree, std::string what) : tree_(tree), what_(std::move(what)) {
+  Fields(const Tree& tree, std::string what, std::vector<Finding>& findings)
+      : tree_(tree), what_(std::move(what)), findings_(findings) {
     if (tree.kind != Tree::Kind::kMap && tree.kind != Tree::Kind::kNull)
-      fail(what_ + " must be a map" + at(tree));
+      wrong("must be a map, got " + tree.yaml(), tree);
   }
 
   const Tree* take(const std::string& key) {
@@ -32,7 +34,7 @@ class Fields {
     const Tree* node = take(key);
     if (node == nullptr) return;
     if (node->kind != Tree::Kind::kScalar || node->scalar.empty()) {
-      fail(what_ + ": '" + key + "' must be a word" + at(*node));
+      wrong("'" + key + "' must be a word, got " + node->yaml(), *node);
     } else {
       value = node->scalar;
     }
@@ -47,8 +49,10 @@ class Fields {
     const auto [rest, error] = std::from_chars(node->scalar.data(), end, read);
     if (node->kind != Tree::Kind::kScalar || error != std::errc() || rest != end ||
         !(read >= low && read <= high)) {
-      fail(what_ + ": '" + key + "' must be a number in [" + std::to_string(low) + ", " +
-           std::to_string(high) + "], got " + node->yaml() + at(*node));
+      wrong("'" + key + "' must be a " + (std::is_integral_v<Number> ? "whole number" : "number") +
+                " in [" + runtime::shortest(static_cast<double>(low)) + ", " +
+                runtime::shortest(static_cast<double>(high)) + "], got " + node->yaml(),
+            *node);
     } else {
       value = read;
     }
@@ -67,63 +71,117 @@ class Fields {
       }
       names += (names.empty() ? "" : ", ") + std::string(name);
     }
-    fail(what_ + ": '" + key + "' must be one of " + names + ", got " + node->yaml() + at(*node));
+    wrong("'" + key + "' must be one of " + names + ", got " + node->yaml(), *node);
   }
 
   void texts(const std::string& key, std::vector<std::string>& values) {
     const Tree* node = take(key);
     if (node == nullptr) return;
-    for (const auto& item : node->items) values.push_back(item.scalar);
-    if (node->kind != Tree::Kind::kList) fail(what_ + ": '" + key + "' must be a list" + at(*node));
-  }
-
-  void fail(std::string message) {
-    if (error_.empty()) error_ = std::move(message);
-  }
-
-  /// The first error, or the first key that nobody took.
-  Status finish() {
-    if (!error_.empty()) return Error{error_};
-    for (const auto& [key, value] : tree_.entries) {
-      if (std::find(taken_.begin(), taken_.end(), key) == taken_.end()) {
-        std::string known;
-        for (const auto& name : taken_) known += (known.empty() ? "" : ", ") + name;
-        return Error{what_ + ": unknown key '" + key + "', expected one of " + known + at(value)};
+    if (node->kind != Tree::Kind::kList)
+      wrong("'" + key + "' must be a list, got " + node->yaml(), *node);
+    for (const auto& item : node->items) {
+      if (item.kind == Tree::Kind::kScalar && !item.scalar.empty()) {
+        values.push_back(item.scalar);
+      } else {
+        wrong("'" + key + "' must hold words, got " + item.yaml(), item);
       }
     }
-    return {};
+  }
+
+  /// A map of whatever keys; null where it is not there, which `required` makes a finding.
+  const Tree* map(const std::string& key, bool required = false) {
+    const Tree* node = take(key);
+    if (node != nullptr && node->kind != Tree::Kind::kMap && node->kind != Tree::Kind::kNull) {
+      wrong("'" + key + "' must be a map, got " + node->yaml(), *node);
+      return nullptr;
+    }
+    if (required && (node == nullptr || node->entries.empty())) missing(key);
+    return node;
+  }
+
+  void missing(const std::string& key) {
+    findings_.push_back(
+        {Verdict::kMissingValue, what_ + ": '" + key + "' must be given", tree_.origin});
+  }
+
+  void wrong(const std::string& text, const Tree& node) {
+    findings_.push_back({Verdict::kWrongValue, what_ + ": " + text, node.origin});
+  }
+
+  /// Reports the keys that nobody took.
+  void finish() {
+    for (const auto& [key, value] : tree_.entries) {
+      if (std::find(taken_.begin(), taken_.end(), key) != taken_.end()) continue;
+      std::string known;
+      for (const auto& name : taken_) known += (known.empty() ? "" : ", ") + name;
+      findings_.push_back({Verdict::kUnknownKey,
+                           what_ + ": unknown key '" + key + "', expected one of " + known,
+                           value.origin});
+    }
   }
 
  private:
   const Tree& tree_;
   std::string what_;
+  std::vector<Finding>& findings_;
   std::vector<std::string> taken_;
-  std::string error_;
 };
 
-/// The tree of a manifest with everything that it extends below it.
-Result<Tree> read_extended(const std::filesystem::path& path, int depth) {
-  if (depth > kMaxExtends)
-    return Error{"manifests extend one another in a circle (" + path.string() + ")"};
+/// The tree of a manifest with everything that it extends below it. `open` are the manifests that
+/// led here.
+Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::string> open) {
   auto tree = read_tree(path.string());
   if (!tree) return tree;
-  if (tree->kind != Tree::Kind::kMap) return Error{"a manifest must be a map" + at(*tree)};
+  if (tree->kind != Tree::Kind::kMap)
+    return Error{"a manifest must be a map (" + tree->origin + ")"};
   const Tree* extends = tree->find("extends");
   if (extends == nullptr) return tree;
-  auto base = read_extended(path.parent_path() / extends->scalar, depth + 1);
+  if (extends->kind != Tree::Kind::kScalar || extends->scalar.empty())
+    return Error{"'extends' must name a file, got " + extends->yaml() + " (" + extends->origin +
+                 ")"};
+  std::error_code ignored;
+  open.push_back(std::filesystem::weakly_canonical(path, ignored).string());
+  const auto base_path = (path.parent_path() / extends->scalar).lexically_normal();
+  const auto canonical = std::filesystem::weakly_canonical(base_path, ignored).string();
+  if (std::find(open.begin(), open.end(), canonical) != open.end())
+    return Error{"manifests extend one another in a circle (" + extends->origin + ")"};
+  if (open.size() > kMaxExtends)
+    return Error{"more than 8 manifests extend one another (" + extends->origin + ")"};
+  auto base = read_extended(base_path, std::move(open));
   if (!base) return Error{base.error() + ", extended by " + extends->origin};
   std::erase_if(tree->entries, [](const auto& entry) { return entry.first == "extends"; });
   return overlay(std::move(base).value(), *tree);
 }
 
-Status read_component(const std::string& name, const Tree& tree, ManifestComponent& component) {
+/// Names become file names, words in lists and names of participants.
+void judge_name(const std::string& name, const std::string& what, const std::string& origin,
+                std::vector<Finding>& findings) {
+  const bool good =
+      !name.empty() && name.size() <= kLongestName &&
+      std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+      });
+  if (good) return;
+  findings.push_back({Verdict::kWrongValue,
+                      what + " name must be 1 to 64 letters, digits, '_' or '-', got " +
+                          Tree::word(name, {}).yaml(),
+                      origin});
+}
+
+ManifestComponent read_component(const std::string& name, const Tree& tree,
+                                 std::vector<Finding>& findings) {
+  ManifestComponent component;
   component.name = name;
   component.type = name;
   component.origin = tree.origin;
-  Fields fields(tree, "component '" + name + "'");
+  for (const auto& [key, value] : tree.entries) component.origins[key] = value.origin;
+  judge_name(name, "a component's", tree.origin, findings);
+  Fields fields(tree, "component '" + name + "'", findings);
   fields.text("type", component.type);
   fields.text("host", component.host);
   fields.text("group", component.group);
+  if (!component.group.empty())
+    judge_name(component.group, "a group's", component.origin_of("group"), findings);
   fields.one_of("criticality",
                 {{"stop", Criticality::kStop},
                  {"degrade", Criticality::kDegrade},
@@ -136,23 +194,53 @@ Status read_component(const std::string& name, const Tree& tree, ManifestCompone
                 component.restart);
   fields.number("restart_budget", 0, 1000, component.restart_budget);
   fields.number("heartbeat_timeout", 0.05, 60.0, component.heartbeat_timeout);
-  if (const Tree* parameters = fields.take("parameters"); parameters != nullptr) {
-    for (const auto& [key, value] : parameters->entries) {
+  if (const Tree* parameters = fields.map("parameters"); parameters != nullptr) {
+    for (const auto& [key, value] : parameters->entries)
       component.parameters.push_back({key, value.yaml(), value.origin});
-    }
   }
-  return fields.finish();
+  fields.finish();
+  return component;
 }
 
-Status read_host(const std::string& name, const Tree& tree, ManifestHost& host) {
+ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Finding>& findings) {
+  ManifestHost host;
   host.name = name;
   host.origin = tree.origin;
-  Fields fields(tree, "host '" + name + "'");
+  judge_name(name, "a host's", tree.origin, findings);
+  Fields fields(tree, "host '" + name + "'", findings);
   fields.texts("peers", host.peers);
-  return fields.finish();
+  fields.finish();
+  return host;
+}
+
+void judge_host_of(const ManifestComponent& component, Manifest& manifest) {
+  if (manifest.host(component.host) != nullptr) return;
+  std::string known;
+  for (const auto& host : manifest.hosts) known += (known.empty() ? "" : ", ") + host.name;
+  manifest.findings.push_back(
+      {Verdict::kUnknownHost,
+       "component '" + component.name + "' runs on the " +
+           (component.host.empty() ? "host of no name" : "unknown host '" + component.host + "'") +
+           ", expected one of " + known,
+       component.origin_of("host")});
+}
+
+/// The first one that is there; the first one at all where none is, to be named in the error.
+std::string find_config(const std::vector<std::string>& directories, const std::string& relative) {
+  std::error_code ignored;
+  for (const auto& directory : directories) {
+    auto path = directory + "/" + relative;
+    if (std::filesystem::exists(path, ignored)) return path;
+  }
+  return directories.empty() ? relative : directories.front() + "/" + relative;
 }
 
 }  // namespace
+
+const std::string& ManifestComponent::origin_of(const std::string& key) const {
+  const auto found = origins.find(key);
+  return found == origins.end() ? origin : found->second;
+}
 
 const ManifestComponent* Manifest::component(const std::string& component_name) const {
   const auto found =
@@ -179,14 +267,15 @@ std::string to_string(Criticality criticality) {
   return "stop";
 }
 
-Result<Manifest> read_manifest(const std::string& path, const std::string& config_directory) {
-  const auto tree = read_extended(path, 0);
+Result<Manifest> read_manifest(const std::string& path,
+                               const std::vector<std::string>& config_directories) {
+  const auto tree = read_extended(path, {});
   if (!tree) return Error{tree.error()};
 
   Manifest manifest;
   manifest.path = path;
   manifest.name = std::filesystem::path(path).stem().string();
-  Fields fields(*tree, "manifest");
+  Fields fields(*tree, "manifest", manifest.findings);
   std::string robot;
   std::string site;
   fields.text("name", manifest.name);
@@ -194,30 +283,25 @@ Result<Manifest> read_manifest(const std::string& path, const std::string& confi
   fields.text("site", site);
   fields.number("domain", std::uint32_t{0}, std::uint32_t{232}, manifest.domain);
   fields.number("seed", std::uint64_t{0}, ~std::uint64_t{0}, manifest.seed);
-  const Tree* hosts = fields.take("hosts");
-  const Tree* components = fields.take("components");
-  if (auto status = fields.finish(); !status) return Error{status.error()};
+  fields.one_of("fresh_start", {{"true", true}, {"false", false}}, manifest.fresh_start);
+  if (robot.empty()) fields.missing("robot");
+  if (site.empty()) fields.missing("site");
+  const Tree* hosts = fields.map("hosts", true);
+  const Tree* components = fields.map("components", true);
+  fields.finish();
+  if (!robot.empty())
+    manifest.robot_file = find_config(config_directories, "robots/" + robot + ".yaml");
+  if (!site.empty())
+    manifest.site_file = find_config(config_directories, "sites/" + site + "/site.yaml");
 
-  if (robot.empty()) return Error{"manifest must name a robot" + at(*tree)};
-  if (site.empty()) return Error{"manifest must name a site" + at(*tree)};
-  if (hosts == nullptr || hosts->entries.empty())
-    return Error{"manifest must name its hosts" + at(*tree)};
-  if (components == nullptr || components->entries.empty()) {
-    return Error{"manifest must name its components" + at(*tree)};
+  if (hosts != nullptr) {
+    for (const auto& [name, entry] : hosts->entries)
+      manifest.hosts.push_back(read_host(name, entry, manifest.findings));
   }
-  manifest.robot_file = config_directory + "/robots/" + robot + ".yaml";
-  manifest.site_file = config_directory + "/sites/" + site + "/site.yaml";
-
-  for (const auto& [name, entry] : hosts->entries) {
-    if (auto status = read_host(name, entry, manifest.hosts.emplace_back()); !status)
-      return Error{status.error()};
-  }
-  for (const auto& [name, entry] : components->entries) {
-    auto& component = manifest.components.emplace_back();
-    if (auto status = read_component(name, entry, component); !status) return Error{status.error()};
-    if (manifest.host(component.host) == nullptr) {
-      return Error{"component '" + name + "' runs on the unknown host '" + component.host + "'" +
-                   at(entry)};
+  if (components != nullptr) {
+    for (const auto& [name, entry] : components->entries) {
+      manifest.components.push_back(read_component(name, entry, manifest.findings));
+      judge_host_of(manifest.components.back(), manifest);
     }
   }
   return manifest;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "foundation/result/result.hpp"
+#include "operations/manifest/finding.hpp"
 #include "operations/manifest/tree.hpp"
 #include "runtime/parameters/parameter_file.hpp"
 
@@ -26,6 +28,10 @@ struct ManifestComponent {
   std::string group;               ///< components of one group share a process; empty = its own
   std::vector<runtime::ParameterValue> parameters;
   std::string origin;
+  std::map<std::string, std::string> origins;  ///< of the keys that are given
+
+  /// Where `key` is given, or the component itself where it is not.
+  const std::string& origin_of(const std::string& key) const;
 };
 
 struct ManifestHost {
@@ -34,8 +40,7 @@ struct ManifestHost {
   std::string origin;
 };
 
-/// What runs where. Read strictly: an unknown key, a missing host or a wrong type is an error with
-/// file and line.
+/// What runs where. Read strictly: an unknown key, a missing host or a wrong type is a finding.
 struct Manifest {
   std::string path;
   std::string name;        ///< of the deployment; the file's name unless given
@@ -43,15 +48,20 @@ struct Manifest {
   std::string site_file;   ///< config/sites/<site>/site.yaml
   std::uint32_t domain = 0;
   std::uint64_t seed = 1;
+  bool fresh_start = false;  ///< a launch forgets what components kept: a simulated robot stands elsewhere than the last one
   std::vector<ManifestHost> hosts;
   std::vector<ManifestComponent> components;
+  std::vector<Finding> findings;  ///< what is wrong with the manifest by itself
 
   const ManifestComponent* component(const std::string& component_name) const;
   const ManifestHost* host(const std::string& host_name) const;
 };
 
-/// Reads a manifest and what it extends. `config_directory` holds robots/ and sites/.
-Result<Manifest> read_manifest(const std::string& path, const std::string& config_directory);
+/// Reads a manifest and what it extends. The config directories hold robots/ and sites/; the first
+/// one that has the file that is looked for counts. Fails only when there is no manifest to judge:
+/// a file that cannot be read, bad YAML, a circle.
+Result<Manifest> read_manifest(const std::string& path,
+                               const std::vector<std::string>& config_directories);
 
 std::string to_string(Criticality criticality);
 

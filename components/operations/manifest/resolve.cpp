@@ -17,6 +17,8 @@ using runtime::Contract;
 using runtime::ParameterKind;
 using runtime::ParameterValue;
 
+constexpr const char* kCommandLine = "command line";
+
 /// A value of a lower or higher layer that may belong to some component.
 struct Layer {
   std::map<std::string, ParameterValue> shared;  ///< by full name, "robot.laser.x"
@@ -24,8 +26,23 @@ struct Layer {
       components;  ///< by component name, then parameter
 };
 
-bool is_owned(const std::string& name) {
-  return name.starts_with("robot.") || name.starts_with("site.");
+/// Who alone may set a parameter of this name; empty = anybody.
+std::string owner_of(const std::string& name) {
+  if (name.starts_with("robot.")) return "the robot's file";
+  if (name.starts_with("site.")) return "the site's file";
+  if (name.starts_with("manifest.")) return "the launcher";
+  return {};
+}
+
+/// Puts the leaves of a map under their dotted names.
+void flatten(const Tree& node, const std::string& name, Layer& layer,
+             std::vector<Finding>& findings) {
+  if (node.kind == Tree::Kind::kMap) {
+    for (const auto& [key, value] : node.entries) flatten(value, name + "." + key, layer, findings);
+    return;
+  }
+  if (!layer.shared.emplace(name, ParameterValue{name, node.yaml(), node.origin}).second)
+    findings.push_back({Verdict::kWrongValue, "'" + name + "' is given twice", node.origin});
 }
 
 /// Reads the robot's or site's file: `components:` holds settings of single components, all else
@@ -33,26 +50,28 @@ bool is_owned(const std::string& name) {
 Layer read_layer(const std::string& path, const std::string& prefix,
                  std::vector<Finding>& findings) {
   Layer layer;
+  if (path.empty()) return layer;  // not named, which is a finding already
   const auto tree = read_tree(path);
   if (!tree) {
-    findings.push_back({Verdict::kUnreadable, tree.error(), path});
+    findings.push_back({Verdict::kUnreadable, tree.error(), path + ":1"});
     return layer;
   }
-  Tree facts = *tree;
-  std::erase_if(facts.entries, [](const auto& entry) { return entry.first == "components"; });
-  const auto add = [](const auto& self, const Tree& node, const std::string& name,
-                      Layer& into) -> void {
-    if (node.kind != Tree::Kind::kMap) {
-      into.shared[name] = {name, node.yaml(), node.origin};
-      return;
-    }
-    for (const auto& [key, value] : node.entries) self(self, value, name + "." + key, into);
+  const auto is_map = [&](const Tree& node, const std::string& what) {
+    if (node.kind == Tree::Kind::kMap) return true;
+    if (node.kind != Tree::Kind::kNull)
+      findings.push_back(
+          {Verdict::kWrongValue, what + " must be a map, got " + node.yaml(), node.origin});
+    return false;
   };
-  for (const auto& [key, value] : facts.entries) add(add, value, prefix + "." + key, layer);
-  if (const Tree* components = tree->find("components"); components != nullptr) {
-    for (const auto& [component, settings] : components->entries) {
-      for (const auto& [key, value] : settings.entries) {
-        layer.components[component][key] = {key, value.yaml(), value.origin};
+  if (!is_map(*tree, "the " + prefix + "'s file")) return layer;
+  for (const auto& [key, value] : tree->entries) {
+    if (key != "components") {
+      flatten(value, prefix + "." + key, layer, findings);
+    } else if (is_map(value, "'components'")) {
+      for (const auto& [component, settings] : value.entries) {
+        if (!is_map(settings, "the settings of '" + component + "'")) continue;
+        for (const auto& [name, setting] : settings.entries)
+          layer.components[component][name] = {name, setting.yaml(), setting.origin};
       }
     }
   }
@@ -61,18 +80,17 @@ Layer read_layer(const std::string& path, const std::string& prefix,
 
 /// Facts that the launcher knows best; a component asks for them like for any parameter.
 ParameterValue derived(const std::string& name, const Manifest& manifest) {
+  const std::string origin = manifest.path + ":1";
+  if (name != "manifest.components")  // manifest.name
+    return {name, Tree::word(manifest.name, origin).yaml(), origin};
   std::string records;
-  if (name == "manifest.components") {
-    for (const auto& component : manifest.components) {
-      records += (records.empty() ? "" : ", ") +
-                 ("{name: " + component.name + ", type: " + component.type) +
-                 ", host: " + component.host +
-                 ", criticality: " + to_string(component.criticality) +
-                 ", timeout: " + std::to_string(component.heartbeat_timeout) + " s}";
-    }
-    return {name, "[" + records + "]", manifest.path};
+  for (const auto& component : manifest.components) {
+    records += (records.empty() ? "" : ", ") +
+               ("{name: " + component.name + ", type: " + component.type) +
+               ", host: " + component.host + ", criticality: " + to_string(component.criticality) +
+               ", timeout: " + std::to_string(component.heartbeat_timeout) + " s}";
   }
-  return {name, manifest.name, manifest.path};  // manifest.name
+  return {name, "[" + records + "]", origin};
 }
 
 class Resolver {
@@ -93,7 +111,7 @@ class Resolver {
     for (const auto& o : overrides) {
       if (manifest_.component(o.component) == nullptr) {
         found(Verdict::kUnknownKey, "no component '" + o.component + "' in the manifest",
-              "command line");
+              kCommandLine);
       }
     }
   }
@@ -117,7 +135,7 @@ class Resolver {
     if (contract == contracts_.end()) {
       found(Verdict::kUnknownType,
             "component '" + component.name + "' has the unknown type '" + component.type + "'",
-            component.origin);
+            component.origin_of("type"));
       return;
     }
     auto own = layers_of(component, overrides);
@@ -128,26 +146,27 @@ class Resolver {
           found(
               Verdict::kMissingValue,
               "'" + parameter.name + "' of '" + component.name + "' must be set: " + parameter.text,
-              is_owned(parameter.name)
-                  ? (parameter.name.starts_with("robot.") ? manifest_.robot_file
-                                                          : manifest_.site_file)
-                  : component.origin);
+              place_for(parameter.name, component));
         }
         continue;
       }
       judge(parameter, value, file);
     }
     for (const auto& [name, value] : own) {
-      if (is_owned(name)) {
-        found(Verdict::kMisplaced,
-              "'" + name + "' can be set only in the " +
-                  (name.starts_with("robot.") ? "robot" : "site") + "'s file",
-              value.origin);
+      if (const auto owner = owner_of(name); !owner.empty()) {
+        found(Verdict::kMisplaced, "'" + name + "' can be set only by " + owner, value.origin);
       } else {
         found(Verdict::kUnknownKey,
               "component '" + component.name + "' has no parameter '" + name + "'", value.origin);
       }
     }
+  }
+
+  /// Where a value that is missing would have to be set.
+  std::string place_for(const std::string& parameter, const ManifestComponent& component) const {
+    if (parameter.starts_with("robot.")) return manifest_.robot_file + ":1";
+    if (parameter.starts_with("site.")) return manifest_.site_file + ":1";
+    return component.origin;
   }
 
   /// The component's own settings, later layers over earlier ones.
@@ -161,7 +180,14 @@ class Resolver {
     }
     for (const auto& value : component.parameters) own[value.name] = value;
     for (const auto& o : overrides) {
-      if (o.component == component.name) own[o.parameter] = {o.parameter, o.value, "command line"};
+      if (o.component != component.name) continue;
+      const auto value = parse_tree(o.value, kCommandLine);
+      if (value) {
+        own[o.parameter] = {o.parameter, value->yaml(), kCommandLine};
+      } else {
+        found(Verdict::kWrongValue, o.component + "." + o.parameter + ": " + value.error(),
+              kCommandLine);
+      }
     }
     return own;
   }
@@ -170,7 +196,7 @@ class Resolver {
   ParameterValue value_of(const Contract::Parameter& parameter,
                           std::map<std::string, ParameterValue>& own) {
     if (parameter.name.starts_with("manifest.")) return derived(parameter.name, manifest_);
-    if (is_owned(parameter.name)) {
+    if (!owner_of(parameter.name).empty()) {
       const Layer& layer = parameter.name.starts_with("robot.") ? robot_ : site_;
       const auto value = layer.shared.find(parameter.name);
       return value == layer.shared.end() ? ParameterValue{} : value->second;
@@ -181,22 +207,20 @@ class Resolver {
 
   void judge(const Contract::Parameter& parameter, ParameterValue value,
              runtime::ParameterFile& file) {
-    if (const auto given = runtime::interpret(parameter, value); !given) {
+    const auto given = runtime::interpret(parameter, value);
+    if (!given) {
       found(Verdict::kWrongValue, given.error(), value.origin);
       return;
     }
-    if (parameter.kind == ParameterKind::kFile) {
-      const std::filesystem::path path(value.yaml);
-      const auto folder =
-          std::filesystem::path(value.origin.substr(0, value.origin.rfind(':'))).parent_path();
-      const auto absolute =
-          std::filesystem::absolute(path.is_absolute() ? path : folder / path).lexically_normal();
-      if (!std::filesystem::exists(absolute)) {
+    if (parameter.kind == ParameterKind::kFile && !given->text.empty()) {
+      std::error_code ignored;
+      if (!std::filesystem::exists(given->text, ignored) ||
+          std::filesystem::is_directory(given->text, ignored)) {
         found(Verdict::kMissingFile,
-              "'" + parameter.name + "' names " + absolute.string() + ", which is not there",
+              "'" + parameter.name + "' names " + given->text + ", which is not there",
               value.origin);
       }
-      value.yaml = absolute.string();
+      value.yaml = Tree::word(given->text, value.origin).yaml();
     }
     file.values.push_back(std::move(value));
   }
@@ -253,50 +277,11 @@ Result<Contracts> read_contracts(const std::string& directory) {
   return contracts;
 }
 
-std::string to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kUnreadable:
-      return "unreadable";
-    case Verdict::kUnknownType:
-      return "unknown type";
-    case Verdict::kUnknownKey:
-      return "unknown key";
-    case Verdict::kWrongValue:
-      return "wrong value";
-    case Verdict::kMissingValue:
-      return "missing value";
-    case Verdict::kMissingFile:
-      return "missing file";
-    case Verdict::kMisplaced:
-      return "misplaced";
-    case Verdict::kNoWriter:
-      return "no writer";
-    case Verdict::kTwoWriters:
-      return "two writers";
-    case Verdict::kUnauthorizedWriter:
-      return "unauthorized writer";
-    case Verdict::kTypeMismatch:
-      return "type mismatch";
-    case Verdict::kQosMismatch:
-      return "QoS mismatch";
-    case Verdict::kRateTooLow:
-      return "rate too low";
-    case Verdict::kUnsafePolicy:
-      return "unsafe policy";
-    case Verdict::kSplitDriveChain:
-      return "split drive chain";
-    case Verdict::kSplitGroup:
-      return "split group";
-    case Verdict::kWrongIdl:
-      return "wrong IDL";
-  }
-  return "?";
-}
-
 Deployment resolve(const Manifest& manifest, const Contracts& contracts,
                    const std::vector<Override>& overrides) {
   Deployment deployment;
   deployment.manifest = manifest;
+  deployment.findings = manifest.findings;
   Resolver(manifest, contracts, deployment).run(overrides);
   judge_wiring(manifest, contracts, deployment.findings);
   return deployment;

@@ -1,61 +1,148 @@
 #include "operations/manifest/tree.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
 
 namespace usher::operations {
 
 namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 20;
-constexpr int kMaxDepth = 32;
+constexpr std::size_t kMaxDepth = 32;
 
 std::string place(const std::string& where, const YAML::Mark& mark) {
-  return where + ":" + std::to_string(mark.line + 1);
+  return where + ":" + std::to_string(std::max(mark.line, 0) + 1);
 }
 
-Result<Tree> convert(const YAML::Node& node, const std::string& where, int depth) {
-  Tree tree;
-  tree.origin = place(where, node.Mark());
-  if (depth > kMaxDepth) return Error{"nested deeper than 32 levels (" + tree.origin + ")"};
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      tree.kind = Tree::Kind::kScalar;
-      tree.scalar = node.Scalar();
-      break;
-    case YAML::NodeType::Sequence:
-      tree.kind = Tree::Kind::kList;
-      for (const auto& item : node) {
-        auto converted = convert(item, where, depth + 1);
-        if (!converted) return converted;
-        tree.items.push_back(std::move(converted).value());
-      }
-      break;
-    case YAML::NodeType::Map:
-      tree.kind = Tree::Kind::kMap;
-      for (const auto& entry : node) {
-        if (!entry.first.IsScalar()) {
-          return Error{"a key must be a word (" + place(where, entry.first.Mark()) + ")"};
-        }
-        const std::string& key = entry.first.Scalar();
-        if (tree.find(key) != nullptr) {
-          return Error{"key '" + key + "' is given twice (" + place(where, entry.first.Mark()) +
-                       ")"};
-        }
-        auto converted = convert(entry.second, where, depth + 1);
-        if (!converted) return converted;
-        converted.value().origin = place(where, entry.first.Mark());
-        tree.entries.emplace_back(key, std::move(converted).value());
-      }
-      break;
-    default:
-      break;
+/// Thrown through yaml-cpp's parser, caught in parse_tree.
+struct Refused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Builds the tree from the parser's events, so that what we do not want never costs anything.
+class Builder final : public YAML::EventHandler {
+ public:
+  explicit Builder(const std::string& where) : where_(where) {}
+
+  Tree take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (std::exchange(started_, true)) refuse("a second document starts", mark);
   }
-  return tree;
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(Tree::Kind::kNull, mark, anchor, {});
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
+    refuse("aliases are not allowed", mark);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+                const std::string& value) override {
+    add(Tree::Kind::kScalar, mark, anchor, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value /*style*/) override {
+    open_.push_back({add(Tree::Kind::kList, mark, anchor, {})});
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value /*style*/) override {
+    open_.push_back({add(Tree::Kind::kMap, mark, anchor, {})});
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  /// A list or map that is being read. Its address is stable: siblings come only after it is
+  /// closed.
+  struct Open {
+    Tree* tree;
+    bool key_read = false;
+  };
+
+  [[noreturn]] void refuse(const std::string& why, const YAML::Mark& mark) const {
+    throw Refused(why + " (" + place(where_, mark) + ")");
+  }
+
+  Tree* add(Tree::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor,
+            const std::string& scalar) {
+    if (anchor != 0) refuse("anchors are not allowed", mark);
+    if (open_.size() > kMaxDepth) refuse("nested deeper than 32 levels", mark);
+    Tree tree;
+    tree.kind = kind;
+    tree.scalar = scalar;
+    tree.origin = place(where_, mark);
+    if (open_.empty()) {
+      root_ = std::move(tree);
+      return &root_;
+    }
+    Open& parent = open_.back();
+    if (parent.tree->kind == Tree::Kind::kList)
+      return &parent.tree->items.emplace_back(std::move(tree));
+    auto& entries = parent.tree->entries;
+    parent.key_read = !parent.key_read;
+    if (parent.key_read) {
+      if (kind != Tree::Kind::kScalar) refuse("a key must be a word", mark);
+      if (parent.tree->find(scalar) != nullptr) refuse("key '" + scalar + "' is given twice", mark);
+      entries.emplace_back(scalar, std::move(tree));
+      return nullptr;
+    }
+    tree.origin = std::move(entries.back().second.origin);  // of the key
+    entries.back().second = std::move(tree);
+    return &entries.back().second;
+  }
+
+  const std::string& where_;
+  Tree root_;
+  std::vector<Open> open_;
+  bool started_ = false;
+};
+
+/// Whether a scalar reads the same without quotes, in whatever place.
+bool is_plain(std::string_view text) {
+  const auto is_word = [](char c) {  // or a path
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
+  };
+  for (const std::string_view null : {"null", "Null", "NULL"}) {
+    if (text == null) return false;
+  }
+  const std::string_view start =
+      !text.empty() && (text[0] == '-' || text[0] == '+') ? text.substr(1) : text;
+  if (start.empty() ||
+      !(is_word(start[0]) || (start.size() > 1 && start[0] == '.' && is_word(start[1]))))
+    return false;
+  return text.back() != ' ' && std::all_of(start.begin(), start.end(), [&](char c) {
+           return is_word(c) || std::string_view(" .+-").find(c) != std::string_view::npos;
+         });
+}
+
+void write_scalar(std::ostream& out, const std::string& text) {
+  if (is_plain(text)) {
+    out << text;
+    return;
+  }
+  out << '"';
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out << '\\' << c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      char escape[8];
+      std::snprintf(escape, sizeof(escape), "\\x%02x", static_cast<unsigned>(c));
+      out << escape;
+    } else {
+      out << c;
+    }
+  }
+  out << '"';
 }
 
 void write(std::ostream& out, const Tree& tree) {
@@ -64,12 +151,9 @@ void write(std::ostream& out, const Tree& tree) {
     case Tree::Kind::kNull:
       out << "~";
       break;
-    case Tree::Kind::kScalar: {
-      YAML::Emitter emitter;
-      emitter << tree.scalar;
-      out << emitter.c_str();
+    case Tree::Kind::kScalar:
+      write_scalar(out, tree.scalar);
       break;
-    }
     case Tree::Kind::kList:
       out << "[";
       for (const auto& item : tree.items) {
@@ -82,7 +166,9 @@ void write(std::ostream& out, const Tree& tree) {
     case Tree::Kind::kMap:
       out << "{";
       for (const auto& [key, value] : tree.entries) {
-        out << separator << key << ": ";
+        out << separator;
+        write_scalar(out, key);
+        out << ": ";
         write(out, value);
         separator = ", ";
       }
@@ -92,6 +178,14 @@ void write(std::ostream& out, const Tree& tree) {
 }
 
 }  // namespace
+
+Tree Tree::word(std::string text, std::string origin) {
+  Tree tree;
+  tree.kind = Kind::kScalar;
+  tree.scalar = std::move(text);
+  tree.origin = std::move(origin);
+  return tree;
+}
 
 const Tree* Tree::find(const std::string& key) const {
   const auto found = std::find_if(entries.begin(), entries.end(),
@@ -113,17 +207,31 @@ std::string Tree::yaml() const {
 Result<Tree> parse_tree(const std::string& text, const std::string& where) {
   if (text.size() > kMaxBytes) return Error{where + " must be at most 1 MB"};
   try {
-    return convert(YAML::Load(text), where, 0);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    Builder builder(where);
+    while (parser.HandleNextDocument(builder)) {
+    }
+    Tree tree = builder.take();
+    if (tree.origin.empty()) tree.origin = where + ":1";
+    return tree;
+  } catch (const Refused& refused) {
+    return Error{refused.what()};
   } catch (const YAML::Exception& exception) {
     return Error{"not valid YAML: " + exception.msg + " (" + place(where, exception.mark) + ")"};
   }
 }
 
 Result<Tree> read_tree(const std::string& path) {
-  std::ifstream file(path);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return Error{"cannot read " + path + ": it is a directory"};
+  std::ifstream file(path, std::ios::binary);
   if (!file) return Error{"cannot read " + path};
-  std::string text(std::istreambuf_iterator<char>(file), {});
+  std::string text(kMaxBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad()) return Error{"cannot read " + path};
+  text.resize(static_cast<std::size_t>(file.gcount()));
   return parse_tree(text, path);
 }
 

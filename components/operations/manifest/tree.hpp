@@ -19,14 +19,15 @@ struct Tree {
   std::vector<std::pair<std::string, Tree>> entries;  ///< of a map, in the order of the file
   std::string origin;                                 ///< "deploy/demo.yaml:12"
 
+  static Tree word(std::string text, std::string origin);
   const Tree* find(const std::string& key) const;
   Tree* find(const std::string& key);
-  /// The node as YAML in flow style: `0.2 m`, `[1, 2]`, `{x: 1}`.
+  /// The node as YAML of one line that reads the same in any place: `0.2 m`, `[1, "a: b"]`.
   std::string yaml() const;
 };
 
-/// Fails with file and line on unreadable files, bad YAML, repeated keys, aliases, and on documents
-/// of more than 1 MB.
+/// Fails with file and line on unreadable files, bad YAML, repeated keys, anchors and aliases,
+/// second documents, more than 32 levels, more than 1 MB.
 Result<Tree> read_tree(const std::string& path);
 Result<Tree> parse_tree(const std::string& text, const std::string& where);
 

@@ -88,8 +88,10 @@ class Judge {
   }
 
  private:
-  void found(Verdict verdict, std::string text, const ManifestComponent& component) {
-    findings_.push_back({verdict, std::move(text), component.origin});
+  /// At the key of the component that is to blame; what its contract brings is at `type`.
+  void found(Verdict verdict, std::string text, const ManifestComponent& component,
+             const std::string& key = "type") {
+    findings_.push_back({verdict, std::move(text), component.origin_of(key)});
   }
 
   void judge_input(const ManifestComponent& reader, const Contract::InputPort& port) {
@@ -176,39 +178,58 @@ class Judge {
         found(Verdict::kUnsafePolicy,
               "'" + name + "' belongs to the drive chain: its criticality must be stop, not " +
                   to_string(component->criticality),
-              *component);
+              *component, "criticality");
       }
       if (component->restart != RestartPolicy::kAlways) {
         found(Verdict::kUnsafePolicy,
-              "'" + name + "' belongs to the drive chain: its restart must be always", *component);
+              "'" + name + "' belongs to the drive chain: its restart must be always", *component,
+              "restart");
+      }
+      if (component->restart_budget < 1) {
+        found(Verdict::kUnsafePolicy,
+              "'" + name + "' belongs to the drive chain: its restart_budget must be at least 1",
+              *component, "restart_budget");
       }
       if (component->heartbeat_timeout > 0.5) {
         found(Verdict::kUnsafePolicy,
               "'" + name +
                   "' belongs to the drive chain: its heartbeat_timeout must be at most 0.5 s",
-              *component);
+              *component, "heartbeat_timeout");
       }
       if (first == nullptr) first = component;
       if (component->host != first->host) {
         found(Verdict::kSplitDriveChain,
               "the drive chain must live on one host: '" + first->name + "' is on " + first->host +
                   ", '" + name + "' on " + component->host,
-              *component);
+              *component, "host");
       }
     }
   }
 
+  /// A group is one process: one host, one restart policy, a name of its own.
   void judge_groups() {
     std::map<std::string, const ManifestComponent*> groups;
     for (const auto& component : manifest_.components) {
       if (component.group.empty()) continue;
-      const auto [first, is_first] = groups.emplace(component.group, &component);
-      if (!is_first && first->second->host != component.host) {
+      if (manifest_.component(component.group) != nullptr) {
         found(Verdict::kSplitGroup,
-              "group '" + component.group + "' must live on one host: '" + first->second->name +
-                  "' is on " + first->second->host + ", '" + component.name + "' on " +
-                  component.host,
-              component);
+              "group '" + component.group + "' has the name of a component; choose another",
+              component, "group");
+      }
+      const auto [entry, is_first] = groups.emplace(component.group, &component);
+      const auto& first = *entry->second;
+      if (first.host != component.host) {
+        found(Verdict::kSplitGroup,
+              "group '" + component.group + "' must live on one host: '" + first.name + "' is on " +
+                  first.host + ", '" + component.name + "' on " + component.host,
+              component, "host");
+      }
+      if (first.restart != component.restart || first.restart_budget != component.restart_budget) {
+        found(Verdict::kSplitGroup,
+              "group '" + component.group +
+                  "' must have one restart and restart_budget: those of '" + first.name +
+                  "' and '" + component.name + "' differ",
+              component, first.restart != component.restart ? "restart" : "restart_budget");
       }
     }
   }

@@ -1,0 +1,51 @@
+#include "operations/manifest/finding.hpp"
+
+namespace usher::operations {
+
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kUnreadable:
+      return "unreadable";
+    case Verdict::kUnknownType:
+      return "unknown type";
+    case Verdict::kUnknownHost:
+      return "unknown host";
+    case Verdict::kUnknownKey:
+      return "unknown key";
+    case Verdict::kWrongValue:
+      return "wrong value";
+    case Verdict::kMissingValue:
+      return "missing value";
+    case Verdict::kMissingFile:
+      return "missing file";
+    case Verdict::kMisplaced:
+      return "misplaced";
+    case Verdict::kNoWriter:
+      return "no writer";
+    case Verdict::kTwoWriters:
+      return "two writers";
+    case Verdict::kUnauthorizedWriter:
+      return "unauthorized writer";
+    case Verdict::kTypeMismatch:
+      return "type mismatch";
+    case Verdict::kQosMismatch:
+      return "QoS mismatch";
+    case Verdict::kRateTooLow:
+      return "rate too low";
+    case Verdict::kUnsafePolicy:
+      return "unsafe policy";
+    case Verdict::kSplitDriveChain:
+      return "split drive chain";
+    case Verdict::kSplitGroup:
+      return "split group";
+    case Verdict::kWrongIdl:
+      return "wrong IDL";
+  }
+  return "?";
+}
+
+std::string to_string(const Finding& finding) {
+  return finding.origin + ": " + to_string(finding.verdict) + ": " + finding.text;
+}
+
+}  // namespace usher::operations
