@@ -151,15 +151,17 @@ float Sonar::nearest_echo() const {
 
 WhiskerContacts Whiskers::touch(const Scene& scene, std::span<const Mover> movers,
                                 const Pose2& robot) {
+  // Bent outward so far, by a wall ahead, its tip is still this far ahead of its root.
+  const double reach = config_.length * std::cos(config_.outward + config_.trigger_bend);
   const auto bent = [&](double x, double y, double angle) {
     const Pose2 root = robot * Pose2{x, y, angle};
     caster_.cast(scene, beam_, {{root.x, root.y, config_.z}, geometry::to_space(root).rotation},
-                 {.max_range = config_.length}, movers, hits_);
+                 {.max_range = reach}, movers, hits_);
     return hits_.what[0] != kNothing;
   };
   const double x = config_.x;
   const double y = config_.y;
-  // Bent that far it lies along this angle: what reaches in here has closed the switch.
+  // Bent inward so far, by a wall beside, it lies along this angle.
   const double outward = config_.outward - config_.trigger_bend;
   const double back = geometry::kPi - outward;
   return {.front_left = bent(x, y, outward),

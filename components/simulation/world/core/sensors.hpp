@@ -114,9 +114,9 @@ struct WhiskerConfig {
   double z = 0.15;                           ///< [m] above the floor
   double length = 0.4;                       ///< [m]
   double outward = geometry::radians(20.0);  ///< [rad] from straight ahead or back
-  /// [rad] by which it must be bent inward before its switch closes: brushing along a door frame
-  /// 7 cm beside the robot must not stop it.
-  double trigger_bend = geometry::radians(14.0);
+  /// [rad] by which it must be bent, inward along a wall or outward against one, before its switch
+  /// closes: brushing along a door frame 7 cm beside the robot must not stop it.
+  double trigger_bend = geometry::radians(17.0);
 };
 
 /// Which whiskers are bent.
