@@ -140,6 +140,7 @@ int group_main(std::span<const ComponentFactory> factories, int argc, char** arg
   stop_on_signals();
   std::atomic<int> code{kDone};
   std::vector<std::thread> threads;
+  threads.reserve(members.size());
   for (auto& [factory, file] : members) {
     threads.emplace_back([&code, factory = factory, file = std::move(file)]() mutable {
       const int ended = run_component(*factory, std::move(file));

@@ -173,7 +173,7 @@ Result<std::unique_ptr<DdsHost>> DdsHost::create(ParameterFile file, const StopF
 }
 
 Status DdsHost::construct(const ComponentFactory& factory) {
-  const Status status = implementation_->engine.construct(factory);
+  Status status = implementation_->engine.construct(factory);
   if (implementation_->engine.faulted()) implementation_->say_why();
   return status;
 }

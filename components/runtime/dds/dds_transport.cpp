@@ -50,6 +50,7 @@ class DdsReader final : public Transport::Reader,
       matched = matched_;
     }
     std::vector<WriterInfo> result;
+    result.reserve(matched.size());
     for (const Guid& guid : matched) result.push_back(participant_.book().writer(guid));
     return result;
   }

@@ -56,7 +56,7 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Status FileStore::keep(const std::string& key, std::span<const std::uint8_t> bytes) const {
-  if (const Status status = check_key(key); !status) return status;
+  if (Status status = check_key(key); !status) return status;
   if (bytes.size() > kMaxBytes) {
     return Error{"at most " + std::to_string(kMaxBytes) + " bytes can be kept, '" + key + "' has " +
                  std::to_string(bytes.size())};

@@ -28,7 +28,7 @@ namespace usher::runtime {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t kMaxQueued = 64 * 1024;
+constexpr std::size_t kMaxQueued = 65536;
 constexpr auto kReopenAfter = std::chrono::seconds(1);
 constexpr auto kConnectTimeout = std::chrono::seconds(3);
 constexpr auto kOfferAgain = std::chrono::milliseconds(10);

@@ -11,8 +11,6 @@
 #include <cassert>
 #include <fstream>
 
-extern char** environ;
-
 namespace usher::runtime::test {
 
 Child::Child(const std::string& program, const std::vector<std::string>& arguments) {
@@ -81,7 +79,7 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 std::string TemporaryFolder::file(const std::string& name, const std::string& content) const {
-  const std::string path = path_ + '/' + name;
+  std::string path = path_ + '/' + name;
   std::ofstream(path) << content;
   return path;
 }

@@ -68,7 +68,7 @@ class Running {
 /// A component made of a lambda that declares everything.
 class Scripted : public Component {
  public:
-  static ComponentFactory factory(std::function<void(Host&)> declare) {
+  static ComponentFactory factory(const std::function<void(Host&)>& declare) {
     return {"test", [declare](Host& host) -> std::unique_ptr<Component> {
               declare(host);
               return std::make_unique<Scripted>();

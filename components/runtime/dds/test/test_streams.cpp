@@ -215,7 +215,7 @@ TEST(Streams, QueueAtMost64Kilobytes) {
   while (stream.write(block) && taken < (64U << 20)) taken += block.size();
   ASSERT_LT(taken, 64U << 20);
   EXPECT_EQ(server.read(taken).size(), taken);
-  EXPECT_FALSE(stream.write(Bytes(64 * 1024 + 1)));
+  EXPECT_FALSE(stream.write(Bytes(65537)));
 }
 
 TEST(Streams, ReopenWhenTheComponentAsks) {

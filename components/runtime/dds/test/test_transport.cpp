@@ -19,7 +19,6 @@ namespace usher::runtime {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr Duration kLong = 10s;
