@@ -70,6 +70,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   laser_settings_.persistence =
       parameters.number("persistence", "s", {0, 600}, 20.0,
                         "Obstacles that are not seen again are forgotten; 0 = never.");
+  local_persistence_ = parameters.number("local_persistence", "s", {0, 600}, 60.0,
+                                         "The same in the window around the robot.");
   ultrasonic_settings_.name = "ultrasonic";
   ultrasonic_settings_.max_obstacle_range = parameters.number(
       "ultrasonic_obstacle_range", "m", {0.2, 6}, 2.5, "Farther ultrasonic echoes mark nothing.");
@@ -149,7 +151,11 @@ void CostmapComponent::add_layers(Map& map) {
     if (!id) host_.fault("layer " + config.name + ": " + id.error());
     return *id;
   };
-  map.laser = add(laser_settings_);
+  // Near a wall the laser is blind (0.5 m), so the window around the robot remembers for longer
+  // than the map does.
+  ObstacleLayerConfig laser = laser_settings_;
+  if (&map == &local_) laser.persistence = local_persistence_;
+  map.laser = add(laser);
   map.ultrasonic = add(ultrasonic_settings_);
   // Where the robot stood there is no wall, whatever the map says at the pose that localization
   // believes.

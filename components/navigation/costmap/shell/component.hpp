@@ -54,7 +54,7 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_;
-  double local_size_, resolution_;
+  double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;
   runtime::Duration local_period_;
 
