@@ -160,6 +160,9 @@ TEST(DdsHost, CountsWhatIsNoMessage) {
   auto writer = out->writer(topics::kCmdVelManual);
   auto heartbeats = out->reader(topics::kHeartbeat);
   ASSERT_TRUE(writer.ok() && writer->wait_for_readers(1, kLong));
+  // Both sides must be matched: the writer keeps only the last sample for a reader that was not
+  // ready.
+  while (input.writers().empty()) std::this_thread::yield();
   for (int i = 0; i < 3; ++i) writer->write_raw(Bytes{0, 1, 0, 0, 1, 2, 3});
   for (;;) {
     const auto beat = heartbeats->take(kLong);

@@ -94,9 +94,9 @@ TEST(Latency, FromWriteToHandlerIsNearTheCostOfWakingUp) {
       "write to handler: p50 %.0f us, p99 %.0f us; round trip: p50 %.0f us, p99 %.0f us; "
       "waking a thread and back: p50 %.0f us, p99 %.0f us\n",
       handler.p50, handler.p99, trip.p50, trip.p99, reference.p50, reference.p99);
-  // Two wake-ups lie on the way (the middleware's thread, the dispatcher); on a loaded machine all
-  // of them grow.
-  EXPECT_LT(handler.p50, std::max(100.0, 4.0 * reference.p50));
+  // On an idle machine it is below 100 us; where waking up takes longer, because others compete, so
+  // may this.
+  EXPECT_LT(handler.p50, std::max(150.0, 10.0 * reference.p50));
 }
 
 }  // namespace
