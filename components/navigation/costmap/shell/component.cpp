@@ -157,11 +157,6 @@ void CostmapComponent::add_layers(Map& map) {
   if (&map == &local_) laser.persistence = local_persistence_;
   map.laser = add(laser);
   map.ultrasonic = add(ultrasonic_settings_);
-  // Where the robot stood there is no wall, whatever the map says at the pose that localization
-  // believes.
-  ObstacleLayerConfig body;
-  body.name = "body";
-  add(body);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
