@@ -1,8 +1,5 @@
 #include "operations/command_line/installation.hpp"
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <filesystem>
 
 namespace usher::operations {
@@ -43,14 +40,6 @@ Result<Override> parse_override(const std::string& text) {
   }
   return Override{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
                   text.substr(equals + 1)};
-}
-
-std::string default_run_directory(std::uint32_t domain, const std::string& host) {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  const fs::path base = runtime != nullptr && *runtime != '\0'
-                            ? fs::path(runtime) / "usher"
-                            : fs::temp_directory_path() / ("usher-" + std::to_string(getuid()));
-  return (base / ("domain-" + std::to_string(domain) + (host.empty() ? "" : "-" + host))).string();
 }
 
 }  // namespace usher::operations

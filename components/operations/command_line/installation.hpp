@@ -31,8 +31,4 @@ Result<Deployment> load_deployment(const std::string& manifest_path,
 /// `amcl.max_beams=60`
 Result<Override> parse_override(const std::string& text);
 
-/// Where a deployment runs on this machine by default: one place for each user and DDS domain, so
-/// that a second launch of the same robot is noticed.
-std::string default_run_directory(std::uint32_t domain, const std::string& host);
-
 }  // namespace usher::operations

@@ -6,6 +6,7 @@
 
 #include "foundation/grid/map_file.hpp"
 #include "idl/topics.hpp"
+#include "mapping/map_server/core/map_from_log.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/table.hpp"
 #include "runtime/dds/observer.hpp"
@@ -158,6 +159,29 @@ int save_map(std::uint32_t domain, const std::string& path) {
   return 0;
 }
 
+struct MapFromLogArguments {
+  std::string log;
+  std::string reference;
+  std::string out;
+  std::size_t every = 1;
+  double resolution = 0.05;
+};
+
+int map_from_log(const MapFromLogArguments& arguments) {
+  const auto scans = map_server::read_carmen_log(arguments.log);
+  if (!scans) return fail(scans.error());
+  const auto reference = map_server::read_reference_poses(arguments.reference);
+  if (!reference) return fail(reference.error());
+  const auto map = map_server::map_from_log(*scans, *reference, arguments.every,
+                                            {.resolution = arguments.resolution});
+  if (!map) return fail(arguments.log + ": " + map.error());
+  if (const auto saved = grid::save_map(*map, arguments.out); !saved) return fail(saved.error());
+  std::cout << "saved " << map->width() << " x " << map->height() << " cells of "
+            << (scans->size() + arguments.every - 1) / arguments.every << " of " << scans->size()
+            << " scans to " << arguments.out << "\n";
+  return 0;
+}
+
 }  // namespace
 
 void add_operator_commands(CLI::App& app, int& exit_code) {
@@ -202,6 +226,24 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   save_command->add_option("file", *path, "YAML file; the picture is written beside it")
       ->required();
   save_command->callback([=, &exit_code] { exit_code = save_map(*domain, *path); });
+
+  auto from_log = std::make_shared<MapFromLogArguments>();
+  auto* log_command = map_command->add_subcommand(
+      "from-log", "Make a map from a recorded log whose scans have reference poses");
+  log_command->add_option("log", from_log->log, "CARMEN log (.clf, also .gz)")->required();
+  log_command
+      ->add_option("--reference", from_log->reference,
+                   "Pose of each scan, one line `index time x y yaw` (.txt, also .gz)")
+      ->required();
+  log_command->add_option("--out", from_log->out, "YAML file; the picture is written beside it")
+      ->required();
+  log_command->add_option("--every", from_log->every, "Use every Nth scan")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  log_command->add_option("--resolution", from_log->resolution, "Side of a cell [m]")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  log_command->callback([=, &exit_code] { exit_code = map_from_log(*from_log); });
 }
 
 }  // namespace usher::operations

@@ -24,7 +24,7 @@ constexpr double kVisitor = 3.5;  // [m]
 struct Visit {
   std::string destination;
   bool arrived = false;
-  std::string outcome;
+  std::string outcome, complaints;
   double simulated = 0.0, wall = 0.0;  // [s]
   RunRecord::Summary summary;
   std::uint64_t digest = 0;
@@ -74,6 +74,7 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
   visit.simulated = runtime::seconds(world.elapsed());
   visit.summary = record.summary();
   visit.digest = world.digest();
+  visit.complaints = (*run)->complaints();
   const auto truth = record.truth();
   const auto person = record.person("visitor");
   const bool served = std::find(record.dialogue().begin(), record.dialogue().end(),
@@ -134,9 +135,10 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
       if (!result->arrived || result->summary.contacts > 0) {
         show_progress("");
         std::printf(
-            "seed %d to %s: %s, %u contacts %s (replay: usher experiment guide --only %d)\n", i + 1,
-            place.c_str(), result->arrived ? "arrived" : result->outcome.c_str(),
-            result->summary.contacts, result->summary.contact_with.c_str(), i + 1);
+            "seed %d to %s: %s, %u contacts %s (replay: usher experiment guide --only %d)\n%s",
+            i + 1, place.c_str(), result->arrived ? "arrived" : result->outcome.c_str(),
+            result->summary.contacts, result->summary.contact_with.c_str(), i + 1,
+            result->complaints.c_str());
       }
       visits[static_cast<std::size_t>(i)] = std::move(result).value();
       show_progress(std::to_string(++done) + " of " + std::to_string(seeds) + " visits");

@@ -11,6 +11,22 @@ LockstepRun::LockstepRun(std::uint64_t seed) : world_({.network = {.seed = seed}
   world_.observe(topics::kPlan, take);
   world_.observe(topics::kNavigateStatus, take);
   world_.observe(topics::kDialogueScreen, take);
+  world_.observe(topics::kHeartbeat, [this](const auto& message, const auto&) {
+    heartbeats_[message.component_name()] = message;
+  });
+}
+
+std::string LockstepRun::complaints() const {
+  std::string out;
+  for (const auto& [name, heartbeat] : heartbeats_) {
+    std::string line = heartbeat.reason();
+    for (const auto& counter : heartbeat.counters()) {
+      if (counter.count() > 0)
+        line += (line.empty() ? "" : "; ") + counter.name() + " " + std::to_string(counter.count());
+    }
+    if (!line.empty()) out += "  " + name + ": " + line + "\n";
+  }
+  return out;
 }
 
 Result<std::unique_ptr<LockstepRun>> LockstepRun::create(const Deployment& deployment,

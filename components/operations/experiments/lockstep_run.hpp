@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,8 @@ class LockstepRun {
 
   runtime::LockstepWorld& world() { return world_; }
   const RunRecord& record() const { return record_; }
+  /// What components that are not well say of themselves now, and what they rejected, one a line.
+  std::string complaints() const;
   /// Another goal: a new record, the world goes on.
   void restart_record() { record_ = {}; }
 
@@ -28,6 +31,7 @@ class LockstepRun {
 
   runtime::LockstepWorld world_;
   RunRecord record_;
+  std::map<std::string, usher_msgs::msg::Heartbeat> heartbeats_;
 };
 
 }  // namespace usher::operations

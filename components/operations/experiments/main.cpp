@@ -23,6 +23,16 @@ const std::vector<Experiment>& experiments() {
        "Seeded visits in the office, lock-step: arrivals, contacts, localization error, "
        "determinism",
        run_guide_experiment},
+      {"buildings",
+       "Ten goals on each map of a real building, lock-step; --seeds N goals of N seeds, --only "
+       "NAME one building",
+       run_buildings_experiment},
+      {"buildings-dds", "The same in one building as DDS processes; --only NAME",
+       run_buildings_dds_experiment},
+      {"tracking-log",
+       "Localizes on recorded logs from raw odometry and laser, against their reference poses; "
+       "--only LOG",
+       run_tracking_log_experiment},
   };
   return all;
 }

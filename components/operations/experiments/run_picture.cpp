@@ -156,4 +156,43 @@ Status draw_run(const RunRecord& record, const grid::OccupancyGrid& map, const s
   return picture.save(path);
 }
 
+Status draw_runs(const std::vector<RunRecord>& runs, const grid::OccupancyGrid& map,
+                 const std::string& title, const std::string& path) {
+  using namespace usher_msgs::msg::GoalStatus_Constants;
+  Picture picture(map, title);
+  for (const auto& run : runs) {
+    for (const auto& plan : run.plans()) picture.way(plan, kPlan, 1);
+  }
+  for (const auto& run : runs) {
+    std::vector<geometry::Point2> driven;
+    for (const auto& sample : run.samples()) driven.push_back(sample.truth.position());
+    picture.way(driven, kDriven, 2);
+  }
+  if (!runs.empty() && !runs.front().samples().empty())
+    picture.mark(runs.front().samples().front().truth, kStart, "start");
+  for (const auto& run : runs) {
+    if (!run.navigation()) continue;
+    const auto& status = *run.navigation();
+    const auto& goal = status.goal().pose().position();
+    const bool reached = status.state() == STATE_SUCCEEDED;
+    picture.mark({goal.x(), goal.y(), run.truth() ? run.truth()->yaw : 0.0},
+                 reached ? kDriven : kGoal, status.location() + (reached ? "" : " not reached"));
+  }
+  picture.legend({{"planned", kPlan}, {"driven", kDriven}, {"not reached", kGoal}});
+  return picture.save(path);
+}
+
+Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& map,
+                 const std::string& title, const std::string& path) {
+  Picture picture(map, title);
+  std::vector<std::pair<std::string, cv::Scalar>> entries;
+  for (const auto& way : ways) {
+    const cv::Scalar color(way.blue, way.green, way.red);
+    picture.way(way.points, color, way.thickness);
+    entries.emplace_back(way.label, color);
+  }
+  picture.legend(entries);
+  return picture.save(path);
+}
+
 }  // namespace usher::operations

@@ -77,6 +77,21 @@ class RunRecord {
 Status draw_run(const RunRecord& record, const grid::OccupancyGrid& map, const std::string& title,
                 const std::string& path);
 
+/// Several runs over one map: where each started, drove and should have arrived; goals that were
+/// not reached say so.
+Status draw_runs(const std::vector<RunRecord>& runs, const grid::OccupancyGrid& map,
+                 const std::string& title, const std::string& path);
+
+/// Ways over a map, the later ones on top; labels for the legend.
+struct DrawnWay {
+  std::string label;
+  int red = 0, green = 0, blue = 0;
+  int thickness = 2;  ///< [px]
+  std::vector<geometry::Point2> points;
+};
+Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& map,
+                 const std::string& title, const std::string& path);
+
 /// Position over time as text: t, x, y, yaw, v, pitch, clearance.
 std::string run_csv(const RunRecord& record);
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -70,7 +71,22 @@ std::string tail(const std::string& path, std::size_t bytes) {
   return line == std::string::npos ? text : text.substr(line + 1);
 }
 
+/// Where this user's deployments keep their locks and, by default, their run directories.
+std::string runtime_directory() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  const std::filesystem::path base =
+      runtime != nullptr && *runtime != '\0'
+          ? std::filesystem::path(runtime) / "usher"
+          : std::filesystem::temp_directory_path() / ("usher-" + std::to_string(getuid()));
+  return base.string();
+}
+
 }  // namespace
+
+std::string default_run_directory(std::uint32_t domain, const std::string& host) {
+  return runtime_directory() + "/domain-" + std::to_string(domain) +
+         (host.empty() ? "" : "-" + host);
+}
 
 std::string to_yaml(const runtime::ParameterFile& file) {
   std::ostringstream out;
@@ -103,7 +119,7 @@ Result<Launcher> Launcher::create(const Deployment& deployment, const LaunchOpti
                  deployment.manifest.path + ")"};
   }
   Launcher launcher(options);
-  if (auto status = launcher.lock(); !status) return Error{status.error()};
+  if (auto status = launcher.lock(deployment); !status) return Error{status.error()};
   if (auto status = launcher.prepare(deployment); !status) return Error{status.error()};
   return launcher;
 }
@@ -112,30 +128,44 @@ Launcher::Launcher(Launcher&& other) noexcept
     : options_(std::move(other.options_)),
       processes_(std::move(other.processes_)),
       events_(std::move(other.events_)),
-      lock_(std::exchange(other.lock_, -1)) {
+      locks_(std::exchange(other.locks_, {})) {
   other.processes_.clear();
 }
 
 Launcher::~Launcher() {
   stop();
-  if (lock_ >= 0) close(lock_);
+  for (const int file : locks_) close(file);
 }
 
-Status Launcher::lock() {
+Status Launcher::lock(const Deployment& deployment) {
   std::error_code error;
-  std::filesystem::create_directories(options_.run_directory, error);
-  const std::string path = options_.run_directory + "/lock";
-  lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) return Error{"cannot write " + path + ": " + std::strerror(errno)};
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+  for (const auto& directory : {options_.run_directory, runtime_directory()}) {
+    std::filesystem::create_directories(directory, error);
+    if (error) return Error{"cannot write " + directory + ": " + error.message()};
+  }
+  if (auto status = lock_file(options_.run_directory + "/lock"); !status) return status;
+  for (const auto& host : deployment.manifest.hosts) {
+    if (!options_.host.empty() && host.name != options_.host) continue;
+    const std::string name =
+        "domain-" + std::to_string(deployment.manifest.domain) + "-" + host.name + ".lock";
+    if (auto status = lock_file(runtime_directory() + "/" + name); !status) return status;
+  }
+  return {};
+}
+
+Status Launcher::lock_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0) return Error{"cannot write " + path + ": " + std::strerror(errno)};
+  locks_.push_back(file);
+  if (flock(file, LOCK_EX | LOCK_NB) != 0) {
     std::ifstream holder(path);
     std::string pid;
     holder >> pid;
     return Error{"this robot is already launched here, by process " + pid + " (" + path + ")"};
   }
   const std::string pid = std::to_string(getpid()) + "\n";
-  if (ftruncate(lock_, 0) != 0 ||
-      write(lock_, pid.data(), pid.size()) != static_cast<ssize_t>(pid.size())) {
+  if (ftruncate(file, 0) != 0 ||
+      write(file, pid.data(), pid.size()) != static_cast<ssize_t>(pid.size())) {
     return Error{"cannot write " + path + ": " + std::strerror(errno)};
   }
   return {};

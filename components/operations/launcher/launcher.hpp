@@ -52,7 +52,8 @@ struct Process {
 class Launcher {
  public:
   /// Writes the parameter files. Fails when the deployment has findings, the host is unknown, a
-  /// program is missing, or the same robot is already launched from this run directory.
+  /// program is missing, or this user already launched a part of this robot on this machine: the
+  /// same host in the same DDS domain, or anything in the same run directory.
   static Result<Launcher> create(const Deployment& deployment, const LaunchOptions& options);
   /// Stops what still runs.
   ~Launcher();
@@ -76,7 +77,8 @@ class Launcher {
 
  private:
   explicit Launcher(LaunchOptions options) : options_(std::move(options)) {}
-  Status lock();
+  Status lock(const Deployment& deployment);
+  Status lock_file(const std::string& path);
   Status prepare(const Deployment& deployment);
   void start(Process& process);
   void ended(Process& process, int status);
@@ -85,8 +87,11 @@ class Launcher {
   LaunchOptions options_;
   std::vector<Process> processes_;
   std::vector<std::string> events_;
-  int lock_ = -1;
+  std::vector<int> locks_;  ///< open files, locked while this launcher lives
 };
+
+/// Where a deployment runs on this machine by default: one place for each user and DDS domain.
+std::string default_run_directory(std::uint32_t domain, const std::string& host);
 
 /// The file that a component gets with --parameters.
 std::string to_yaml(const runtime::ParameterFile& file);

@@ -25,8 +25,7 @@ struct ResultSheet {
   std::map<std::string, double> published;  ///< what others reach
   std::map<std::string, Target> targets;
 
-  /// Every target that has a metric holds, and every target has one unless it is listed as not
-  /// measured.
+  /// Every flag is true, every target has a metric and holds.
   bool pass() const;
   /// Numbers with all their digits; not finite ones as null.
   std::string json() const;

@@ -29,7 +29,9 @@ constexpr double kUnmappedMargin = 0.5;
 constexpr double kMostUnmapped = 0.6;
 
 // Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
-constexpr double kLostRatio = 0.6;    // the short-term mean, anywhere on the map [gutmann2002]
+constexpr double kLostRatio = 0.6;  // the short-term mean, anywhere on the map [gutmann2002]
+constexpr double kUsualLikelihood =
+    0.6;  // of a beam at the right place, where the long-term mean starts
 constexpr double kDoubtRatio = 0.7;   // one scan, near the estimate
 constexpr double kNearbyShare = 0.2;  // of hypotheses among the particles then
 constexpr double kNearbySigma =
@@ -98,7 +100,7 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
   spread_pending_ = false;
   search_updates_ = 0;
   force_update_ = true;
-  likelihood_updates_ = 0.0;
+  fast_likelihood_ = 0.0;
   estimate_ = Estimate{map_T_base, last_odom_T_base_.value_or(geometry::Pose2{}), covariance, {}};
   return {};
 }
@@ -106,7 +108,7 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
 void Amcl::start_globally() {
   particles_.resize(0);
   spread_pending_ = force_update_ = true;
-  likelihood_updates_ = 0.0;
+  fast_likelihood_ = 0.0;
   estimate_.reset();
 }
 
@@ -174,7 +176,8 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   choose_beams(scan, std::max<std::size_t>(config_.refine_beams, 2), config_.sensor.max_range,
                false, dense_beams_);
 
-  if (estimate_ && search_updates_ == 0) result.unmapped = drop_unmapped(scan, odom_T_base);
+  const double unmapped =
+      estimate_ && search_updates_ == 0 ? drop_unmapped(scan, odom_T_base) : 0.0;
   if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
   const double log_likelihood =
@@ -182,8 +185,8 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   find_bins();
   const Cluster cluster = heaviest_cluster();
   end_search(cluster);
-  make_estimate(cluster, odom_T_base);
-  const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - result.unmapped));
+  make_estimate(cluster, odom_T_base, unmapped);
+  const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - unmapped));
   result.injected = recovery.share;
   if (++updates_since_resampling_ >= config_.resample_interval || recovery.share > 0.0) {
     resample(scan, recovery, cluster);
@@ -253,18 +256,19 @@ void Amcl::end_search(const Cluster& cluster) {
   if (search_updates_ == 0) return;
   const bool won = search_updates_ >= kLeastSearch && cluster.weight >= kWonWeight;
   search_updates_ = won ? 0 : search_updates_ + 1;
-  likelihood_updates_ = 0.0;
+  fast_likelihood_ = 0.0;
 }
 
 /// Augmented MCL [thrun2005, table 8.3], with a search nearby as soon as a scan fits badly.
 Amcl::Recovery Amcl::recovery(double likelihood) {
   if (search_updates_ > 0) return {Recovery::Where::kEverywhere, kSearchShare};
   if (config_.recovery_slow <= 0.0) return {};
-  likelihood_updates_ += 1.0;  // plain means until the decay is slower than 1 / n
-  slow_likelihood_ +=
-      std::max(config_.recovery_slow, 1.0 / likelihood_updates_) * (likelihood - slow_likelihood_);
-  fast_likelihood_ +=
-      std::max(config_.recovery_fast, 1.0 / likelihood_updates_) * (likelihood - fast_likelihood_);
+  if (fast_likelihood_ <= 0.0) {
+    slow_likelihood_ = std::max(kUsualLikelihood, likelihood);
+    fast_likelihood_ = likelihood;
+  }
+  slow_likelihood_ += config_.recovery_slow * (likelihood - slow_likelihood_);
+  fast_likelihood_ += config_.recovery_fast * (likelihood - fast_likelihood_);
   const double share = 1.0 - fast_likelihood_ / (kLostRatio * slow_likelihood_);
   if (share > 0.0) {
     search_updates_ = 1;
@@ -294,54 +298,48 @@ Amcl::Cluster Amcl::heaviest_cluster() {
           static_cast<std::uint32_t>(best)};
 }
 
-void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base) {
+void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base,
+                         double unmapped) {
   geometry::Pose2 pose = cluster.mean;
   if (config_.refine_beams > 0) {
     // A floor of a millimetre keeps the prior finite when all particles agree.
     const Eigen::Matrix3d prior =
         (cluster.covariance + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
-    for (Beam& beam : dense_beams_) {
-      beam.x += range_offset_ * beam.direction_x;
-      beam.y += range_offset_ * beam.direction_y;
-    }
     pose = refine(field_.distances(), dense_beams_, pose, prior, config_.refinement).pose;
   }
-  estimate_ = Estimate{pose, odom_T_base, cluster.covariance, quality_of(pose, cluster)};
-  if (config_.refine_beams > 0 && estimate_->quality.confidence == Confidence::kGood) {
-    const double step =
-        range_offset(field_.distances(), dense_beams_, pose, config_.refinement.sigma);
-    range_offset_ = std::clamp(range_offset_ + kRangeOffsetGain * std::clamp(step, -0.02, 0.02),
-                               -kMostRangeOffset, kMostRangeOffset);
-  }
+  estimate_ = Estimate{pose, odom_T_base, cluster.covariance, quality_of(pose, cluster, unmapped)};
 }
 
-Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster) const {
+Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster,
+                         double unmapped) const {
   Quality quality;
-  std::size_t with_return = 0;
   for (const Beam& beam : dense_beams_) {
     const double distance =
         field_.distances().interpolated(pose * geometry::Point2(beam.x, beam.y)).distance;
     quality.explained += distance < config_.confidence.explained_distance ? 1.0 : 0.0;
     quality.likelihood += field_.beam_likelihood(distance);
-    ++with_return;
   }
-  const double share = with_return > 0 ? 1.0 / static_cast<double>(with_return) : 0.0;
+  quality.beams = dense_beams_.size();
+  const double share = quality.beams > 0 ? 1.0 / static_cast<double>(quality.beams) : 0.0;
   quality.explained *= share;
   quality.likelihood *= share;
+  quality.unmapped = unmapped;
   quality.cluster_weight = cluster.weight;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       cluster.covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   quality.sigma = std::sqrt(std::max(0.0, axes.eigenvalues().maxCoeff()));
-  const ConfidenceLimits& limits = config_.confidence;
-  if (quality.explained < limits.lost_explained) {
-    quality.confidence = Confidence::kLost;
-  } else if (search_updates_ > 0 || quality.explained < limits.good_explained ||
-             quality.cluster_weight < limits.good_weight || quality.sigma > limits.good_sigma) {
-    quality.confidence = Confidence::kDegraded;
-  } else {
-    quality.confidence = Confidence::kGood;
-  }
+  quality.confidence = confidence_of(quality);
   return quality;
+}
+
+Confidence Amcl::confidence_of(const Quality& quality) const {
+  const ConfidenceLimits& limits = config_.confidence;
+  if (quality.explained < limits.lost_explained) return Confidence::kLost;
+  const bool good =
+      search_updates_ == 0 && quality.beams >= limits.good_beams &&
+      quality.explained >= limits.good_explained && quality.unmapped <= limits.good_unmapped &&
+      quality.cluster_weight >= limits.good_weight && quality.sigma <= limits.good_sigma;
+  return good ? Confidence::kGood : Confidence::kDegraded;
 }
 
 /// KLD: as many particles as the bins that the belief really occupies ask for. They are counted on

@@ -26,10 +26,13 @@ enum class Confidence {
   kGood,
 };
 
-/// How well the estimate explains the last scan; ConfidenceLimits turn it into a level.
+/// How well the estimate explains the last scan; ConfidenceLimits turn it into a level. Beams that
+/// met something unmapped count in `unmapped` alone.
 struct Quality {
   double explained = 0.0;       ///< [0, 1] share of the beams that end at an obstacle of the map
   double likelihood = 0.0;      ///< [0, 1] mean likelihood of a beam
+  double unmapped = 0.0;        ///< [0, 1] share of beams that ended before the map's walls: people
+  std::size_t beams = 0;        ///< how many beams were looked at
   double cluster_weight = 0.0;  ///< [0, 1] share of the belief in the estimate's cluster
   double sigma = 0.0;  ///< [m] largest standard deviation of the position within the cluster
   Confidence confidence = Confidence::kLost;
@@ -61,7 +64,6 @@ struct UpdateResult {
   bool odometry_restarted =
       false;  ///< the step was longer than max_step: taken as a restart, the belief stayed put
   double injected = 0.0;  ///< [0, 1] share of new hypotheses drawn to recover
-  double unmapped = 0.0;  ///< [0, 1] share of beams that met what the map does not know: left out
   BeamCounts beams;
 };
 
@@ -71,11 +73,16 @@ struct UpdateResult {
 /// of particles, refined on the scan by a few Gauss-Newton steps; every fifth particle of that
 /// cluster follows the refinement.
 ///
-/// Recovery: the likelihood of scans has a short-term and a long-term mean (augmented MCL). While
-/// the short one is below half of the long one [gutmann2002], the robot was carried away: random
-/// poses of the free space are tried against the scan and the best of them, refined, join the
-/// particles. After a single scan that fits badly, the same is done with poses near the estimate:
-/// wheels slip, and some odometries count backwards driving as forwards.
+/// People: where the robot is known to be, beams that end well before the map's wall met something
+/// unmapped and are left out [fox1999dynamic]; a crowd around the robot does not push its pose
+/// away.
+///
+/// Recovery: the likelihood of scans has a short-term and a long-term mean (augmented MCL). When
+/// the short one falls well below the long one [gutmann2002], or at a global start, a search
+/// begins: each scan counts for little, so that several places live on, and random poses of the
+/// free space are tried against it; the best of them, refined, join the particles, until one place
+/// has stood several scans. After a single scan that fits badly, the same is done with poses near
+/// the estimate: wheels slip, and some odometries count backwards driving as forwards.
 ///
 /// Deterministic: the same seed and inputs give the same estimates on every instruction set. No
 /// allocation in update() once its buffers have grown.
@@ -134,8 +141,9 @@ class Amcl {
   void resample(const LaserBeams& scan, const Recovery& recovery, const Cluster& cluster);
   std::size_t adapted_count();
   void search(const LaserBeams& scan, const Recovery& recovery, std::size_t count);
-  void make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base);
-  Quality quality_of(const geometry::Pose2& pose, const Cluster& cluster) const;
+  void make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_base, double unmapped);
+  Quality quality_of(const geometry::Pose2& pose, const Cluster& cluster, double unmapped) const;
+  Confidence confidence_of(const Quality& quality) const;
 
   AmclConfig config_;
   cpu::Simd simd_;
@@ -158,8 +166,7 @@ class Amcl {
   bool spread_pending_ = false;  // a global start waits for its map or first scan
   int search_updates_ = 0;       // since a search over the whole map began; 0 without one
   int updates_since_resampling_ = 0;
-  double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;
-  double likelihood_updates_ = 0.0;
+  double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;  // 0: none yet
   double range_offset_ = 0.0;  ///< [m] that all beams are too short by, learnt while tracking
   std::optional<Estimate> estimate_;
 };

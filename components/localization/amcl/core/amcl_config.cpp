@@ -56,6 +56,8 @@ Status AmclConfig::validate() const {
        " m"},
       {"confidence.good_explained", confidence.good_explained, confidence.lost_explained, 1.0, ""},
       {"confidence.lost_explained", confidence.lost_explained, 0.0, 1.0, ""},
+      {"confidence.good_unmapped", confidence.good_unmapped, 0.0, 1.0, ""},
+      {"confidence.good_beams", number(confidence.good_beams), 0, 4096, ""},
       {"confidence.good_sigma", confidence.good_sigma, 0.01, 100.0, " m"},
       {"confidence.good_weight", confidence.good_weight, 0.0, 1.0, ""},
   };

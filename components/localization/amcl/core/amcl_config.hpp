@@ -17,10 +17,12 @@ struct ConfidenceLimits {
   double explained_distance =
       0.2;  ///< [m] a beam that ends nearer to an obstacle of the map is explained
   double good_explained =
-      0.55;  ///< [0, 1] share of explained beams below which the pose is doubtful
-  double lost_explained = 0.3;  ///< [0, 1] below which it is wrong
+      0.75;  ///< [0, 1] share of explained beams below which the pose is doubtful
+  double lost_explained = 0.4;  ///< [0, 1] below which it is wrong
+  double good_unmapped = 0.4;   ///< [0, 1] largest share of beams that met something unmapped
   double good_sigma = 0.5;   ///< [m] largest standard deviation of a position that may be trusted
   double good_weight = 0.8;  ///< [0, 1] least share of the belief in the best cluster
+  std::size_t good_beams = 20;  ///< fewer beams with a return explain themselves too easily
 
   bool operator==(const ConfidenceLimits&) const = default;
 };

@@ -181,7 +181,7 @@ TEST_F(Field, ForgetsTheLastMap) {
 // ---- beam model
 
 TEST_F(Field, BeamModelIsHighestWhereTheRobotStands) {
-  const Particles particles = around(pose_, 0.7, 0.3, 400, 7);
+  const Particles particles = around(pose_, 0.7, 0.3, 2000, 7);
   std::vector<double> values(particles.size());
   choose_beams(robot_.scan(), 60, 30.0, true, beams_);
   beam_model_log_likelihood(field_.distances(), parameters_, 20.0, particles,

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -187,6 +188,28 @@ TEST(ScanFilter, KeepsALonePole) {
       if (out.ranges[i] < 2.0F) ++poles;
     }
     EXPECT_EQ(poles, 1) << degrees;
+  }
+}
+
+TEST(ScanFilter, DrawsNothingBetweenAPillarAndTheWallBehind) {
+  for (double degrees = -9.0; degrees <= 4.0; degrees += 0.6) {
+    const double pitch = radians(degrees);
+    const std::vector<Wall> far{{0.0, 3.4}};
+    const std::vector<Wall> near{{0.0, 2.6}};
+    auto ranges = see(far, pitch);
+    const auto pillar = see(near, pitch);
+    std::copy(pillar.begin() + 285, pillar.begin() + 296, ranges.begin() + 285);
+    ScanFilter f = filter();
+    PlanarScan out;
+    ASSERT_TRUE(f.filter(lms100(), ranges, {pitch, 0.0}, out).ok());
+    int on_pillar = 0;
+    for (std::size_t i = 0; i < out.ranges.size(); ++i) {
+      if (!std::isfinite(out.ranges[i])) continue;
+      const double x = end_of(out, i).x();
+      EXPECT_TRUE(std::abs(x - 2.6) < 0.05 || std::abs(x - 3.4) < 0.05) << degrees << " " << x;
+      if (std::abs(x - 2.6) < 0.05) ++on_pillar;
+    }
+    EXPECT_NEAR(on_pillar, 11, 1) << degrees;
   }
 }
 

@@ -25,7 +25,7 @@ struct SegwayConfig {
   // Stopping from speed: first a hold, then a fall of speed.
   double follow_limit = 0.3;       ///< [m/s] a larger excess of speed over the command is held
   double hold_deceleration = 0.2;  ///< [m/s^2]
-  double hold_time = 0.9;          ///< [s]
+  double hold_time = 0.87;         ///< [s]
   double hold_time_spread = 0.04;  ///< [s]
   double brake_frequency = 3.65;   ///< [rad/s]
   double brake_damping = 0.345;
@@ -49,12 +49,12 @@ struct SegwayConfig {
   // Emergency stop: motors off, the body falls on its tilt limiters, and these slide.
   double fall_rate = 5.0;           ///< [1/s] unstable pole of the free pendulum
   double fall_push = 2.5;           ///< [rad/s^2] tipping by the drag of the idle motors
-  double idle_drag = 1.03;          ///< [m/s^2] deceleration by the idle motors while falling
+  double idle_drag = 0.97;          ///< [m/s^2] deceleration by the idle motors while falling
   double limiter_pitch = 0.351;     ///< [rad] where the limiters touch the floor
   double limiter_spread = 0.011;    ///< [rad]
   double limiter_frequency = 45.0;  ///< [rad/s] of body and limiter as a spring
   double limiter_damping = 0.35;
-  double slide_deceleration = 0.41;  ///< [m/s^2]
+  double slide_deceleration = 0.44;  ///< [m/s^2]
   double slide_spread = 0.2;         ///< relative, the floor differs
   double slide_yaw_spread = 0.08;    ///< [rad/m]
   double rise_time = 1.0;            ///< [s] to be set upright after a reset

@@ -1,0 +1,290 @@
+#include "operations/launcher/launcher.hpp"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "support/folder.hpp"
+
+namespace usher::operations {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr auto kPatience = std::chrono::seconds(20);
+
+/// Programs that are shell scripts, and deployments of them.
+class Launching : public testing::Test {
+ protected:
+  Launching() {
+    ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+    options_ = {"", folder_.path() + "/bin", folder_.path() + "/run"};
+    deployment_.manifest.path = "m.yaml";
+    deployment_.manifest.domain = 7;
+    deployment_.manifest.hosts = {{.name = "nuc"}, {.name = "tablet"}};
+    program("sleeper", "exec sleep 1000");
+  }
+
+  void program(const std::string& type, const std::string& script) {
+    const auto path = folder_.file("bin/usher-" + type, "#!/bin/sh\n" + script + "\n");
+    ::chmod(path.c_str(), 0755);
+  }
+  ManifestComponent& component(const std::string& name, const std::string& type) {
+    runtime::ParameterFile file;
+    file.component = type;
+    file.name = name;
+    file.host = "nuc";
+    file.domain = 7;
+    deployment_.files.push_back(file);
+    auto& made = deployment_.manifest.components.emplace_back();
+    made.name = name;
+    made.type = type;
+    made.host = "nuc";
+    made.origin = "m.yaml:" + std::to_string(deployment_.files.size());
+    return made;
+  }
+  Launcher launcher() {
+    auto made = Launcher::create(deployment_, options_);
+    EXPECT_TRUE(made) << (made ? "" : made.error());
+    return std::move(made).value();
+  }
+  std::string refusal() const {
+    const auto made = Launcher::create(deployment_, options_);
+    return made ? "launched" : made.error();
+  }
+  /// Polls until the condition holds, and keeps what happened.
+  bool wait_for(Launcher& launcher, const std::function<bool()>& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (true) {
+      launcher.poll();
+      for (auto& event : launcher.events()) events_.push_back(std::move(event));
+      if (condition()) return true;
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  static bool alive(pid_t pid) { return ::kill(pid, 0) == 0; }
+
+  test::Folder folder_;
+  Deployment deployment_;
+  LaunchOptions options_;
+  std::vector<std::string> events_;
+};
+
+TEST_F(Launching, GivesEachComponentItsParameterFile) {
+  component("legs", "sleeper");
+  auto& file = deployment_.files[0];
+  file.seed = 9;
+  file.critical = true;
+  file.peers = {"10.0.0.2"};
+  file.values = {{"reach", "0.2 m", "config/a \"b\".yaml:3"},
+                 {"names", "[a, \"b, c\"]", "m.yaml:1"}};
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
+  const auto read = runtime::read_parameter_file(folder_.path() + "/run/legs.yaml");
+  ASSERT_TRUE(read) << read.error();
+  EXPECT_EQ(read->component, "sleeper");
+  EXPECT_EQ(read->name, "legs");
+  EXPECT_EQ(read->host, "nuc");
+  EXPECT_EQ(read->domain, 7U);
+  EXPECT_EQ(read->seed, 9U);
+  EXPECT_TRUE(read->critical);
+  EXPECT_GT(read->clock_anchor, 0);
+  EXPECT_EQ(read->run_directory, folder_.path() + "/run");
+  EXPECT_EQ(read->peers, file.peers);
+  ASSERT_EQ(read->values.size(), 2U);
+  EXPECT_EQ(read->values[0].yaml, "0.2 m");
+  EXPECT_EQ(read->values[0].origin, "config/a \"b\".yaml:3");
+  EXPECT_EQ(made.find("legs")->arguments.back(), folder_.path() + "/run/legs.yaml");
+  EXPECT_THAT(events_, Contains("legs: started"));
+}
+
+TEST_F(Launching, ReadsBackWhatItWritesForAComponentWithoutParameters) {
+  component("legs", "sleeper");
+  const auto read = runtime::parse_parameter_file(to_yaml(deployment_.files[0]), "legs.yaml");
+  ASSERT_TRUE(read) << read.error();
+  EXPECT_TRUE(read->values.empty());
+}
+
+TEST_F(Launching, RestartsAtOnceWhatWasKilled) {
+  component("legs", "sleeper");
+  component("arms", "sleeper");
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("arms")->pid > 0; }));
+  const pid_t legs = made.find("legs")->pid;
+  const pid_t arms = made.find("arms")->pid;
+  ::kill(legs, SIGKILL);
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->starts == 2; }));
+  EXPECT_NE(made.find("legs")->pid, legs);
+  EXPECT_EQ(made.find("arms")->pid, arms);
+  EXPECT_EQ(made.find("legs")->last_end, "killed by Killed");
+  EXPECT_THAT(events_, Contains("legs: started again"));
+  EXPECT_FALSE(made.broken());
+}
+
+TEST_F(Launching, PausesLongerEachTimeAndGivesUpBeyondTheBudget) {
+  program("crash", "echo first; echo the reason is this >&2; exit 3");
+  component("legs", "crash").restart_budget = 4;
+  auto made = launcher();
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_TRUE(wait_for(made, [&] { return made.broken(); }));
+  const auto took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(made.find("legs")->starts, 5) << "the first start and four more";
+  EXPECT_EQ(made.find("legs")->state, Process::State::kGaveUp);
+  EXPECT_GE(took, std::chrono::milliseconds(0 + 100 + 200 + 400));
+  EXPECT_THAT(events_, Contains("legs: ended with a fault (the reason is this)"));
+  EXPECT_THAT(events_, Contains(HasSubstr("more than 4 starts within a minute: given up")));
+}
+
+TEST_F(Launching, DoesNotRestartWhatRefusesItsParameters) {
+  program("picky", "echo wrong unit >&2; exit 2");
+  component("legs", "picky");
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.broken(); }));
+  EXPECT_EQ(made.find("legs")->starts, 1);
+  EXPECT_THAT(events_, Contains("legs: refused its parameters (wrong unit)"));
+}
+
+TEST_F(Launching, FollowsTheRestartPolicy) {
+  program("done", "exit 0");
+  program("crash", "exit 3");
+  component("never", "done").restart = RestartPolicy::kNever;
+  component("on_failure", "done").restart = RestartPolicy::kOnFailure;
+  auto made = launcher();
+  const auto stopped = [&](const std::string& name) {
+    return made.find(name)->state == Process::State::kStopped;
+  };
+  ASSERT_TRUE(wait_for(made, [&] { return stopped("never") && stopped("on_failure"); }));
+  EXPECT_FALSE(made.broken()) << "ending well is not a failure";
+  EXPECT_EQ(made.find("on_failure")->starts, 1);
+
+  deployment_.files.clear();
+  deployment_.manifest.components.clear();
+  component("failing", "crash").restart = RestartPolicy::kOnFailure;
+  component("again", "done").restart = RestartPolicy::kAlways;
+  options_.run_directory += "2";
+  deployment_.manifest.domain = 8;
+  auto other = launcher();
+  EXPECT_TRUE(wait_for(other, [&] {
+    return other.find("failing")->starts >= 2 && other.find("again")->starts >= 2;
+  }));
+}
+
+TEST_F(Launching, PutsAGroupIntoOneProcess) {
+  program("group", "exec sleep 1000");
+  component("eyes", "kinect").group = "depth";
+  component("depth_pipeline", "depth_pipeline").group = "depth";
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("eyes")->pid > 0; }));
+  EXPECT_EQ(made.processes().size(), 1U);
+  EXPECT_EQ(made.find("eyes"), made.find("depth_pipeline"));
+  const auto& words = made.find("eyes")->arguments;
+  EXPECT_EQ(words.size(), 5U);
+  EXPECT_EQ(words.at(2), folder_.path() + "/run/eyes.yaml");
+  EXPECT_EQ(words.at(4), folder_.path() + "/run/depth_pipeline.yaml");
+}
+
+TEST_F(Launching, StopsInReverseOrderAndKillsWhatDoesNotListen) {
+  const std::string order = folder_.path() + "/order";
+  program("polite", "trap 'echo polite >> " + order + "; exit 0' TERM\ntouch " + folder_.path() +
+                        "/ready\nwhile :; do sleep 0.01; done");
+  program("deaf", "trap '' TERM\ntouch " + folder_.path() + "/deaf\nwhile :; do sleep 0.01; done");
+  component("polite", "polite");
+  component("deaf", "deaf");
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] {
+    return std::filesystem::exists(folder_.path() + "/ready") &&
+           std::filesystem::exists(folder_.path() + "/deaf");
+  }));
+  const pid_t polite = made.find("polite")->pid;
+  const pid_t deaf = made.find("deaf")->pid;
+  const auto start = std::chrono::steady_clock::now();
+  made.stop();
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+  EXPECT_FALSE(alive(polite));
+  EXPECT_FALSE(alive(deaf));
+  EXPECT_EQ(test::content_of(order), "polite\n");
+  EXPECT_EQ(made.find("polite")->state, Process::State::kStopped);
+  EXPECT_THAT(made.events(), Contains("deaf: did not stop within 2 s, killed"));
+}
+
+TEST_F(Launching, StopsWhatIsHalted) {
+  component("legs", "sleeper");
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
+  const pid_t legs = made.find("legs")->pid;
+  ::kill(legs, SIGSTOP);
+  made.stop();
+  EXPECT_FALSE(alive(legs));
+}
+
+TEST_F(Launching, StopsEverythingWhenItEnds) {
+  component("legs", "sleeper");
+  pid_t legs = 0;
+  {
+    auto made = launcher();
+    ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
+    legs = made.find("legs")->pid;
+  }
+  EXPECT_FALSE(alive(legs));
+}
+
+TEST_F(Launching, IsRefusedTwice) {
+  component("legs", "sleeper");
+  const std::string already =
+      "this robot is already launched here, by process " + std::to_string(::getpid());
+  {
+    const auto first = launcher();
+    EXPECT_THAT(refusal(), HasSubstr(already)) << "the same run directory";
+    options_.run_directory += "2";
+    EXPECT_THAT(refusal(), HasSubstr(already)) << "the same host in the same domain";
+    options_.host = "nuc";
+    EXPECT_THAT(refusal(), HasSubstr(already));
+    deployment_.manifest.domain = 8;
+    EXPECT_EQ(refusal(), "launched") << "another robot";
+    options_.run_directory = folder_.path() + "/run";
+    EXPECT_THAT(refusal(), HasSubstr(already)) << "another robot, but in the first one's place";
+  }
+  EXPECT_EQ(refusal(), "launched") << "when the first has ended";
+}
+
+TEST_F(Launching, StartsOnlyItsHostsPart) {
+  component("legs", "sleeper");
+  component("screen", "sleeper").host = "tablet";
+  options_.host = "tablet";
+  const auto made = launcher();
+  EXPECT_EQ(made.processes().size(), 1U);
+  EXPECT_EQ(made.find("legs"), nullptr);
+  EXPECT_NE(made.find("screen"), nullptr);
+}
+
+TEST_F(Launching, RefusesWhatCannotWork) {
+  component("legs", "sleeper");
+  options_.host = "laptop";
+  EXPECT_EQ(refusal(), "unknown host 'laptop', expected one of nuc, tablet (m.yaml)");
+  options_.host = "tablet";
+  EXPECT_EQ(refusal(), "nothing runs on host 'tablet' (m.yaml)");
+  options_.host = "";
+  component("wings", "feathers");
+  EXPECT_EQ(refusal(), "program " + folder_.path() + "/bin/usher-feathers is missing (m.yaml:2)");
+  deployment_.findings.push_back({Verdict::kNoWriter, "nobody writes scan", "m.yaml:5"});
+  EXPECT_EQ(refusal(), "m.yaml:5: no writer: nobody writes scan");
+}
+
+TEST_F(Launching, ForgetsWhatWasKeptForAFreshStart) {
+  component("legs", "sleeper");
+  const auto kept = folder_.file("run/kept/legs/pose", "1 2 3");
+  launcher();
+  EXPECT_TRUE(std::filesystem::exists(kept));
+  deployment_.manifest.fresh_start = true;
+  launcher();
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
+}  // namespace
+}  // namespace usher::operations

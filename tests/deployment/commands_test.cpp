@@ -1,0 +1,179 @@
+// The commands of the program against a running robot, as an operator would type them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "deployment/running_robot.hpp"
+#include "foundation/grid/map_file.hpp"
+
+namespace usher::test {
+namespace {
+
+class Commands : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { robot_ = new RunningRobot; }
+  static void TearDownTestSuite() {
+    delete robot_;
+    robot_ = nullptr;
+  }
+  void SetUp() override {
+    ASSERT_TRUE(robot_->wait_for([] { return robot_->may_drive(); }, Seconds(60)))
+        << robot_->complaints();
+  }
+
+  /// Output of a command that has to end with `code`.
+  static std::string output(std::vector<std::string> words, int code = 0) {
+    const auto command = robot_->command(std::move(words));
+    EXPECT_EQ(command->wait(std::chrono::seconds(60)), code)
+        << command->output() << command->errors();
+    return command->output();
+  }
+  static std::string errors(std::vector<std::string> words, int code = 1) {
+    const auto command = robot_->command(std::move(words));
+    EXPECT_EQ(command->wait(std::chrono::seconds(60)), code)
+        << command->output() << command->errors();
+    EXPECT_TRUE(command->errors().starts_with("usher: ")) << command->errors();
+    return command->errors();
+  }
+  static bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+  /// The line of a table that starts with a word.
+  static std::string row(const std::string& table, const std::string& name) {
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with(name + " ")) return line;
+    }
+    return {};
+  }
+
+  static RunningRobot* robot_;
+};
+RunningRobot* Commands::robot_ = nullptr;
+
+TEST_F(Commands, StatusShowsEveryComponent) {
+  const auto text = output({"status"});
+  EXPECT_TRUE(contains(text, ", may drive\n")) << text;
+  for (const auto& [name, pid] : robot_->components()) {
+    EXPECT_TRUE(contains(row(text, name), " ok ")) << name << "\n" << text;
+  }
+}
+
+TEST_F(Commands, TopicsShowsWritersReadersAndRates) {
+  const auto text = output({"topics", "--seconds", "2"});
+  const auto scan = row(text, "scan");
+  EXPECT_TRUE(contains(scan, "sensor_msgs::msg::dds_::LaserScan_")) << text;
+  EXPECT_TRUE(contains(scan, "volatile")) << scan;
+  EXPECT_TRUE(contains(scan, "lms100")) << scan;
+  EXPECT_TRUE(contains(scan, "scan_filter")) << scan;
+  EXPECT_TRUE(contains(row(text, "map"), "latched")) << text;
+  EXPECT_TRUE(contains(row(text, "drive/command"), "movement_control")) << text;
+  const auto map = row(text, "scan/filtered");
+  std::istringstream words(map);
+  std::string name, type, qos;
+  double rate = 0.0;
+  words >> name >> type >> qos >> rate;
+  EXPECT_GT(rate, 50.0 / (2.0 * slowdown())) << map;
+  EXPECT_LT(rate, 60.0) << map;
+}
+
+TEST_F(Commands, EchoPrintsSamples) {
+  const auto text = output({"topics", "echo", "scan", "--count", "2"});
+  EXPECT_TRUE(contains(text, "ranges:")) << text;
+  EXPECT_TRUE(contains(text, "angle_min: ")) << text;
+  EXPECT_EQ(text.substr(text.size() - 4), "---\n");
+  const auto latched = output({"topics", "echo", "supervisor/status", "--count", "1"});
+  EXPECT_TRUE(contains(latched, "granted: true")) << latched;
+}
+
+TEST_F(Commands, EchoSaysThatNobodyWrites) {
+  EXPECT_EQ(errors({"topics", "echo", "scans", "--count", "1", "--patience", "1"}),
+            "usher: nobody writes scans in domain " + std::to_string(robot_->domain()) + "\n");
+}
+
+TEST_F(Commands, GotoListsTheLocations) {
+  const auto text = output({"goto"});
+  EXPECT_TRUE(contains(row(text, "kitchen"), "Kitchen")) << text;
+  EXPECT_TRUE(contains(row(text, "meeting_room"), "Meeting room")) << text;
+}
+
+TEST_F(Commands, GotoOfAnUnknownLocationNamesTheCloseOnes) {
+  const auto text = errors({"goto", "kichen"});
+  EXPECT_TRUE(contains(text, "kichen")) << text;
+  EXPECT_TRUE(contains(text, "kitchen")) << text;
+}
+
+TEST_F(Commands, GotoDrivesThere) {
+  const auto text = output({"goto", "--pose", "4.5", "5.3", "1.5708"});
+  EXPECT_TRUE(contains(text, "arrived\n")) << text;
+}
+
+TEST_F(Commands, StopHoldsTheRobotUntilMove) {
+  EXPECT_EQ(output({"stop"}), "stopped\n");
+  EXPECT_TRUE(robot_->wait_for([] { return !robot_->status()->enable_movement(); }, Seconds(5)));
+  EXPECT_EQ(output({"move"}), "may move\n");
+  EXPECT_TRUE(robot_->wait_for([] { return robot_->status()->enable_movement(); }, Seconds(5)));
+}
+
+TEST_F(Commands, EmergencyStopIsAFaultUntilCleared) {
+  EXPECT_EQ(output({"stop", "--emergency"}), "emergency stop\n");
+  EXPECT_TRUE(robot_->wait_for([] { return !robot_->status()->granted(); }, Seconds(5)));
+  const auto status = robot_->command({"status"});
+  EXPECT_EQ(status->wait(), 1);
+  EXPECT_TRUE(contains(status->output(), "may not drive: ")) << status->output();
+  EXPECT_TRUE(contains(status->output(), "latched fault: ")) << status->output();
+  EXPECT_EQ(output({"clear"}), "cleared\n");
+  EXPECT_TRUE(robot_->wait_for([] { return robot_->may_drive(); }, Seconds(20)))
+      << robot_->complaints();
+}
+
+TEST_F(Commands, ClearWithoutFaultsIsFine) { EXPECT_EQ(output({"clear"}), "cleared\n"); }
+
+TEST_F(Commands, MapSaveWritesTheMapThatTheRobotHas) {
+  const auto path = robot_->folder() + "/saved.yaml";
+  const auto text = output({"map", "save", path});
+  const auto saved = grid::load_map(path);
+  const auto original =
+      grid::load_map(std::string(USHER_SOURCE_DIR) + "/config/sites/office/map.yaml");
+  ASSERT_TRUE(saved) << saved.error();
+  ASSERT_TRUE(original) << original.error();
+  EXPECT_EQ(saved->width(), original->width());
+  EXPECT_EQ(saved->height(), original->height());
+  EXPECT_EQ(saved->values(), original->values());
+  EXPECT_TRUE(contains(text, path)) << text;
+  errors({"map", "save", robot_->folder() + "/none/map.yaml"});
+}
+
+TEST_F(Commands, SayWhenThereIsNoRobot) {
+  const auto nowhere = std::to_string((robot_->domain() + 110) % 232);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"status"}, {"goto"}, {"goto", "kitchen"}, {"stop"}, {"topics"}}) {
+    std::vector<std::string> all{usher_program()};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--domain", nowhere});
+    Process command(all);
+    EXPECT_EQ(command.wait(), 1) << words.front();
+    EXPECT_TRUE(contains(command.errors(), "domain")) << words.front() << ": " << command.errors();
+  }
+}
+
+TEST_F(Commands, GraphIsValidDot) {
+  Process graph({usher_program(), "graph", robot_->manifest()});
+  ASSERT_EQ(graph.wait(), 0) << graph.errors();
+  const std::string dot = graph.output();
+  EXPECT_TRUE(dot.starts_with("digraph \"robot\" {\n")) << dot;
+  EXPECT_TRUE(dot.ends_with("}\n"));
+  EXPECT_EQ(std::count(dot.begin(), dot.end(), '{'), std::count(dot.begin(), dot.end(), '}'));
+  EXPECT_EQ(std::count(dot.begin(), dot.end(), '"') % 2, 0);
+  EXPECT_TRUE(contains(dot, "\"lms100\" -> \"scan_filter\" [label=\"scan\"];")) << dot;
+  EXPECT_TRUE(contains(dot, "label=\"tablet\"")) << dot;
+  const auto path = robot_->folder() + "/graph.dot";
+  std::ofstream(path) << dot;
+  if (!std::filesystem::exists("/usr/bin/dot")) GTEST_SKIP() << "no graphviz: drawn by nobody";
+  Process draw({"/usr/bin/dot", "-Tsvg", "-o", robot_->folder() + "/graph.svg", path});
+  EXPECT_EQ(draw.wait(), 0) << draw.errors();
+}
+
+}  // namespace
+}  // namespace usher::test

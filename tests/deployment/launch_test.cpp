@@ -1,0 +1,118 @@
+// What `usher launch` refuses: a clear error, an exit code that is not 0, nothing left running.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "deployment/running_robot.hpp"
+#include "support/test_domain.hpp"
+
+namespace usher::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class Launch : public testing::Test {
+ protected:
+  Launch() { ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1); }
+
+  std::string manifest(const std::string& change = "") const {
+    return folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) +
+                                                 "/deploy/marvin-sim.yaml\ndomain: " +
+                                                 std::to_string(test_domain()) + "\n" + change);
+  }
+  /// What it says on stderr.
+  std::string refused(Words words, const std::string& program = usher_program()) const {
+    words.insert(words.begin(), {program, "launch"});
+    Process launch(words);
+    const int code = launch.wait();
+    EXPECT_GT(code, 0);
+    EXPECT_LT(code, 128);
+    EXPECT_TRUE(components_from(folder_.path()).empty());
+    EXPECT_FALSE(launch.errors().empty());
+    return launch.errors();
+  }
+  static bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+
+  Folder folder_;
+};
+
+TEST_F(Launch, RefusesAMissingFile) {
+  const auto path = folder_.path() + "/none.yaml";
+  EXPECT_EQ(refused({path}), "usher: cannot read " + path + "\n");
+  EXPECT_TRUE(contains(refused({folder_.path()}), "it is a directory"));
+}
+
+TEST_F(Launch, RefusesAWrongKey) {
+  const auto path = manifest("components:\n  amcl: {critical: stop}\n");
+  const auto errors = refused({path});
+  EXPECT_TRUE(contains(errors, path + ":4: unknown key: component 'amcl': unknown key 'critical'"))
+      << errors;
+  EXPECT_TRUE(contains(errors, "nothing was started")) << errors;
+}
+
+TEST_F(Launch, RefusesAnUnknownHost) {
+  const auto errors = refused({manifest(), "--host", "laptop"});
+  EXPECT_TRUE(contains(errors, "unknown host 'laptop', expected one of nuc, tablet")) << errors;
+}
+
+TEST_F(Launch, RefusesAHostWithoutComponents) {
+  const auto errors = refused({manifest(), "--host", "tablet"});
+  EXPECT_TRUE(contains(errors, "nothing runs on host 'tablet'")) << errors;
+}
+
+TEST_F(Launch, RefusesWrongSettings) {
+  EXPECT_TRUE(contains(refused({manifest(), "--set", "amcl"}), "COMPONENT.PARAMETER=VALUE"));
+  EXPECT_TRUE(contains(refused({manifest(), "--set", "amcl.beams=3"}),
+                       "command line: unknown key: component 'amcl' has no parameter 'beams'"));
+  EXPECT_TRUE(contains(refused({manifest(), "--set", "ghost.a=3"}), "no component 'ghost'"));
+  EXPECT_TRUE(contains(refused({manifest(), "--set", "guide.answer_timeout=60 deg"}),
+                       "command line: wrong value"));
+}
+
+TEST_F(Launch, RefusesARunDirectoryThatCannotBeWritten) {
+  const auto file = folder_.file("occupied", "");
+  const auto errors = refused({manifest(), "--run-directory", file + "/run"});
+  EXPECT_TRUE(contains(errors, "cannot write " + file + "/run")) << errors;
+}
+
+TEST_F(Launch, RefusesWhenAProgramIsMissing) {
+  namespace fs = std::filesystem;
+  const auto program = folder_.file("install/bin/usher", "");
+  fs::copy_file(usher_program(), program, fs::copy_options::overwrite_existing);
+  fs::create_directories(folder_.path() + "/install/share");
+  fs::create_directory_symlink(std::string(USHER_BINARY_DIR) + "/share/usher",
+                               folder_.path() + "/install/share/usher");
+  const auto errors = refused({manifest()}, program);
+  EXPECT_TRUE(contains(errors, "usher-")) << errors;
+  EXPECT_TRUE(contains(errors, " is missing (")) << errors;
+}
+
+TEST_F(Launch, WithoutManifestIsAWrongCall) {
+  Process launch({usher_program(), "launch"});
+  EXPECT_EQ(launch.wait(), 2);
+}
+
+TEST(SecondLaunch, IsRefusedAndTheFirstGoesOn) {
+  RunningRobot robot;
+  ASSERT_TRUE(robot.wait_for([&] { return robot.components().size() >= 14; }, Seconds(30)))
+      << robot.launcher().errors();
+  const auto before = robot.components();
+  for (const Words& options :
+       {Words{}, Words{"--host", "nuc"}, Words{"--run-directory", robot.folder() + "/elsewhere"}}) {
+    Words words{usher_program(), "launch", robot.manifest()};
+    words.insert(words.end(), options.begin(), options.end());
+    Process second(words);
+    EXPECT_EQ(second.wait(), 1);
+    EXPECT_NE(second.errors().find("this robot is already launched here, by process " +
+                                   std::to_string(robot.launcher().pid())),
+              std::string::npos)
+        << second.errors();
+  }
+  EXPECT_EQ(robot.components(), before);
+}
+
+}  // namespace
+}  // namespace usher::test

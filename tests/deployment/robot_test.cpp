@@ -1,0 +1,102 @@
+// The whole simulated robot as processes: it starts, survives the death of its parts, ends.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "deployment/running_robot.hpp"
+
+namespace usher::test {
+namespace {
+
+using usher_msgs::msg::Heartbeat_Constants::STATE_OK;
+
+class Robot : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { robot_ = new RunningRobot; }
+  static void TearDownTestSuite() {
+    delete robot_;
+    robot_ = nullptr;
+  }
+  static bool booted() {
+    return robot_->wait_for([] { return robot_->may_drive(); }, Seconds(60));
+  }
+  static RunningRobot* robot_;
+};
+RunningRobot* Robot::robot_ = nullptr;
+
+TEST_F(Robot, IsWellWithin15Seconds) {
+  const auto start = std::chrono::steady_clock::now();
+  const double slow = slowdown();
+  const bool well = robot_->wait_for([] { return robot_->may_drive(); }, Seconds(15.0 * slow));
+  const Seconds took = std::chrono::steady_clock::now() - start;
+  std::printf("every component is ok and the robot may drive after %.1f s (machine %.1fx)\n",
+              took.count(), slow);
+  ASSERT_TRUE(well) << robot_->complaints();
+  EXPECT_EQ(robot_->components().size(), robot_->status()->components().size());
+}
+
+TEST_F(Robot, IsBackWithinOneSecondAfterTheDeathOfAPart) {
+  ASSERT_TRUE(booted()) << robot_->complaints();
+  for (const auto* victim :
+       {"amcl", "costmap", "movement_control", "segway_rmp", "local_planner"}) {
+    SCOPED_TRACE(victim);
+    const auto before = robot_->components();
+    const auto old_writer = robot_->lives().at(victim).writer;
+    const double slow = slowdown();
+    const auto killed = std::chrono::steady_clock::now();
+    ASSERT_EQ(::kill(before.at(victim), SIGKILL), 0);
+    ASSERT_TRUE(robot_->wait_for([&] { return robot_->lives().at(victim).writer != old_writer; },
+                                 Seconds(10.0 * slow)))
+        << robot_->complaints();
+    const Seconds back = robot_->lives().at(victim).at - killed;
+    EXPECT_LT(back.count(), 1.0 * slow);
+    const bool well = robot_->wait_for(
+        [&] { return robot_->lives().at(victim).state == STATE_OK && robot_->may_drive(); },
+        Seconds(10.0 * slow));
+    const Seconds whole = std::chrono::steady_clock::now() - killed;
+    EXPECT_TRUE(well) << robot_->complaints();
+    std::printf(
+        "%-16s heartbeat after %4.0f ms, the robot may drive again after %4.0f ms "
+        "(machine %.1fx)\n",
+        victim, back.count() * 1e3, whole.count() * 1e3, slow);
+    auto after = robot_->components();
+    EXPECT_NE(after[victim], before.at(victim));
+    after[victim] = before.at(victim);
+    EXPECT_EQ(after, before) << "nobody else was restarted";
+  }
+}
+
+TEST_F(Robot, LeavesNothingBehindAfterSigterm) {
+  ASSERT_TRUE(booted()) << robot_->complaints();
+  const auto processes = robot_->components();
+  const auto shared_memory = shared_memory_of(processes);
+  robot_->launcher().signal(SIGTERM);
+  EXPECT_EQ(robot_->launcher().wait(std::chrono::seconds(20)), 0) << robot_->launcher().errors();
+  EXPECT_EQ(robot_->launcher().output().find("did not stop"), std::string::npos)
+      << robot_->launcher().output();
+  EXPECT_TRUE(robot_->components().empty());
+  for (const auto& file : shared_memory) EXPECT_FALSE(std::filesystem::exists(file)) << file;
+}
+
+TEST_F(Robot, TakesItsPartsAlongWhenTheLauncherIsKilled) {
+  robot_->launch();
+  ASSERT_TRUE(booted()) << robot_->complaints();
+  robot_->launcher().signal(SIGKILL);
+  EXPECT_EQ(robot_->launcher().wait(), 128 + SIGKILL);
+  EXPECT_TRUE(
+      robot_->wait_for([] { return robot_->components().empty(); }, Seconds(5 * slowdown())))
+      << robot_->components().begin()->first;
+}
+
+TEST_F(Robot, CanBeLaunchedAgainAndEndsOnCtrlC) {
+  robot_->launch();
+  ASSERT_TRUE(robot_->wait_for([] { return !robot_->components().empty(); }, Seconds(30)))
+      << robot_->launcher().errors();
+  robot_->launcher().signal(SIGINT);
+  EXPECT_EQ(robot_->launcher().wait(std::chrono::seconds(20)), 0) << robot_->launcher().output();
+  EXPECT_TRUE(robot_->components().empty());
+}
+
+}  // namespace
+}  // namespace usher::test

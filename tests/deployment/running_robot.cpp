@@ -1,0 +1,172 @@
+#include "deployment/running_robot.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "support/test_domain.hpp"
+
+namespace usher::test {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using namespace usher_msgs::msg;
+
+std::string usher_program() { return std::string(USHER_BINARY_DIR) + "/bin/usher"; }
+
+double slowdown() {
+  const auto cpu = [] {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+  };
+  const auto start = Clock::now();
+  const double cpu_start = cpu();
+  while (cpu() - cpu_start < 0.1) {
+  }
+  return std::max(1.0, Seconds(Clock::now() - start).count() / (cpu() - cpu_start));
+}
+
+std::map<std::string, pid_t> components_from(const std::string& folder) {
+  std::map<std::string, pid_t> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+    const std::string pid = entry.path().filename();
+    if (!std::all_of(pid.begin(), pid.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+      continue;
+    std::istringstream words(content_of(entry.path() / "cmdline"));
+    bool is_parameters = false;
+    for (std::string word; std::getline(words, word, '\0');) {
+      if (is_parameters && word.starts_with(folder + "/"))
+        found[fs::path(word).stem()] = std::stoi(pid);
+      is_parameters = word == "--parameters";
+    }
+  }
+  return found;
+}
+
+std::set<std::string> shared_memory_of(const std::map<std::string, pid_t>& processes) {
+  std::set<std::string> files;
+  std::error_code error;
+  for (const auto& [name, pid] : processes) {
+    const fs::path process = "/proc/" + std::to_string(pid);
+    std::istringstream maps(content_of(process / "maps"));
+    for (std::string line; std::getline(maps, line);) {
+      if (const auto at = line.find("/dev/shm/"); at != std::string::npos)
+        files.insert(line.substr(at));
+    }
+    for (const auto& entry : fs::directory_iterator(process / "fd", error)) {
+      const auto target = fs::read_symlink(entry.path(), error).string();
+      if (target.starts_with("/dev/shm/")) files.insert(target);
+    }
+  }
+  return files;
+}
+
+RunningRobot::RunningRobot() : domain_(test_domain()) {
+  ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+  manifest_ = folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) +
+                                                    "/deploy/marvin-sim.yaml\ndomain: " +
+                                                    std::to_string(domain_) + "\n");
+  auto observer = runtime::Observer::create({.name = "tests", .host = "nuc", .domain = domain_});
+  assert(observer);
+  observer_ = std::move(observer).value();
+  auto heartbeats = observer_->reader(
+      topics::kHeartbeat, [this](const auto& message, const runtime::Observer::RawSample& sample) {
+        {
+          const std::lock_guard lock(mutex_);
+          auto& life = lives_[message.component_name()];
+          if (life.writer != sample.writer) life.at = Clock::now();
+          life.writer = sample.writer;
+          life.state = message.state();
+          life.reason = message.reason();
+        }
+        heard_.notify_all();
+      });
+  assert(heartbeats);
+  heartbeats_ = std::move(heartbeats).value();
+  auto statuses =
+      observer_->reader(topics::kSupervisorStatus, [this](const auto& message, const auto&) {
+        {
+          const std::lock_guard lock(mutex_);
+          status_ = message;
+          status_at_ = Clock::now();
+        }
+        heard_.notify_all();
+      });
+  assert(statuses);
+  statuses_ = std::move(statuses).value();
+  launch();
+}
+
+RunningRobot::~RunningRobot() {
+  launcher_->signal(SIGTERM);
+  launcher_->wait(std::chrono::seconds(10));
+}
+
+void RunningRobot::launch() {
+  {
+    const std::lock_guard lock(mutex_);
+    status_.reset();
+    lives_.clear();
+  }
+  launcher_ =
+      std::make_unique<Process>(std::vector<std::string>{usher_program(), "launch", manifest_});
+}
+
+std::unique_ptr<Process> RunningRobot::command(std::vector<std::string> words) const {
+  words.insert(words.begin(), usher_program());
+  words.push_back("--domain");
+  words.push_back(std::to_string(domain_));
+  return std::make_unique<Process>(std::move(words));
+}
+
+std::optional<SupervisorStatus> RunningRobot::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+std::map<std::string, RunningRobot::Life> RunningRobot::lives() const {
+  const std::lock_guard lock(mutex_);
+  return lives_;
+}
+
+bool RunningRobot::may_drive() const {
+  const std::lock_guard lock(mutex_);
+  return status_ && Clock::now() - status_at_ < std::chrono::seconds(1) && status_->granted() &&
+         std::all_of(status_->components().begin(), status_->components().end(),
+                     [](const auto& component) {
+                       return component.health() == SupervisorStatus_Constants::HEALTH_OK;
+                     });
+}
+
+std::string RunningRobot::complaints() const {
+  const auto now = status();
+  if (!now) return "no word from the supervisor\n" + launcher_->output() + launcher_->errors();
+  std::string text = now->granted() ? "granted\n" : "not granted: " + now->reason() + "\n";
+  for (const auto& component : now->components()) {
+    if (component.health() != SupervisorStatus_Constants::HEALTH_OK)
+      text += component.name() + ": " + std::to_string(component.health()) + " " +
+              component.reason() + "\n";
+  }
+  for (const auto& fault : now->faults()) {
+    if (fault.active()) text += "fault of " + fault.component_name() + ": " + fault.cause() + "\n";
+  }
+  return text;
+}
+
+bool RunningRobot::wait_for(const std::function<bool()>& condition, Seconds limit) const {
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+  while (!condition()) {
+    if (Clock::now() >= deadline) return false;
+    std::unique_lock lock(mutex_);
+    heard_.wait_for(lock, std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+}  // namespace usher::test
