@@ -36,32 +36,38 @@ std::uint64_t fresh_id() {
                                         .count());
 }
 
-/// Asks the supervisor and says what became of it.
-int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
-  auto observer = Observer::create({.name = kClient, .domain = domain});
-  if (!observer) return fail(observer.error());
-  auto writer = (*observer)->writer(topics::kSupervisorRequest);
-  auto status = (*observer)->reader(topics::kSupervisorStatus);
-  if (!writer) return fail(writer.error());
-  if (!status) return fail(status.error());
+/// Asks the supervisor until it answers; the error says why it did not do it.
+Status tell_supervisor(Observer& observer, std::uint8_t command, const std::string& goal = {}) {
+  auto writer = observer.writer(topics::kSupervisorRequest);
+  auto status = observer.reader(topics::kSupervisorStatus);
+  if (!writer) return Error{writer.error()};
+  if (!status) return Error{status.error()};
   if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
-    return fail("no supervisor in domain " + std::to_string(domain));
+    return Error{"no supervisor in this domain"};
   SupervisorRequest request;
   request.id(fresh_id());
   request.client(kClient);
   request.command(command);
+  request.goal(goal);
   for (int tries = 0; tries < 15; ++tries) {
     writer->write(request);
     const auto until = std::chrono::steady_clock::now() + kRepeat;
     while (std::chrono::steady_clock::now() < until) {
       const auto answer = status->take(milliseconds(50));
       if (!answer || answer->last_request() != request.id()) continue;
-      if (!answer->last_request_done()) return fail("refused: " + answer->last_request_reason());
-      std::cout << done << "\n";
-      return 0;
+      if (!answer->last_request_done()) return Error{"refused: " + answer->last_request_reason()};
+      return {};
     }
   }
-  return fail("the supervisor did not answer within 3 s");
+  return Error{"the supervisor did not answer within 3 s"};
+}
+
+int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
+  auto observer = Observer::create({.name = kClient, .domain = domain});
+  if (!observer) return fail(observer.error());
+  if (const auto told = tell_supervisor(**observer, command); !told) return fail(told.error());
+  std::cout << done << "\n";
+  return 0;
 }
 
 struct GoalArguments {
@@ -95,12 +101,10 @@ void show_progress(const NavigateStatus& status) {
             << (status.reason().empty() ? "" : "  " + status.reason()) << "\033[K" << std::flush;
 }
 
-int go(std::uint32_t domain, const GoalArguments& arguments) {
-  auto observer = Observer::create({.name = kClient, .domain = domain});
-  if (!observer) return fail(observer.error());
-  if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
-  auto writer = (*observer)->writer(topics::kNavigateGoal);
-  auto reader = (*observer)->reader(topics::kNavigateStatus);
+/// Sends the goal and watches it to its end.
+int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& arguments) {
+  auto writer = observer.writer(topics::kNavigateGoal);
+  auto reader = observer.reader(topics::kNavigateStatus);
   if (!writer) return fail(writer.error());
   if (!reader) return fail(reader.error());
   if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
@@ -143,6 +147,26 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
     }
   }
   return fail("the navigator did not take the goal within 3 s");
+}
+
+/// The supervisor lets the navigation drive from the start to the end of a goal.
+int go(std::uint32_t domain, const GoalArguments& arguments) {
+  using namespace SupervisorRequest_Constants;
+  auto observer = Observer::create({.name = kClient, .domain = domain});
+  if (!observer) return fail(observer.error());
+  if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
+  const std::string name = arguments.location.empty() ? "pose" : arguments.location;
+  for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
+    if (const auto told = tell_supervisor(**observer, command, name); !told)
+      return fail(told.error());
+  }
+  const int code = pursue(**observer, domain, arguments);
+  if (code != 0) {
+    if (const auto told = tell_supervisor(**observer, COMMAND_NAVIGATION_END); !told) {
+      std::cerr << "usher: the navigation could not be ended: " << told.error() << "\n";
+    }
+  }
+  return code;
 }
 
 int save_map(std::uint32_t domain, const std::string& path) {

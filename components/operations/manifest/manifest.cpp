@@ -214,7 +214,7 @@ ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Fi
 }
 
 void judge_host_of(const ManifestComponent& component, Manifest& manifest) {
-  if (manifest.host(component.host) != nullptr) return;
+  if (manifest.hosts.empty() || manifest.host(component.host) != nullptr) return;
   std::string known;
   for (const auto& host : manifest.hosts) known += (known.empty() ? "" : ", ") + host.name;
   manifest.findings.push_back(

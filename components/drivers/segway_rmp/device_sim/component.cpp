@@ -31,13 +31,17 @@ SegwayFeedback from_message(const usher_sim_msgs::msg::BaseFeedback& message) {
 
 SegwayRmpSimComponent::SegwayRmpSimComponent(runtime::Host& host)
     : command_(host.output(topics::kSimBaseCommand)),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { send(MODE_DRIVE, twist); },
-                     .emergency_stop = [this] { send(MODE_EMERGENCY_STOP, {}); },
-                     .reset = [this] { send(MODE_RESET, {}); }}),
+      driver_(host, {.drive = [this](const geometry::Twist2& twist) { send(pending_, twist); },
+                     .emergency_stop = [this] { send(pending_ = MODE_EMERGENCY_STOP, {}); },
+                     .reset = [this] { send(pending_ = MODE_RESET, {}); }}),
       feedback_(host.input(
           topics::kSimBaseFeedback,
           {.max_age = kSilence, .on_loss = "reports the base as disconnected"},
-          [this](const auto& message, const auto&) { driver_.take(from_message(message)); },
+          [this](const auto& message, const auto&) {
+            if (pending_ == (message.emergency() ? MODE_EMERGENCY_STOP : MODE_RESET))
+              pending_ = MODE_DRIVE;
+            driver_.take(from_message(message));
+          },
           [this] { driver_.disconnected("the base is silent"); })) {}
 
 void SegwayRmpSimComponent::send(std::uint8_t mode, const geometry::Twist2& twist) {

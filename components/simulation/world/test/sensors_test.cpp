@@ -150,12 +150,14 @@ TEST(Whiskers, BendWhereSomethingCrossesThem) {
   const auto at = [&](const Thing& thing) {
     return whiskers.touch(Scene({thing}, 2.7), {}, {0.0, 0.0, 0.0});
   };
-  EXPECT_TRUE(at(disc("post", {0.6, 0.45}, 0.05, 0.0, 1.0)).front_left);
-  EXPECT_FALSE(at(disc("post", {0.6, 0.45}, 0.05, 0.0, 1.0)).front_right);
-  EXPECT_TRUE(at(disc("post", {0.6, -0.45}, 0.05, 0.0, 1.0)).front_right);
-  EXPECT_TRUE(at(disc("post", {-0.6, 0.45}, 0.05, 0.0, 1.0)).back_left);
-  EXPECT_TRUE(at(disc("post", {-0.6, -0.45}, 0.05, 0.0, 1.0)).back_right);
-  EXPECT_FALSE(at(disc("low", {0.6, 0.45}, 0.05, 0.0, 0.1)).front_left) << "passes under";
+  EXPECT_TRUE(at(disc("post", {0.6, 0.38}, 0.05, 0.0, 1.0)).front_left);
+  EXPECT_FALSE(at(disc("post", {0.6, 0.38}, 0.05, 0.0, 1.0)).front_right);
+  EXPECT_TRUE(at(disc("post", {0.6, -0.38}, 0.05, 0.0, 1.0)).front_right);
+  EXPECT_TRUE(at(disc("post", {-0.6, 0.38}, 0.05, 0.0, 1.0)).back_left);
+  EXPECT_TRUE(at(disc("post", {-0.6, -0.38}, 0.05, 0.0, 1.0)).back_right);
+  EXPECT_FALSE(at(disc("low", {0.6, 0.38}, 0.05, 0.0, 0.1)).front_left) << "passes under";
+  EXPECT_FALSE(at(box("door frame", {0.6, 0.47, 0.0}, 0.1, 0.1, 0.0, 2.0)).front_left)
+      << "brushing along, 7 cm beside the robot";
   const WhiskerContacts none = at(disc("post", {1.0, 0.0}, 0.05, 0.0, 1.0));
   EXPECT_FALSE(none.front_left || none.front_right || none.back_left || none.back_right);
 }
