@@ -4,7 +4,8 @@
 
 namespace usher::topics {
 
-/// Reader or writer side of the quality of service: reliability, durability and depth, nothing else.
+/// Reader or writer side of the quality of service: reliability, durability and depth, nothing
+/// else.
 struct Qos {
   bool reliable = true;
   bool latched = false;  ///< transient local
@@ -15,19 +16,23 @@ struct Qos {
 /// The four kinds of topics . Writers are always reliable; readers of streams choose best effort.
 enum class Kind { kStream, kCommand, kLatched, kEvent };
 
-/// One topic of the catalogue: its name on the wire is "rt/" + name, its type the message's ROS 2 type name.
+/// One topic of the catalogue: its name on the wire is "rt/" + name, its type the message's ROS 2
+/// type name.
 template <class M>
 struct Topic {
   using Message = M;
   std::string_view name;
   Kind kind = Kind::kStream;
   int depth = 1;
-  double rate_hz = 0.0;        ///< nominal; 0 = on occasion
-  std::string_view writers;    ///< component types that may write it, separated by spaces; "*" = every component
+  double rate_hz = 0.0;  ///< nominal; 0 = on occasion
+  std::string_view
+      writers;  ///< component types that may write it, separated by spaces; "*" = every component
   std::string_view text;
 
   constexpr Qos writer_qos() const { return {true, kind == Kind::kLatched, depth}; }
-  constexpr Qos reader_qos() const { return {kind != Kind::kStream, kind == Kind::kLatched, depth}; }
+  constexpr Qos reader_qos() const {
+    return {kind != Kind::kStream, kind == Kind::kLatched, depth};
+  }
 };
 
 }  // namespace usher::topics

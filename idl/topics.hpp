@@ -1,7 +1,8 @@
 #pragma once
 
-// The topic catalogue: every topic that exists, with type, quality of service, nominal rate and who may write it. The
-// contracts, `usher check`, `usher topics` and the security permissions come from here.
+// The topic catalogue: every topic that exists, with type, quality of service, nominal rate and who
+// may write it. The contracts, `usher check`, `usher topics` and the security permissions come from
+// here.
 
 #include <tuple>
 
@@ -14,7 +15,8 @@ namespace usher::topics {
 
 // --- Health
 inline constexpr Topic<usher_msgs::msg::Heartbeat> kHeartbeat{
-    "heartbeat", Kind::kEvent, 4, 10, "*", "State of every component; critical ones write at 50 Hz."};
+    "heartbeat", Kind::kEvent, 4,
+    10,          "*",          "State of every component; critical ones write at 50 Hz."};
 inline constexpr Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "diagnostics", Kind::kEvent, 4, 1, "supervisor", "The supervisor's table for ROS 2 tools."};
 
@@ -22,23 +24,36 @@ inline constexpr Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kScan{
     "scan", Kind::kStream, 5, 50, "lms100", "Laser scan as measured, in the frame `laser`."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kScanFiltered{
-    "scan/filtered", Kind::kStream, 5, 50, "scan_filter", "Own body and floor removed, projected to the horizontal."};
+    "scan/filtered",
+    Kind::kStream,
+    5,
+    50,
+    "scan_filter",
+    "Own body and floor removed, projected to the horizontal."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kUltrasonic{
-    "ultrasonic", Kind::kStream, 5, 20, "sensor_board", "Five narrow ultrasonic ranges as one scan."};
+    "ultrasonic", Kind::kStream,  5,
+    20,           "sensor_board", "Five narrow ultrasonic ranges as one scan."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kUltrasonicFiltered{
-    "ultrasonic/filtered", Kind::kStream, 5, 20, "scan_filter", "The same without the floor, projected."};
+    "ultrasonic/filtered",
+    Kind::kStream,
+    5,
+    20,
+    "scan_filter",
+    "The same without the floor, projected."};
 inline constexpr Topic<usher_msgs::msg::Whiskers> kWhiskers{
     "whiskers", Kind::kStream, 2, 50, "sensor_board", "Contact at the four corners."};
-inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
-    "battery", Kind::kStream, 1, 1, "segway_rmp", "Drive battery."};
+inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{"battery",    Kind::kStream,   1, 1,
+                                                                "segway_rmp", "Drive battery."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTf{
-    "tf", Kind::kStream, 32, 100, "segway_rmp amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
+    "tf", Kind::kStream,     32,
+    100,  "segway_rmp amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
     "tf_static", Kind::kLatched, 1, 0, "lms100 sensor_board scan_filter", "Mounts of the sensors."};
 
 // --- Base and drive chain
 inline constexpr Topic<usher_msgs::msg::BaseStatus> kBaseStatus{
-    "base/status", Kind::kStream, 5, 100, "segway_rmp", "Pitch, velocity and obedience of the base."};
+    "base/status", Kind::kStream, 5,
+    100,           "segway_rmp",  "Pitch, velocity and obedience of the base."};
 inline constexpr Topic<nav_msgs::msg::Odometry> kOdom{
     "odom", Kind::kStream, 5, 100, "segway_rmp", "Odometry, corrected for the pitch."};
 inline constexpr Topic<usher_msgs::msg::BaseRequest> kBaseRequest{
@@ -46,12 +61,26 @@ inline constexpr Topic<usher_msgs::msg::BaseRequest> kBaseRequest{
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelManual{
     "cmd_vel/manual", Kind::kCommand, 1, 20, "manual_control", "Velocity wanted by the operator."};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelInteraction{
-    "cmd_vel/interaction", Kind::kCommand, 1, 20, "interaction_control", "Velocity wanted to face a person."};
+    "cmd_vel/interaction",
+    Kind::kCommand,
+    1,
+    20,
+    "interaction_control",
+    "Velocity wanted to face a person."};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelNavigation{
-    "cmd_vel/navigation", Kind::kCommand, 1, 20, "local_planner",
+    "cmd_vel/navigation",
+    Kind::kCommand,
+    1,
+    20,
+    "local_planner",
     "Velocity wanted to reach the goal; the stamp is that of the newest scan behind it."};
 inline constexpr Topic<usher_msgs::msg::DriveCommand> kDriveCommand{
-    "drive/command", Kind::kCommand, 1, 50, "movement_control", "The one command that the base obeys."};
+    "drive/command",
+    Kind::kCommand,
+    1,
+    50,
+    "movement_control",
+    "The one command that the base obeys."};
 inline constexpr Topic<usher_msgs::msg::DriveGrant> kDriveGrant{
     "drive/grant", Kind::kCommand, 1, 50, "supervisor", "Who may drive, for how long."};
 inline constexpr Topic<usher_msgs::msg::MovementEnable> kMovementEnable{
@@ -61,15 +90,30 @@ inline constexpr Topic<usher_msgs::msg::MovementStatus> kMovementStatus{
 
 // --- Supervisor
 inline constexpr Topic<usher_msgs::msg::SupervisorStatus> kSupervisorStatus{
-    "supervisor/status", Kind::kLatched, 1, 10, "supervisor", "Appendix A.3 of the thesis, health and faults."};
+    "supervisor/status",
+    Kind::kLatched,
+    1,
+    10,
+    "supervisor",
+    "Appendix A.3 of the thesis, health and faults."};
 inline constexpr Topic<usher_msgs::msg::SupervisorRequest> kSupervisorRequest{
-    "supervisor/request", Kind::kEvent, 32, 0, "guide manual_control tablet operator", "Changes of the supervisor's state."};
+    "supervisor/request",
+    Kind::kEvent,
+    32,
+    0,
+    "guide manual_control tablet operator",
+    "Changes of the supervisor's state."};
 
 // --- Localization and maps
 inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kMap{
     "map", Kind::kLatched, 1, 0, "map_server", "The static map, frame map."};
 inline constexpr Topic<geometry_msgs::msg::PoseWithCovarianceStamped> kInitialPose{
-    "initialpose", Kind::kEvent, 32, 0, "operator", "Where the robot is, said by an operator; frame map."};
+    "initialpose",
+    Kind::kEvent,
+    32,
+    0,
+    "operator",
+    "Where the robot is, said by an operator; frame map."};
 inline constexpr Topic<geometry_msgs::msg::PoseWithCovarianceStamped> kAmclPose{
     "amcl_pose", Kind::kLatched, 1, 5, "amcl", "Estimated pose of base_footprint in map."};
 inline constexpr Topic<geometry_msgs::msg::PoseArray> kParticleCloud{
@@ -79,13 +123,23 @@ inline constexpr Topic<usher_msgs::msg::LocalizationStatus> kLocalizationStatus{
 
 // --- Costmaps
 inline constexpr Topic<usher_msgs::msg::Costmap> kLocalCosts{
-    "local_costmap/costs", Kind::kStream, 1, 20, "costmap", "Rolling window around the robot, frame odom."};
+    "local_costmap/costs",
+    Kind::kStream,
+    1,
+    20,
+    "costmap",
+    "Rolling window around the robot, frame odom."};
 inline constexpr Topic<usher_msgs::msg::Costmap> kGlobalCosts{
     "global_costmap/costs", Kind::kLatched, 1, 1, "costmap", "The whole map, frame map."};
 inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kLocalCostmap{
     "local_costmap/costmap", Kind::kLatched, 1, 5, "costmap", "The local costs for ROS 2 viewers."};
 inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kGlobalCostmap{
-    "global_costmap/costmap", Kind::kLatched, 1, 1, "costmap", "The global costs for ROS 2 viewers."};
+    "global_costmap/costmap",
+    Kind::kLatched,
+    1,
+    1,
+    "costmap",
+    "The global costs for ROS 2 viewers."};
 inline constexpr Topic<usher_msgs::msg::CostmapRequest> kCostmapRequest{
     "costmap/request", Kind::kEvent, 32, 0, "navigator", "Forget observations around the robot."};
 
@@ -119,29 +173,42 @@ inline constexpr Topic<usher_msgs::msg::Locations> kLocations{
 inline constexpr Topic<usher_msgs::msg::DialogueScreen> kDialogueScreen{
     "dialogue/screen", Kind::kLatched, 1, 0, "guide", "What the visitor sees and hears."};
 inline constexpr Topic<usher_msgs::msg::DialogueAnswer> kDialogueAnswer{
-    "dialogue/answer", Kind::kEvent, 32, 0, "visitor tablet speech operator", "What the visitor chose."};
+    "dialogue/answer",        Kind::kEvent, 32, 0, "visitor tablet speech operator",
+    "What the visitor chose."};
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
     "sim/base/command", Kind::kCommand, 1, 50, "segway_rmp", "To the simulated wheels."};
 inline constexpr Topic<usher_sim_msgs::msg::BaseFeedback> kSimBaseFeedback{
-    "sim/base/feedback", Kind::kStream, 5, 100, "world", "From the simulated wheels and gyroscope."};
+    "sim/base/feedback",
+    Kind::kStream,
+    5,
+    100,
+    "world",
+    "From the simulated wheels and gyroscope."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimScan{
     "sim/scan", Kind::kStream, 5, 50, "world", "From the simulated laser."};
 inline constexpr Topic<usher_sim_msgs::msg::SensorBoardReading> kSimSensorBoard{
     "sim/sensor_board", Kind::kStream, 5, 50, "world", "From the simulated sensor board."};
 inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
-    "sim/ground_truth", Kind::kStream, 5, 50, "world", "What really happened; for judges, never for the robot."};
+    "sim/ground_truth",
+    Kind::kStream,
+    5,
+    50,
+    "world",
+    "What really happened; for judges, never for the robot."};
 inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
     "sim/person/goal", Kind::kEvent, 32, 0, "visitor", "Moves a scripted person."};
 
-inline constexpr auto kAll = std::tie(
-    kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers, kBattery, kTf, kTfStatic,
-    kBaseStatus, kOdom, kBaseRequest, kCmdVelManual, kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant,
-    kMovementEnable, kMovementStatus, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud,
-    kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply,
-    kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus,
-    kLocations, kDialogueScreen, kDialogueAnswer, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
-    kSimGroundTruth, kSimPersonGoal);
+inline constexpr auto kAll =
+    std::tie(kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered,
+             kWhiskers, kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
+             kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
+             kMovementStatus, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
+             kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap,
+             kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal,
+             kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel,
+             kNavigateStatus, kLocations, kDialogueScreen, kDialogueAnswer, kSimBaseCommand,
+             kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

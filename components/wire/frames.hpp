@@ -1,7 +1,8 @@
 #pragma once
 
-/// Frames that every robot has (REP 105): map -> odom -> base_footprint (floor below the axle's middle) -> base_link (the
-/// axle's middle, pitched). Sensors hang on base_link under names of their own.
+/// Frames that every robot has (REP 105): map -> odom -> base_footprint (floor below the axle's
+/// middle) -> base_link (the axle's middle, pitched). Sensors hang on base_link under names of
+/// their own.
 namespace usher::frames {
 
 inline constexpr const char* kMap = "map";

@@ -48,7 +48,8 @@ struct Manifest {
   std::string site_file;   ///< config/sites/<site>/site.yaml
   std::uint32_t domain = 0;
   std::uint64_t seed = 1;
-  bool fresh_start = false;  ///< a launch forgets what components kept: a simulated robot stands elsewhere than the last one
+  bool fresh_start = false;  ///< a launch forgets what components kept: a simulated robot stands
+                             ///< elsewhere than the last one
   std::vector<ManifestHost> hosts;
   std::vector<ManifestComponent> components;
   std::vector<Finding> findings;  ///< what is wrong with the manifest by itself

@@ -124,7 +124,8 @@ TEST(DistanceField, InterpolatesWithItsOwnGradient) {
 TEST(DistanceField, IsTheRadiusOutsideTheMap) {
   DistanceField field;
   field.build(random_grid(11, 60, 60, 0.1), 1.0);
-  for (const geometry::Point2& p : {geometry::Point2{0.0, 0.0}, {100.0, 0.0}, {std::nan(""), 0.0}}) {
+  for (const geometry::Point2& p :
+       {geometry::Point2{0.0, 0.0}, {100.0, 0.0}, {std::nan(""), 0.0}}) {
     EXPECT_EQ(field.interpolated(p).distance, field.radius());
     EXPECT_EQ(field.interpolated(p).gradient.norm(), 0.0);
   }
