@@ -17,8 +17,6 @@
 
 #include "support/folder.hpp"
 
-extern char** environ;
-
 namespace usher::test {
 
 /// A program that runs beside the test; what it prints can be read at any time. Killed at the end
@@ -33,6 +31,7 @@ class Process {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, path("output").c_str(), flags, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, path("errors").c_str(), flags, 0600);
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const int error =
