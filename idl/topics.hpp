@@ -22,7 +22,8 @@ inline constexpr Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
 
 // --- Sensors
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kScan{
-    "scan", Kind::kStream, 5, 50, "lms100", "Laser scan as measured, in the frame `laser`."};
+    "scan", Kind::kStream,    5,
+    50,     "lms100 urg04lx", "Laser scan as measured, in the frame `laser`."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kScanFiltered{
     "scan/filtered",
     Kind::kStream,
@@ -31,8 +32,12 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kScanFiltered{
     "scan_filter",
     "Own body and floor removed, projected to the horizontal."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kUltrasonic{
-    "ultrasonic", Kind::kStream,  5,
-    20,           "sensor_board", "Five narrow ultrasonic ranges as one scan."};
+    "ultrasonic",
+    Kind::kStream,
+    5,
+    20,
+    "sensor_board p3dx",
+    "Narrow ultrasonic ranges as one scan; NaN where there is no sensor."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kUltrasonicFiltered{
     "ultrasonic/filtered",
     Kind::kStream,
@@ -42,20 +47,25 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kUltrasonicFiltered{
     "The same without the floor, projected."};
 inline constexpr Topic<usher_msgs::msg::Whiskers> kWhiskers{
     "whiskers", Kind::kStream, 2, 50, "sensor_board", "Contact at the four corners."};
-inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{"battery",    Kind::kStream,   1, 1,
-                                                                "segway_rmp", "Drive battery."};
+inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
+    "battery", Kind::kStream, 1, 1, "segway_rmp p3dx", "Drive battery."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTf{
-    "tf", Kind::kStream,     32,
-    100,  "segway_rmp amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
+    "tf", Kind::kStream,          32,
+    100,  "segway_rmp p3dx amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
-    "tf_static", Kind::kLatched, 1, 0, "lms100 sensor_board scan_filter", "Mounts of the sensors."};
+    "tf_static",
+    Kind::kLatched,
+    1,
+    0,
+    "lms100 urg04lx sensor_board p3dx scan_filter",
+    "Mounts of the sensors."};
 
 // --- Base and drive chain
 inline constexpr Topic<usher_msgs::msg::BaseStatus> kBaseStatus{
-    "base/status", Kind::kStream, 5,
-    100,           "segway_rmp",  "Pitch, velocity and obedience of the base."};
+    "base/status", Kind::kStream,     5,
+    100,           "segway_rmp p3dx", "Pitch, velocity and obedience of the base."};
 inline constexpr Topic<nav_msgs::msg::Odometry> kOdom{
-    "odom", Kind::kStream, 5, 100, "segway_rmp", "Odometry, corrected for the pitch."};
+    "odom", Kind::kStream, 5, 100, "segway_rmp p3dx", "Odometry, corrected for the pitch."};
 inline constexpr Topic<usher_msgs::msg::BaseRequest> kBaseRequest{
     "base/request", Kind::kEvent, 32, 0, "supervisor", "Emergency stop and reset."};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelManual{
@@ -72,7 +82,7 @@ inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelNavigation{
     Kind::kCommand,
     1,
     20,
-    "local_planner",
+    "local_planner waypoint_follower",
     "Velocity wanted to reach the goal; the stamp is that of the newest scan behind it."};
 inline constexpr Topic<usher_msgs::msg::DriveCommand> kDriveCommand{
     "drive/command",
@@ -146,18 +156,27 @@ inline constexpr Topic<usher_msgs::msg::CostmapRequest> kCostmapRequest{
 // --- Planning
 inline constexpr Topic<usher_msgs::msg::PlanRequest> kPlanRequest{
     "plan/request", Kind::kEvent, 32, 0, "navigator", "Ask for a path."};
-inline constexpr Topic<usher_msgs::msg::PlanReply> kPlanReply{
-    "plan/reply", Kind::kLatched, 1, 0, "global_planner", "The answer to the last request."};
+inline constexpr Topic<usher_msgs::msg::PlanReply> kPlanReply{"plan/reply",
+                                                              Kind::kLatched,
+                                                              1,
+                                                              0,
+                                                              "global_planner roadmap",
+                                                              "The answer to the last request."};
 inline constexpr Topic<nav_msgs::msg::Path> kPlan{
-    "plan", Kind::kLatched, 1, 0, "global_planner", "The last path, for viewers."};
+    "plan", Kind::kLatched, 1, 0, "global_planner roadmap", "The last path, for viewers."};
 inline constexpr Topic<usher_msgs::msg::FollowGoal> kFollowGoal{
     "follow/goal", Kind::kEvent, 32, 0, "navigator", "The path to follow."};
 inline constexpr Topic<usher_msgs::msg::GoalCancel> kFollowCancel{
     "follow/cancel", Kind::kEvent, 32, 0, "navigator", "Stop following."};
 inline constexpr Topic<usher_msgs::msg::FollowStatus> kFollowStatus{
-    "follow/status", Kind::kLatched, 1, 20, "local_planner", "How the following goes."};
-inline constexpr Topic<nav_msgs::msg::Path> kLocalPlan{
-    "local_plan", Kind::kStream, 1, 10, "local_planner", "The chosen trajectory, for viewers."};
+    "follow/status",          Kind::kLatched, 1, 20, "local_planner waypoint_follower",
+    "How the following goes."};
+inline constexpr Topic<nav_msgs::msg::Path> kLocalPlan{"local_plan",
+                                                       Kind::kStream,
+                                                       1,
+                                                       10,
+                                                       "local_planner waypoint_follower",
+                                                       "The chosen trajectory, for viewers."};
 inline constexpr Topic<usher_msgs::msg::NavigateGoal> kNavigateGoal{
     "navigate/goal", Kind::kEvent, 32, 0, "guide operator", "Where to go; the newest goal wins."};
 inline constexpr Topic<geometry_msgs::msg::PoseStamped> kGoalPose{
@@ -178,7 +197,7 @@ inline constexpr Topic<usher_msgs::msg::DialogueAnswer> kDialogueAnswer{
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
-    "sim/base/command", Kind::kCommand, 1, 50, "segway_rmp", "To the simulated wheels."};
+    "sim/base/command", Kind::kCommand, 1, 50, "segway_rmp p3dx", "To the simulated wheels."};
 inline constexpr Topic<usher_sim_msgs::msg::BaseFeedback> kSimBaseFeedback{
     "sim/base/feedback",
     Kind::kStream,

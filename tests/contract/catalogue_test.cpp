@@ -91,7 +91,14 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 
 /// Component types are folders of components/. Roles are participants that are no component, and
 /// components that later work brings; a role that has become a folder must leave this list.
-const std::set<std::string> kRoles{"operator", "manual_control", "interaction_control", "tablet",
+const std::set<std::string> kRoles{"p3dx",
+                                   "urg04lx",
+                                   "roadmap",
+                                   "waypoint_follower",
+                                   "operator",
+                                   "manual_control",
+                                   "interaction_control",
+                                   "tablet",
                                    "speech"};
 
 TEST(Catalogue, WritersAreComponentsOrKnownRoles) {
