@@ -185,6 +185,8 @@ inline constexpr Topic<usher_msgs::msg::GoalCancel> kNavigateCancel{
     "navigate/cancel", Kind::kEvent, 32, 0, "guide operator", "Give up the goal."};
 inline constexpr Topic<usher_msgs::msg::NavigateStatus> kNavigateStatus{
     "navigate/status", Kind::kLatched, 1, 5, "navigator", "Progress, time left, outcome."};
+inline constexpr Topic<usher_msgs::msg::NavigatePace> kNavigatePace{
+    "navigate/pace", Kind::kCommand, 1, 5, "guide", "How fast the visitor can follow."};
 inline constexpr Topic<usher_msgs::msg::Locations> kLocations{
     "locations", Kind::kLatched, 1, 0, "navigator", "Known locations of the site."};
 
@@ -194,6 +196,12 @@ inline constexpr Topic<usher_msgs::msg::DialogueScreen> kDialogueScreen{
 inline constexpr Topic<usher_msgs::msg::DialogueAnswer> kDialogueAnswer{
     "dialogue/answer",        Kind::kEvent, 32, 0, "visitor tablet speech operator",
     "What the visitor chose."};
+inline constexpr Topic<usher_msgs::msg::GuideStatus> kGuideStatus{
+    "guide/status", Kind::kLatched, 1, 1, "guide", "This visit and the funnel of all visits."};
+inline constexpr Topic<usher_msgs::msg::GuideVisit> kGuideVisit{
+    "guide/visit", Kind::kEvent, 32, 0, "guide", "A visit is over."};
+inline constexpr Topic<usher_msgs::msg::Visitor> kVisitor{
+    "visitor", Kind::kStream, 1, 10, "people_detector", "The person whom the robot serves."};
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
@@ -219,15 +227,15 @@ inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
 inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
     "sim/person/goal", Kind::kEvent, 32, 0, "visitor", "Moves a scripted person."};
 
-inline constexpr auto kAll =
-    std::tie(kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered,
-             kWhiskers, kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
-             kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
-             kMovementStatus, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
-             kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap,
-             kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal,
-             kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel,
-             kNavigateStatus, kLocations, kDialogueScreen, kDialogueAnswer, kSimBaseCommand,
-             kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
+inline constexpr auto kAll = std::tie(
+    kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
+    kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual, kCmdVelInteraction,
+    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus,
+    kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud,
+    kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest,
+    kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan,
+    kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations,
+    kDialogueScreen, kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand,
+    kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

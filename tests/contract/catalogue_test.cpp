@@ -91,7 +91,8 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 
 /// Component types are folders of components/. Roles are participants that are no component, and
 /// components that later work brings; a role that has become a folder must leave this list.
-const std::set<std::string> kRoles{"p3dx",
+const std::set<std::string> kRoles{"people_detector",
+                                   "p3dx",
                                    "urg04lx",
                                    "roadmap",
                                    "waypoint_follower",

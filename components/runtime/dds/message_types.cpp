@@ -60,6 +60,10 @@
   TYPE(usher_msgs::msg::Locations)                    \
   TYPE(usher_msgs::msg::DialogueScreen)               \
   TYPE(usher_msgs::msg::DialogueAnswer)               \
+  TYPE(usher_msgs::msg::GuideStatus)                  \
+  TYPE(usher_msgs::msg::GuideVisit)                   \
+  TYPE(usher_msgs::msg::Visitor)                      \
+  TYPE(usher_msgs::msg::NavigatePace)                 \
   TYPE(usher_sim_msgs::msg::BaseCommand)              \
   TYPE(usher_sim_msgs::msg::BaseFeedback)             \
   TYPE(usher_sim_msgs::msg::SensorBoardReading)       \
