@@ -98,6 +98,13 @@ inline constexpr Topic<usher_msgs::msg::MovementEnable> kMovementEnable{
 inline constexpr Topic<usher_msgs::msg::MovementStatus> kMovementStatus{
     "movement/status", Kind::kStream, 1, 10, "movement_control", "Appendix A.1 of the thesis."};
 
+inline constexpr Topic<sensor_msgs::msg::Joy> kJoy{
+    "joy", Kind::kStream,      5,
+    20,    "gamepad operator", "Sticks and buttons of the operator's gamepad."};
+inline constexpr Topic<usher_msgs::msg::FaceTarget> kInteractionTarget{
+    "interaction/target",        Kind::kStream, 1, 10, "guide meeting people_detector operator",
+    "Whom the robot shall face."};
+
 // --- Supervisor
 inline constexpr Topic<usher_msgs::msg::SupervisorStatus> kSupervisorStatus{
     "supervisor/status",
@@ -205,7 +212,8 @@ inline constexpr Topic<usher_msgs::msg::Visitor> kVisitor{
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
-    "sim/base/command", Kind::kCommand, 1, 50, "segway_rmp p3dx", "To the simulated wheels."};
+    "sim/base/command",        Kind::kCommand, 1, 50, "segway_rmp segway_emulator p3dx",
+    "To the simulated wheels."};
 inline constexpr Topic<usher_sim_msgs::msg::BaseFeedback> kSimBaseFeedback{
     "sim/base/feedback",
     Kind::kStream,
@@ -230,12 +238,12 @@ inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
     kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual, kCmdVelInteraction,
-    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus,
-    kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud,
-    kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest,
-    kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan,
-    kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations,
-    kDialogueScreen, kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand,
-    kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
+    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus, kJoy,
+    kInteractionTarget, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
+    kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap,
+    kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus,
+    kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace,
+    kLocations, kDialogueScreen, kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor,
+    kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

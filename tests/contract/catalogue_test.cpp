@@ -99,6 +99,10 @@ const std::set<std::string> kRoles{"people_detector",
                                    "operator",
                                    "manual_control",
                                    "interaction_control",
+                                   "gamepad",
+                                   "segway_emulator",
+                                   "meeting",
+                                   "people_detector",
                                    "tablet",
                                    "speech"};
 

@@ -45,6 +45,7 @@
   TYPE(usher_msgs::msg::Whiskers)                     \
   TYPE(usher_msgs::msg::MovementEnable)               \
   TYPE(usher_msgs::msg::MovementStatus)               \
+  TYPE(usher_msgs::msg::FaceTarget)                   \
   TYPE(usher_msgs::msg::SupervisorStatus)             \
   TYPE(usher_msgs::msg::SupervisorRequest)            \
   TYPE(usher_msgs::msg::LocalizationStatus)           \
