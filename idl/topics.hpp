@@ -104,6 +104,13 @@ inline constexpr Topic<sensor_msgs::msg::Joy> kJoy{
 inline constexpr Topic<usher_msgs::msg::FaceTarget> kInteractionTarget{
     "interaction/target",        Kind::kStream, 1, 10, "guide meeting people_detector operator",
     "Whom the robot shall face."};
+inline constexpr Topic<usher_msgs::msg::PersonAhead> kPersonAhead{
+    "people/ahead",
+    Kind::kStream,
+    1,
+    15,
+    "people_detector",
+    "Whether somebody is where the robot drives."};
 
 // --- Supervisor
 inline constexpr Topic<usher_msgs::msg::SupervisorStatus> kSupervisorStatus{
@@ -238,8 +245,8 @@ inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
     kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual, kCmdVelInteraction,
-    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus, kJoy,
-    kInteractionTarget, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
+    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus, kPersonAhead,
+    kJoy, kInteractionTarget, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
     kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap,
     kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus,
     kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace,

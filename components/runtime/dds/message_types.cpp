@@ -46,6 +46,7 @@
   TYPE(usher_msgs::msg::MovementEnable)               \
   TYPE(usher_msgs::msg::MovementStatus)               \
   TYPE(usher_msgs::msg::FaceTarget)                   \
+  TYPE(usher_msgs::msg::PersonAhead)                  \
   TYPE(usher_msgs::msg::SupervisorStatus)             \
   TYPE(usher_msgs::msg::SupervisorRequest)            \
   TYPE(usher_msgs::msg::LocalizationStatus)           \
