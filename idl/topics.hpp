@@ -50,8 +50,12 @@ inline constexpr Topic<usher_msgs::msg::Whiskers> kWhiskers{
 inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
     "battery", Kind::kStream, 1, 1, "segway_rmp p3dx", "Drive battery."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTf{
-    "tf", Kind::kStream,          32,
-    100,  "segway_rmp p3dx amcl", "Moving frames: map -> odom -> base_footprint -> base_link."};
+    "tf",
+    Kind::kStream,
+    32,
+    100,
+    "segway_rmp p3dx amcl depth_pipeline",
+    "Moving frames: map -> odom -> base_footprint -> base_link."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
     "tf_static",
     Kind::kLatched,
@@ -59,6 +63,61 @@ inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
     0,
     "lms100 urg04lx sensor_board p3dx scan_filter",
     "Mounts of the sensors."};
+
+// --- Depth cameras
+inline constexpr Topic<sensor_msgs::msg::Image> kKinectDepth{
+    "kinect/depth", Kind::kStream, 2, 30, "kinect", "Depth as measured, 16UC1 in mm, 0 = none."};
+inline constexpr Topic<sensor_msgs::msg::Image> kKinectColor{
+    "kinect/color", Kind::kStream, 2, 30, "kinect", "Colour image, rgb8."};
+inline constexpr Topic<sensor_msgs::msg::CameraInfo> kKinectInfo{
+    "kinect/depth/camera_info", Kind::kLatched, 1, 0, "kinect", "Intrinsics of the depth image."};
+inline constexpr Topic<sensor_msgs::msg::Image> kRearDepth{
+    "rear_camera/depth", Kind::kStream, 2, 30, "kinect", "The same of the camera that looks back."};
+inline constexpr Topic<sensor_msgs::msg::CameraInfo> kRearInfo{
+    "rear_camera/depth/camera_info", Kind::kLatched, 1, 0, "kinect",
+    "Intrinsics of its depth image."};
+inline constexpr Topic<sensor_msgs::msg::Image> kKinectProcessed{
+    "kinect/depth/processed",
+    Kind::kStream,
+    2,
+    30,
+    "depth_pipeline",
+    "Depth without floor, ceiling and noise, 16UC1 in mm, 0 = nothing; its frame is in tf."};
+inline constexpr Topic<sensor_msgs::msg::Image> kRearProcessed{
+    "rear_camera/depth/processed", Kind::kStream, 2, 30, "depth_pipeline",
+    "The same of the rear camera."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScan{
+    "kinect/scan",
+    Kind::kStream,
+    2,
+    30,
+    "depth_pipeline",
+    "Nearest obstacle or missing floor of each bearing; intensity = confidence."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScanLow{
+    "kinect/scan/low",
+    Kind::kStream,
+    2,
+    30,
+    "depth_pipeline",
+    "Only what is too low to be seen from near: to be remembered there."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kRearScan{
+    "rear_camera/scan", Kind::kStream, 2, 30, "depth_pipeline", "Nearest obstacle behind."};
+inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTilt{
+    "kinect/tilt", Kind::kStream, 2, 20, "sensor_board", "Where the tilt servo stands."};
+inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTiltCommand{
+    "kinect/tilt/command",
+    Kind::kCommand,
+    1,
+    10,
+    "depth_pipeline",
+    "Where the tilt servo shall go, by equation 4.1."};
+inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTiltRequest{
+    "kinect/tilt/request",
+    Kind::kEvent,
+    32,
+    0,
+    "operator",
+    "Holds the servo there for the next 2 s (calibration)."};
 
 // --- Base and drive chain
 inline constexpr Topic<usher_msgs::msg::BaseStatus> kBaseStatus{
@@ -232,6 +291,29 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimScan{
     "sim/scan", Kind::kStream, 5, 50, "world", "From the simulated laser."};
 inline constexpr Topic<usher_sim_msgs::msg::SensorBoardReading> kSimSensorBoard{
     "sim/sensor_board", Kind::kStream, 5, 50, "world", "From the simulated sensor board."};
+inline constexpr Topic<usher_sim_msgs::msg::SensorBoardCommand> kSimSensorBoardCommand{
+    "sim/sensor_board/command", Kind::kCommand, 1, 20, "sensor_board", "To the simulated board."};
+inline constexpr Topic<sensor_msgs::msg::Image> kSimKinectDepth{
+    "sim/kinect/depth", Kind::kStream, 2, 30, "world", "From the simulated Kinect, 16UC1 in mm."};
+inline constexpr Topic<sensor_msgs::msg::Image> kSimKinectColor{
+    "sim/kinect/color", Kind::kStream, 2, 30, "world", "From its colour camera, rgb8."};
+inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimKinectInfo{
+    "sim/kinect/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its depth image."};
+inline constexpr Topic<sensor_msgs::msg::Image> kSimRearDepth{
+    "sim/rear_camera/depth", Kind::kStream, 2, 30, "world", "From the simulated rear camera."};
+inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimRearInfo{
+    "sim/rear_camera/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its image."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScan{
+    "sim/kinect/scan",
+    Kind::kStream,
+    2,
+    30,
+    "world",
+    "What the depth pipeline would make of the Kinect's pixels, by the fitted model."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScanLow{
+    "sim/kinect/scan/low", Kind::kStream, 2, 30, "world", "Its low obstacles."};
+inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimRearScan{
+    "sim/rear_camera/scan", Kind::kStream, 2, 30, "world", "The same of the rear camera."};
 inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
     "sim/ground_truth",
     Kind::kStream,
@@ -244,13 +326,17 @@ inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
 
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
-    kBattery, kTf, kTfStatic, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual, kCmdVelInteraction,
-    kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable, kMovementStatus, kPersonAhead,
-    kJoy, kInteractionTarget, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
-    kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap,
-    kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus,
-    kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace,
-    kLocations, kDialogueScreen, kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor,
-    kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimGroundTruth, kSimPersonGoal);
+    kBattery, kTf, kTfStatic, kKinectDepth, kKinectColor, kKinectInfo, kRearDepth, kRearInfo,
+    kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan, kKinectTilt,
+    kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
+    kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
+    kMovementStatus, kPersonAhead, kJoy, kInteractionTarget, kSupervisorStatus, kSupervisorRequest,
+    kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts,
+    kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal,
+    kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel,
+    kNavigateStatus, kNavigatePace, kLocations, kDialogueScreen, kDialogueAnswer, kGuideStatus,
+    kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
+    kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth,
+    kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

@@ -91,7 +91,9 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 
 /// Component types are folders of components/. Roles are participants that are no component, and
 /// components that later work brings; a role that has become a folder must leave this list.
-const std::set<std::string> kRoles{"people_detector",
+const std::set<std::string> kRoles{"kinect",
+                                   "depth_pipeline",
+                                   "people_detector",
                                    "p3dx",
                                    "urg04lx",
                                    "roadmap",

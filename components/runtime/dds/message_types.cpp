@@ -27,6 +27,8 @@
   TYPE(geometry_msgs::msg::PoseWithCovarianceStamped) \
   TYPE(geometry_msgs::msg::TransformStamped)          \
   TYPE(geometry_msgs::msg::PolygonStamped)            \
+  TYPE(sensor_msgs::msg::Image)                       \
+  TYPE(sensor_msgs::msg::CameraInfo)                  \
   TYPE(sensor_msgs::msg::LaserScan)                   \
   TYPE(sensor_msgs::msg::Joy)                         \
   TYPE(sensor_msgs::msg::Range)                       \
@@ -43,6 +45,7 @@
   TYPE(usher_msgs::msg::DriveGrant)                   \
   TYPE(usher_msgs::msg::BaseRequest)                  \
   TYPE(usher_msgs::msg::Whiskers)                     \
+  TYPE(usher_msgs::msg::CameraTilt)                   \
   TYPE(usher_msgs::msg::MovementEnable)               \
   TYPE(usher_msgs::msg::MovementStatus)               \
   TYPE(usher_msgs::msg::FaceTarget)                   \
@@ -69,6 +72,7 @@
   TYPE(usher_sim_msgs::msg::BaseCommand)              \
   TYPE(usher_sim_msgs::msg::BaseFeedback)             \
   TYPE(usher_sim_msgs::msg::SensorBoardReading)       \
+  TYPE(usher_sim_msgs::msg::SensorBoardCommand)       \
   TYPE(usher_sim_msgs::msg::GroundTruth)              \
   TYPE(usher_sim_msgs::msg::PersonGoal)
 
