@@ -61,7 +61,7 @@ function(usher_component NAME)
     set(CORE usher_${NAME}_core)
   endif()
   if(NOT ARG_SHELL OR NOT TARGET usher_runtime_dds)
-    return()  # a build narrowed by USHER_ROOMS to cores and their tests
+    return()  # a build narrowed by USHER_ONLY to cores and their tests
   endif()
   usher_library(usher_${NAME}_shell SOURCES ${ARG_SHELL}
                 DEPENDS ${CORE} usher_wire usher_runtime ${ARG_SHELL_DEPENDS})
