@@ -16,6 +16,20 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using namespace usher_msgs::msg;
 
+namespace {
+
+/// A bound that is stretched further says nothing.
+constexpr double kMostSlowdown = 5.0;
+
+/// A world that was late once says so for ever, since its run no longer counts; the robot is well.
+bool is_well(const ComponentHealth& component) {
+  return component.health() == SupervisorStatus_Constants::HEALTH_OK ||
+         (component.name() == "world" &&
+          component.health() == SupervisorStatus_Constants::HEALTH_DEGRADED);
+}
+
+}  // namespace
+
 std::string usher_program() { return std::string(USHER_BINARY_DIR) + "/bin/usher"; }
 
 double slowdown() {
@@ -28,7 +42,8 @@ double slowdown() {
   const double cpu_start = cpu();
   while (cpu() - cpu_start < 0.1) {
   }
-  return std::max(1.0, Seconds(Clock::now() - start).count() / (cpu() - cpu_start));
+  return std::clamp(Seconds(Clock::now() - start).count() / (cpu() - cpu_start), 1.0,
+                    kMostSlowdown);
 }
 
 std::map<std::string, pid_t> components_from(const std::string& folder) {
@@ -95,6 +110,7 @@ RunningRobot::RunningRobot() : domain_(test_domain()) {
           const std::lock_guard lock(mutex_);
           status_ = message;
           status_at_ = Clock::now();
+          ++status_count_;
         }
         heard_.notify_all();
       });
@@ -130,6 +146,11 @@ std::optional<SupervisorStatus> RunningRobot::status() const {
   return status_;
 }
 
+std::size_t RunningRobot::status_count() const {
+  const std::lock_guard lock(mutex_);
+  return status_count_;
+}
+
 std::map<std::string, RunningRobot::Life> RunningRobot::lives() const {
   const std::lock_guard lock(mutex_);
   return lives_;
@@ -138,10 +159,7 @@ std::map<std::string, RunningRobot::Life> RunningRobot::lives() const {
 bool RunningRobot::may_drive() const {
   const std::lock_guard lock(mutex_);
   return status_ && Clock::now() - status_at_ < std::chrono::seconds(1) && status_->granted() &&
-         std::all_of(status_->components().begin(), status_->components().end(),
-                     [](const auto& component) {
-                       return component.health() == SupervisorStatus_Constants::HEALTH_OK;
-                     });
+         std::all_of(status_->components().begin(), status_->components().end(), is_well);
 }
 
 std::string RunningRobot::complaints() const {
@@ -149,7 +167,7 @@ std::string RunningRobot::complaints() const {
   if (!now) return "no word from the supervisor\n" + launcher_->output() + launcher_->errors();
   std::string text = now->granted() ? "granted\n" : "not granted: " + now->reason() + "\n";
   for (const auto& component : now->components()) {
-    if (component.health() != SupervisorStatus_Constants::HEALTH_OK)
+    if (!is_well(component))
       text += component.name() + ": " + std::to_string(component.health()) + " " +
               component.reason() + "\n";
   }

@@ -24,8 +24,8 @@ using Seconds = std::chrono::duration<double>;
 /// The program that a user types.
 std::string usher_program();
 
-/// How much slower than alone a busy thread runs on this machine right now, at least 1: wall time
-/// over processor time of a reference loop. Bounds of wall time are multiplied with it.
+/// How much slower than alone a busy thread runs on this machine right now, 1 to 5: wall time over
+/// processor time of a reference loop. Bounds of wall time are multiplied with it.
 double slowdown();
 
 /// Names and processes of the components that were launched from a folder.
@@ -62,8 +62,11 @@ class RunningRobot {
   std::unique_ptr<Process> command(std::vector<std::string> words) const;
 
   std::optional<usher_msgs::msg::SupervisorStatus> status() const;
+  /// How often the supervisor was heard since the start.
+  std::size_t status_count() const;
   std::map<std::string, Life> lives() const;
-  /// Everybody is healthy in the supervisor's eyes, and the robot may drive.
+  /// Everybody is healthy in the supervisor's eyes (a late simulation is nobody's illness), and the
+  /// robot may drive.
   bool may_drive() const;
   /// Who is not, in words.
   std::string complaints() const;
@@ -81,6 +84,7 @@ class RunningRobot {
   mutable std::condition_variable heard_;
   std::optional<usher_msgs::msg::SupervisorStatus> status_;
   std::chrono::steady_clock::time_point status_at_{};
+  std::size_t status_count_ = 0;
   std::map<std::string, Life> lives_;
 
   std::unique_ptr<runtime::Observer> observer_;

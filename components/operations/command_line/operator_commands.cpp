@@ -1,3 +1,7 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -23,6 +27,8 @@ using namespace usher_msgs::msg;
 
 constexpr auto kRepeat = milliseconds(200);
 constexpr const char* kClient = "operator";
+
+std::atomic<bool> stop_asked{false};
 
 int fail(const std::string& message) {
   std::cerr << "usher: " << message << "\n";
@@ -101,7 +107,29 @@ void show_progress(const NavigateStatus& status) {
             << (status.reason().empty() ? "" : "  " + status.reason()) << "\033[K" << std::flush;
 }
 
-/// Sends the goal and watches it to its end.
+/// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
+/// another one is an answer too.
+Status cancel(Observer& observer, Observer::Reader<NavigateStatus>& reader, std::uint64_t id,
+              bool accepted) {
+  auto writer = observer.writer(topics::kNavigateCancel);
+  if (!writer) return Error{writer.error()};
+  GoalCancel message;
+  message.id(id);
+  message.client(kClient);
+  for (int tries = 0; tries < 15; ++tries) {
+    writer->write(message);
+    const auto until = std::chrono::steady_clock::now() + kRepeat;
+    while (std::chrono::steady_clock::now() < until) {
+      const auto status = reader.take(milliseconds(50));
+      if (!status) continue;
+      if (status->id() == id ? status->state() >= GoalStatus_Constants::STATE_SUCCEEDED : accepted)
+        return {};
+    }
+  }
+  return Error{"the navigator did not cancel the goal within 3 s"};
+}
+
+/// Sends the goal and watches it to its end; Ctrl-C cancels it.
 int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& arguments) {
   auto writer = observer.writer(topics::kNavigateGoal);
   auto reader = observer.reader(topics::kNavigateStatus);
@@ -122,8 +150,14 @@ int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& argume
   }
   auto told = std::chrono::steady_clock::time_point{};
   bool accepted = false;
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(3);
   while (accepted || std::chrono::steady_clock::now() < deadline) {
+    if (stop_asked) {
+      const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
+      if (terminal) std::cout << "\n";
+      return fail(cancelled ? "cancelled" : cancelled.error());
+    }
     if (!accepted && std::chrono::steady_clock::now() - told > kRepeat) {
       writer->write(goal);
       told = std::chrono::steady_clock::now();
@@ -132,15 +166,15 @@ int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& argume
     if (!status || status->id() != goal.id()) continue;
     accepted = true;
     if (arguments.no_wait) return 0;
-    show_progress(*status);
+    if (terminal) show_progress(*status);
     switch (status->state()) {
       case GoalStatus_Constants::STATE_SUCCEEDED:
-        std::cout << "\narrived\n";
+        std::cout << (terminal ? "\n" : "") << "arrived\n";
         return 0;
       case GoalStatus_Constants::STATE_FAILED:
       case GoalStatus_Constants::STATE_CANCELLED:
       case GoalStatus_Constants::STATE_REPLACED:
-        std::cout << "\n";
+        if (terminal) std::cout << "\n";
         return fail(status->reason().empty() ? "another goal took its place" : status->reason());
       default:
         break;
@@ -155,6 +189,10 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   auto observer = Observer::create({.name = kClient, .domain = domain});
   if (!observer) return fail(observer.error());
   if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = true; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
   const std::string name = arguments.location.empty() ? "pose" : arguments.location;
   for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
     if (const auto told = tell_supervisor(**observer, command, name); !told)

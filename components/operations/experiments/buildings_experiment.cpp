@@ -148,14 +148,21 @@ Result<Tour> tour(const ExperimentOptions& options, const BuildingMap& building,
     tour.worst_lag = std::max(tour.worst_lag, leg->summary.worst_lag);
     if (!leg->arrived || leg->contacts > 0) {
       show_progress("");
-      std::printf("%s, seed %d, %s -> %s (%.2f, %.2f): %s%s\n", tour.building.c_str(),
+      std::printf("%s, seed %d, %s -> %s (%.2f, %.2f): %s%s\n%s", tour.building.c_str(),
                   static_cast<int>(seed), from.name.c_str(), (*places)[i].name.c_str(),
                   (*places)[i].pose.x, (*places)[i].pose.y,
                   leg->arrived ? "arrived" : leg->outcome.c_str(),
-                  leg->contacts > 0 ? (", contact with " + leg->summary.contact_with).c_str() : "");
+                  leg->contacts > 0 ? (", contact with " + leg->summary.contact_with).c_str() : "",
+                  robot->complaints().c_str());
       std::fflush(stdout);
     }
-    if (!leg->arrived) account();
+    if (!leg->arrived) {
+      const std::string name = folder + "/leg-" + std::to_string(seed) + "-" + std::to_string(i);
+      Status saved = write_file(name + ".csv", run_csv(leg->record));
+      if (saved) saved = draw_run(leg->record, *map, leg->outcome, name + ".png");
+      if (!saved) return Error{saved.error()};
+      account();
+    }
     tour.legs.push_back(std::move(leg).value());
     show_progress(tour.building + ": " + std::to_string(i) + " of " +
                   std::to_string(places->size() - 1));

@@ -25,6 +25,8 @@ class CommandedRobot {
   virtual Result<Arrival> send(const std::string& location, double longest) = 0;
   /// What happened since the last call.
   virtual RunRecord take_record() = 0;
+  /// What components say of themselves that are not well now, one a line; empty where unknown.
+  virtual std::string complaints() const { return {}; }
   /// [s] of the robot's time since it was started.
   virtual double elapsed() const = 0;
   /// [s] of one processor spent on it so far, where the robot is one thread; else 0.

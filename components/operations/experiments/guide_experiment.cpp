@@ -56,7 +56,7 @@ void set_destination(Deployment& deployment, const std::string& place) {
 }
 
 Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64_t seed,
-                    const std::string& picture, const grid::OccupancyGrid* map) {
+                    const std::string& trace, const grid::OccupancyGrid* map) {
   set_destination(deployment, place);
   auto run = LockstepRun::create(deployment, seed);
   if (!run) return Error{run.error()};
@@ -87,10 +87,11 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
   visit.outcome = record.dialogue().empty() ? "no dialogue" : record.dialogue().back();
   if (record.navigation() && !record.navigation()->reason().empty())
     visit.outcome += ": " + record.navigation()->reason();
-  if (!picture.empty() && map != nullptr) {
-    if (auto drawn = draw_run(record, *map, "seed " + std::to_string(seed) + ": " + place, picture);
-        !drawn)
-      return Error{drawn.error()};
+  if (!trace.empty() && map != nullptr) {
+    Status saved = write_file(trace + ".csv", run_csv(record));
+    if (saved)
+      saved = draw_run(record, *map, "seed " + std::to_string(seed) + ": " + place, trace + ".png");
+    if (!saved) return Error{saved.error()};
   }
   return visit;
 }
@@ -120,8 +121,12 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   std::atomic<int> next{0}, done{0};
   std::mutex mutex;
   std::string error;
+  const int only = options.only.empty() ? 0 : std::atoi(options.only.c_str());
+  if (!options.only.empty() && (only < 1 || only > seeds))
+    return Error{"--only takes a seed in 1 to " + std::to_string(seeds) + ", not " + options.only};
+  const int end = only > 0 ? only : seeds;
   const auto work = [&] {
-    for (int i = next++; i < seeds; i = next++) {
+    for (int i = next++; i < end; i = next++) {
       const auto seed = static_cast<std::uint64_t>(i + 1);
       // Every place gets its turn; the first one is where the robot stands.
       const auto& place = names[1 + static_cast<std::size_t>(i) % (names.size() - 1)];
@@ -129,7 +134,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
       const std::lock_guard lock(mutex);
       if (!result) {
         error = result.error();
-        next = seeds;
+        next = end;
         return;
       }
       if (!result->arrived || result->summary.contacts > 0) {
@@ -144,8 +149,8 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
       show_progress(std::to_string(++done) + " of " + std::to_string(seeds) + " visits");
     }
   };
-  if (!options.only.empty()) {
-    next = std::atoi(options.only.c_str()) - 1;
+  if (only > 0) {
+    next = only - 1;
     work();
   } else {
     std::vector<std::jthread> threads;
@@ -201,16 +206,14 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
                    {"mean_speed_m_s", time > 0 ? path / time : 0.0},
                    {"simulated_s_per_wall_s_and_thread", wall > 0 ? simulated / wall : 0.0}};
   sheet.published = {{"localization_error_mean_m", 0.019}, {"mean_speed_m_s", 0.72}};
-  sheet.targets = {
-      {"arrivals", {Bound::kAtLeast, options.only.empty() ? static_cast<double>(seeds) : 1.0}},
-      {"contacts", {Bound::kAtMost, 0.0}},
-      {"localization_error_mean_m", {Bound::kAtMost, 0.019}}};
-  // The first seed once more, with a picture: the same bytes.
-  const std::size_t shown =
-      options.only.empty() ? 0 : static_cast<std::size_t>(std::atoi(options.only.c_str()) - 1);
+  sheet.targets = {{"arrivals", {Bound::kAtLeast, only > 0 ? 1.0 : static_cast<double>(seeds)}},
+                   {"contacts", {Bound::kAtMost, 0.0}},
+                   {"localization_error_mean_m", {Bound::kAtMost, 0.019}}};
+  // The first seed once more, with picture and trace: the same bytes.
+  const std::size_t shown = only > 0 ? static_cast<std::size_t>(only - 1) : 0;
   const auto map = site_map(*deployment);
-  const auto again = visit(*deployment, visits[shown]->destination, shown + 1,
-                           options.out + "/run.png", map ? &*map : nullptr);
+  const auto again = visit(*deployment, visits[shown]->destination, shown + 1, options.out + "/run",
+                           map ? &*map : nullptr);
   if (!again) return Error{again.error()};
   sheet.flags["digest_repeats"] = again->digest == visits[shown]->digest;
   if (auto saved = write_file(options.out + "/visits.csv", csv); !saved)

@@ -54,6 +54,7 @@ class LockstepRobot final : public CommandedRobot {
     run_->restart_record();
     return record;
   }
+  std::string complaints() const override { return run_->complaints(); }
   double elapsed() const override { return runtime::seconds(run_->world().elapsed()); }
   double processor_time() const override { return thread_time() - started_; }
 

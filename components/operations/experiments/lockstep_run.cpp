@@ -11,6 +11,9 @@ LockstepRun::LockstepRun(std::uint64_t seed) : world_({.network = {.seed = seed}
   world_.observe(topics::kPlan, take);
   world_.observe(topics::kNavigateStatus, take);
   world_.observe(topics::kDialogueScreen, take);
+  world_.observe(topics::kCmdVelNavigation, take);
+  world_.observe(topics::kDriveCommand, take);
+  world_.observe(topics::kWhiskers, take);
   world_.observe(topics::kHeartbeat, [this](const auto& message, const auto&) {
     heartbeats_[message.component_name()] = message;
   });

@@ -1,6 +1,7 @@
 #include "operations/experiments/run_record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -11,13 +12,30 @@ namespace usher::operations {
 
 namespace {
 constexpr double kPersonStep = 0.1;  // [m] between two points of a person's way
+
+std::string state_of(const usher_msgs::msg::NavigateStatus& status) {
+  constexpr std::array kNames = {"idle",   "active",    "waiting", "succeeded",
+                                 "failed", "cancelled", "replaced"};
+  const std::string name = status.state() < kNames.size() ? kNames[status.state()] : "?";
+  return status.reason().empty() ? name : name + ": " + status.reason();
 }
+}  // namespace
 
 void RunRecord::take(const usher_sim_msgs::msg::GroundTruth& truth) {
   const auto pose = wire::to_planar(truth.pose());
   if (!pose) return;
+  const geometry::Pose2 to_robot = geometry::inverse(*pose);
+  double nearest = std::numeric_limits<double>::infinity(), bearing = 0.0;
+  for (const auto& person : truth.people()) {
+    const geometry::Point2 seen = to_robot * geometry::Point2(person.x(), person.y());
+    if (seen.x() < 0.0 || seen.norm() >= nearest) continue;
+    nearest = seen.norm();
+    bearing = std::atan2(seen.y(), seen.x());
+  }
   samples_.push_back({wire::from_message(truth.header().stamp()), *pose, truth.v(), truth.pitch(),
-                      truth.clearance()});
+                      truth.clearance(), wanted_.twist().linear().x(),
+                      wanted_.twist().angular().z(), command_.v(), command_.w(), whiskers_, nearest,
+                      bearing, navigation_ ? state_of(*navigation_) : ""});
   contacts_ = truth.contacts();
   touches_ = truth.touches();
   contact_with_ = truth.contact_with();
@@ -56,6 +74,19 @@ void RunRecord::take(const usher_msgs::msg::NavigateStatus& status) {
 void RunRecord::take(const usher_msgs::msg::DialogueScreen& screen) {
   if (dialogue_.empty() || dialogue_.back() != screen.state()) dialogue_.push_back(screen.state());
   screen_ = screen;
+}
+
+void RunRecord::take(const geometry_msgs::msg::TwistStamped& wanted) { wanted_ = wanted; }
+
+void RunRecord::take(const usher_msgs::msg::DriveCommand& command) { command_ = command; }
+
+void RunRecord::take(const usher_msgs::msg::Whiskers& whiskers) {
+  whiskers_.clear();
+  const std::pair<bool, const char*> corners[] = {{whiskers.front_left(), "fl "},
+                                                  {whiskers.front_right(), "fr "},
+                                                  {whiskers.back_left(), "bl "},
+                                                  {whiskers.back_right(), "br "}};
+  for (const auto& [touched, name] : corners) whiskers_ += touched ? name : "";
 }
 
 std::optional<geometry::Point2> RunRecord::person(const std::string& name) const {
@@ -113,13 +144,19 @@ RunRecord::Summary RunRecord::summary() const {
 }
 
 std::string run_csv(const RunRecord& record) {
-  std::string out = "t,x,y,yaw,v,pitch,clearance\n";
-  char line[160];
+  std::string out =
+      "t,x,y,yaw,v,pitch,clearance,wanted_v,wanted_w,commanded_v,commanded_w,person,person_bearing,"
+      "whiskers,"
+      "state\n";
+  char line[240];
   for (const auto& sample : record.samples()) {
-    std::snprintf(line, sizeof(line), "%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n",
+    std::snprintf(line, sizeof(line),
+                  "%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,",
                   runtime::seconds(sample.stamp - record.samples().front().stamp), sample.truth.x,
-                  sample.truth.y, sample.truth.yaw, sample.v, sample.pitch, sample.clearance);
-    out += line;
+                  sample.truth.y, sample.truth.yaw, sample.v, sample.pitch, sample.clearance,
+                  sample.wanted_v, sample.wanted_w, sample.commanded_v, sample.commanded_w,
+                  sample.person, sample.person_bearing);
+    out += line + sample.whiskers + (",\"" + sample.state + "\"\n");
   }
   return out;
 }

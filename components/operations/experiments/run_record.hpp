@@ -23,6 +23,11 @@ class RunRecord {
     double v = 0.0;
     double pitch = 0.0;
     double clearance = 0.0;
+    double wanted_v = 0.0, wanted_w = 0.0;        ///< [m/s] [rad/s] of the navigation
+    double commanded_v = 0.0, commanded_w = 0.0;  ///< [m/s] [rad/s] to the base
+    std::string whiskers;                         ///< touched: fl fr bl br
+    double person = 0.0, person_bearing = 0.0;    ///< [m] [rad] of the nearest one ahead
+    std::string state;                            ///< of the navigation, with its reason
   };
   struct Summary {
     double seconds = 0.0;                ///< of motion, from the first to the last
@@ -44,6 +49,9 @@ class RunRecord {
   void take(const nav_msgs::msg::Path& plan);
   void take(const usher_msgs::msg::NavigateStatus& status);
   void take(const usher_msgs::msg::DialogueScreen& screen);
+  void take(const geometry_msgs::msg::TwistStamped& wanted);
+  void take(const usher_msgs::msg::DriveCommand& command);
+  void take(const usher_msgs::msg::Whiskers& whiskers);
 
   const std::vector<Sample>& samples() const { return samples_; }
   const std::vector<std::vector<geometry::Point2>>& plans() const { return plans_; }
@@ -65,6 +73,9 @@ class RunRecord {
   std::map<std::uint32_t, std::vector<geometry::Point2>> people_;
   std::map<std::string, geometry::Point2> named_;
   std::optional<usher_msgs::msg::NavigateStatus> navigation_;
+  geometry_msgs::msg::TwistStamped wanted_;
+  usher_msgs::msg::DriveCommand command_;
+  std::string whiskers_;
   std::optional<usher_msgs::msg::DialogueScreen> screen_;
   std::vector<std::string> dialogue_;
   std::optional<runtime::Time> active_from_, active_until_;
@@ -92,7 +103,7 @@ struct DrawnWay {
 Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& map,
                  const std::string& title, const std::string& path);
 
-/// Position over time as text: t, x, y, yaw, v, pitch, clearance.
+/// What happened over time, a line for each sample of the truth.
 std::string run_csv(const RunRecord& record);
 
 }  // namespace usher::operations

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "localization/amcl/core/amcl.hpp"
 #include "mapping/map_server/core/map_from_log.hpp"
@@ -17,8 +18,8 @@ namespace {
 
 constexpr int kSeeds = 5;
 constexpr std::size_t kMapEvery = 2;
-constexpr double kLoss = 1.0;       // [m] an estimate this wrong is a loss ...
-constexpr double kRegained = 0.5;   // [m] ... that ends when it is this right again
+constexpr double kWrong = 0.5;      // [m] an estimate this wrong ...
+constexpr double kLossTime = 2.0;   // [s] ... for so long is a loss
 constexpr double kSigma = 0.5;      // [m] of the initial pose, as amcl's parameter has it
 constexpr double kYawSigma = 0.25;  // [rad]
 constexpr const char* kJudged = "freiburg-079";
@@ -45,7 +46,7 @@ struct Track {
   double mean = 0.0, mean_unmapped = 0.0, rms = 0.0, p95 = 0.0, worst = 0.0;  ///< [m]
   double yaw_mean = 0.0;                                                      ///< [rad]
   double not_good = 0.0;  ///< [0, 1] share of scans at which it does not trust itself
-  int losses = 0;
+  int losses = 0;         ///< times that it was wrong for long
 };
 
 std::vector<std::string> find_logs(const std::string& folder) {
@@ -74,6 +75,7 @@ void summarize(Track& track) {
   std::vector<double> errors;
   double unmapped = 0.0, squares = 0.0;
   std::size_t unmapped_count = 0;
+  std::optional<double> wrong_since;
   bool lost = false;
   for (const Sample& sample : track.samples) {
     errors.push_back(sample.error);
@@ -82,8 +84,15 @@ void summarize(Track& track) {
     track.yaw_mean += sample.yaw_error;
     track.not_good += sample.confidence == amcl::Confidence::kGood ? 0.0 : 1.0;
     if (!sample.in_map) unmapped += sample.error, ++unmapped_count;
-    if (!lost && sample.error > kLoss) ++track.losses;
-    lost = sample.error > (lost ? kRegained : kLoss);
+    if (sample.error <= kWrong) {
+      wrong_since.reset();
+      lost = false;
+    } else if (!wrong_since) {
+      wrong_since = sample.time;
+    } else if (!lost && sample.time - *wrong_since > kLossTime) {
+      lost = true;
+      ++track.losses;
+    }
   }
   const auto count = static_cast<double>(std::max<std::size_t>(1, errors.size()));
   track.mean /= count;

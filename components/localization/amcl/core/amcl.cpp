@@ -305,9 +305,19 @@ void Amcl::make_estimate(const Cluster& cluster, const geometry::Pose2& odom_T_b
     // A floor of a millimetre keeps the prior finite when all particles agree.
     const Eigen::Matrix3d prior =
         (cluster.covariance + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
+    for (Beam& beam : dense_beams_) {
+      beam.x += range_offset_ * beam.direction_x;
+      beam.y += range_offset_ * beam.direction_y;
+    }
     pose = refine(field_.distances(), dense_beams_, pose, prior, config_.refinement).pose;
   }
   estimate_ = Estimate{pose, odom_T_base, cluster.covariance, quality_of(pose, cluster, unmapped)};
+  if (config_.refine_beams > 0 && estimate_->quality.confidence == Confidence::kGood) {
+    const double step =
+        range_offset(field_.distances(), dense_beams_, pose, config_.refinement.sigma);
+    range_offset_ = std::clamp(range_offset_ + kRangeOffsetGain * std::clamp(step, -0.02, 0.02),
+                               -kMostRangeOffset, kMostRangeOffset);
+  }
 }
 
 Quality Amcl::quality_of(const geometry::Pose2& pose, const Cluster& cluster,

@@ -41,6 +41,7 @@ class SimRobot {
  public:
   struct Errors {
     double range = 0.012;       // [m] of each reading
+    double range_offset = 0.0;  // [m] added to every reading
     double translation = 0.02;  // share of a step
     double rotation = 0.03;     // share of a turn
     double drift = 0.01;        // [rad/m]
@@ -103,8 +104,9 @@ class SimRobot {
       const double angle = -0.5 * geometry::kPi + static_cast<double>(i) * geometry::kPi / 180.0;
       const auto hit = field_.cast_ray(laser.position(), laser.yaw + angle, 20.0);
       // A surface lies somewhere in its cell: half a cell behind the border on average.
-      ranges_[i] =
-          hit ? static_cast<float>(hit->range + 0.025 + errors_.range * random_.gaussian()) : 20.0F;
+      ranges_[i] = hit ? static_cast<float>(hit->range + 0.025 + errors_.range_offset +
+                                            errors_.range * random_.gaussian())
+                       : 20.0F;
     }
     return {base_T_laser(), -0.5 * geometry::kPi, geometry::kPi / 180.0, 0.05, 20.0, ranges_};
   }

@@ -25,11 +25,13 @@ double error(const Amcl& amcl, const SimRobot& robot) {
 
 /// A robot in the small building with its filter.
 struct World {
-  explicit World(std::uint64_t seed, const AmclConfig& config = {})
-      : World(small_building(), seed, config) {}
-  World(const grid::OccupancyGrid& building, std::uint64_t seed, const AmclConfig& config)
+  explicit World(std::uint64_t seed, const AmclConfig& config = {},
+                 const SimRobot::Errors& errors = {})
+      : World(small_building(), seed, config, errors) {}
+  World(const grid::OccupancyGrid& building, std::uint64_t seed, const AmclConfig& config,
+        const SimRobot::Errors& errors = {})
       : random(seed),
-        robot(building, SimRobot::free_place(building, random), seed),
+        robot(building, SimRobot::free_place(building, random), seed, errors),
         amcl(config, seed),
         map(building) {
     EXPECT_TRUE(amcl.set_map(map).ok());
@@ -126,7 +128,7 @@ TEST(Amcl, FindsItselfAnywhere) {
 
 TEST(Amcl, RecoversFromBeingCarriedAway) {
   int found = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 18; ++seed) {
     World world(seed);
     world.start_near();
     for (int i = 0; i < 50; ++i) world.step();
@@ -134,7 +136,20 @@ TEST(Amcl, RecoversFromBeingCarriedAway) {
     for (int i = 0; i < 300; ++i) world.step();
     found += error(world.amcl, world.robot) < 0.1;
   }
-  EXPECT_GE(found, 5);
+  EXPECT_GE(found, 16);
+}
+
+TEST(Amcl, LearnsThatItsRangeFinderReadsShort) {
+  for (const double offset : {-0.03, 0.03}) {
+    World world(1, {}, {.range_offset = offset});
+    world.start_near();
+    double sum = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      world.step();
+      if (i >= 100) sum += error(world.amcl, world.robot) / 200.0;
+    }
+    EXPECT_LT(sum, 0.012) << offset;
+  }
 }
 
 TEST(Amcl, StaysUnsureAlongAFeaturelessCorridor) {
