@@ -131,8 +131,10 @@ void DynamicWindow::sample(const Input& input, double fastest) {
     // Told to slow down, the base keeps its speed for a while; then it stops within the measured
     // distance.
     profile.contact = std::abs(v) > config_.careful_speed ? 1 : 0;
+    const double faster = std::max(std::abs(input.measured.v), std::abs(v));
     profile.needed = config_.stopping.distance(v) + config_.margin +
-                     anticipated * std::max(0.0, std::abs(input.measured.v) - std::abs(v));
+                     anticipated * (faster - std::abs(v)) +
+                     (faster * faster - v * v) / (2.0 * limits.deceleration);
     if (goal_in_window_) profile.needed = std::min(profile.needed, path_.remaining() + 0.05);
     rollout_.profile(input.measured.v, last.v, v, speed_ramp, least_steps, profile);
     most_steps = std::max(most_steps, profile.steps);

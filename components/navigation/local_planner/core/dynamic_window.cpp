@@ -198,6 +198,9 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
   decision.reason = reason;
   decision.blocked = reason == Reason::kBlocked || reason == Reason::kTouching;
   decision.command = ramped(input, {}, deceleration);
+  // Along the arc that it is on: that one was free when it was chosen.
+  if (std::abs(input.measured.v) >= kStanding && std::abs(input.last_command.v) > 1e-3)
+    decision.command.w = input.last_command.w * decision.command.v / input.last_command.v;
   return decision;
 }
 
@@ -205,10 +208,6 @@ Decision DynamicWindow::brake(const Input& input) {
   const bool standing = std::abs(input.measured.v) < kStanding;
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
-  // Along the arc that it is on: that one was free when it was chosen.
-  if (!standing && std::abs(input.last_command.v) > 1e-3) {
-    decision.command.w = input.last_command.w * decision.command.v / input.last_command.v;
-  }
   return decision;
 }
 
@@ -219,6 +218,7 @@ Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   const Input input{costs, pose, measured, last_command, seconds, discs};
   if (!valid(input)) return refused();
+  trail_.add(pose);
   if (path_.empty()) return halt(input, Reason::kNoPath, config_.limits.deceleration);
   path_.advance(pose.position());
   load(input);
@@ -392,11 +392,9 @@ Decision DynamicWindow::recover(const Input& input, const Twist2& target) {
   const double angle = std::abs(target.w) * config_.turn_stopping_time + kAligned;
   const double reach = target.v != 0.0 ? way : angle;
   const int steps = static_cast<int>(std::ceil(reach / kSweep));
+  const double seconds = reach / std::abs(target.v != 0.0 ? target.v : target.w);
   for (int i = 1; i <= steps; ++i) {
-    const double part = reach * i / steps;
-    const Pose2 ahead = target.v != 0.0
-                            ? input.pose * Pose2{std::copysign(part, target.v), 0.0, 0.0}
-                            : input.pose * Pose2{0.0, 0.0, std::copysign(part, target.w)};
+    const Pose2 ahead = geometry::integrate(input.pose, target, seconds * i / steps);
     if (touches(input, center_, ahead)) return halt(input, Reason::kBlocked, config_.braking);
   }
   Decision decision;
@@ -411,7 +409,9 @@ Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Po
                                  double seconds_since_last, double speed) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
-  return recover({costs, pose, measured, last_command, seconds, {}}, {-speed, 0.0});
+  if (!pose.finite()) return refused();
+  const double turn = trail_.turn_rate_back(pose, speed);
+  return recover({costs, pose, measured, last_command, seconds, {}}, {-speed, turn});
 }
 
 Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,

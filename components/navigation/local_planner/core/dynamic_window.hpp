@@ -15,6 +15,7 @@
 #include "navigation/local_planner/core/footprint.hpp"
 #include "navigation/local_planner/core/reference_path.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
+#include "navigation/local_planner/core/trail.hpp"
 #include "navigation/local_planner/core/wavefront.hpp"
 
 namespace usher::navigation {
@@ -145,9 +146,9 @@ class DynamicWindow {
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
                   double seconds_since_last, std::span<const MovingDisc> discs = {});
 
-  /// Recovery: straight back at `speed` [m/s, positive] while the footprint meets nothing that it
-  /// does not touch already. Stops (kBlocked) otherwise. Nobody sees behind: the navigator bounds
-  /// the way.
+  /// Recovery: back the way it came at `speed` [m/s, positive], straight where it does not know
+  /// that way, while the footprint meets nothing that it does not touch already. Stops (kBlocked)
+  /// otherwise. Nobody sees behind: the navigator bounds the way.
   Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured, const geometry::Twist2& last_command,
                     double seconds_since_last, double speed);
@@ -214,6 +215,7 @@ class DynamicWindow {
   int turning_ = 0;  // +1, -1: turning first, in this sense
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
+  Trail trail_;
 
   double local_goal_arc_ = 0.0;
   bool goal_in_window_ = false;

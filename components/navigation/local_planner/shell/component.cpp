@@ -56,6 +56,10 @@ navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::
                        "The base does not follow slower commands well.");
   c.tight_speed = p.number("tight_speed", "m/s", {0.05, 1}, c.tight_speed,
                            "Speed where only the outline fits.");
+  c.careful_speed = p.number("careful_speed", "m/s", {0, 1.5}, c.careful_speed,
+                             "Up to here a quarter of the clearance is enough.");
+  c.clearance = p.number("clearance", "m", {0, 0.5}, c.clearance,
+                         "Kept around the outline above the careful speed.");
   c.fastest_turn =
       p.number("fastest_turn", "rad/s", {0.1, 2}, c.fastest_turn, "Greatest turn rate.");
   c.spot_turn = p.number("spot_turn", "rad/s", {0.1, 2}, c.spot_turn, "Turn rate in place.");

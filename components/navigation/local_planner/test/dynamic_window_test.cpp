@@ -254,6 +254,29 @@ TEST(BackingOff, RunsStraightBackWhileThereIsRoom) {
   EXPECT_EQ(decision.command.w, 0.0);
 }
 
+TEST(BackingOff, FollowsTheWayThatItCame) {
+  // It drove a bend to the left; back along it, its tail swings to the right and its yaw falls.
+  DynamicWindow planner = planner_to(3.0);
+  geometry::Pose2 pose;
+  std::vector<geometry::Pose2> way;
+  for (int i = 0; i < 60; ++i) {
+    planner.decide(empty_window(), pose, {}, {}, 0.05);
+    way.push_back(pose);
+    pose = geometry::integrate(pose, {0.4, 0.3}, 0.05);
+  }
+  geometry::Twist2 command;
+  for (int i = 0; i < 100; ++i) {
+    const Decision decision = planner.back_off(empty_window(), pose, command, command, 0.05, 0.15);
+    ASSERT_EQ(decision.reason, Reason::kRecovering);
+    command = decision.command;
+    pose = geometry::integrate(pose, command, 0.05);
+    double off = 1.0;
+    for (const auto& then : way) off = std::min(off, geometry::distance(then, pose));
+    ASSERT_LT(off, 0.05) << i;
+  }
+  EXPECT_NEAR(pose.yaw, 60 * 0.05 * 0.3 - 0.75 * 0.73, 0.15);
+}
+
 TEST(BackingOff, StopsBeforeAWallBehind) {
   DynamicWindow planner = DynamicWindow::make({}).value();
   EXPECT_TRUE(planner.back_off(wall_at(-0.5), {}, {}, {}, 0.05, 0.15).blocked);

@@ -501,13 +501,17 @@ void Navigator::recover(const Situation& s, Failure failure, const std::string& 
   recovered_at_ = advanced_;
   waiting_for_ = reason;
   pending_.reset();
-  const bool room_behind = s.rear_clearance >= config_.back_off_distance + config_.rear_margin;
+  // What did not help is tried over a longer way.
+  const double back =
+      std::min(config_.back_off_distance * (1 + recoveries_in_a_row_ / kRecoveryKinds),
+               s.rear_clearance - config_.rear_margin);
+  const bool room_behind = back >= config_.back_off_distance;
   if (kind == 0) {
     decision_.clear_costmap = true;
     set_motion(MotionMode::kStop);
     enter(Phase::kClearing, s.time);
   } else if (kind == 1 && room_behind) {
-    set_motion(MotionMode::kBackOff, config_.back_off_distance);
+    set_motion(MotionMode::kBackOff, back);
     enter(Phase::kBackingOff, s.time);
   } else {
     set_motion(MotionMode::kRotate, left ? config_.look_angle : -config_.look_angle);

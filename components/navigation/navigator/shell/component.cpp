@@ -18,7 +18,7 @@ constexpr auto kFollowAge = milliseconds(500);
 constexpr auto kOdomAge = milliseconds(200);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kSupervisorAge = milliseconds(1000);
-constexpr double kTrail = 0.6;  // [m] of its own way that is taken for free
+constexpr double kTrail = 1.2;  // [m] of its own way that is taken for free
 constexpr auto kPoseAge = milliseconds(300);
 
 }  // namespace

@@ -84,7 +84,9 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     Mind& mind = minds_[i];
     choose_goal(person, mind, robot);
     const Point2 wanted = wanted_velocity(person, mind, robot);
-    const bool walks = mind.has_goal && mind.pause_left <= 0.0;
+    // Who follows and is near enough stands, and has to step out of the robot's way.
+    const bool walks = mind.has_goal && mind.pause_left <= 0.0 &&
+                       (mind.goal - person.position).norm() > 0.05;
 
     Point2 push = push_of_people(i) + push_of_robot(person, walks, robot);
     constexpr double kWallSight = 0.8;  // [m]
@@ -119,9 +121,12 @@ void Crowd::choose_goal(Person& person, Mind& mind, const RobotView& robot) {
     }
     constexpr std::size_t kAhead = 8;  // points of the trail
     mind.goal = trail_[std::min(nearest + kAhead, trail_.size() - 1)];
-    if ((robot.pose.position() - person.position).norm() < config_.follow_distance) {
-      mind.goal = person.position;
-    }
+    // Near enough, or still in front of it: lets the robot pass first.
+    const Point2 from_robot = person.position - robot.pose.position();
+    const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));
+    constexpr double kInFront = 2.5;  // [m]
+    const bool in_front = from_robot.norm() < kInFront && from_robot.dot(heading) > 0.0;
+    if (in_front || from_robot.norm() < config_.follow_distance) mind.goal = person.position;
     return;
   }
   if (mind.loop.empty()) return;
