@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kGoalClearance = 0.6;   // [m] of a goal from obstacles
+constexpr double kGoalClearance = 0.85;  // [m] of a goal from obstacles: the whiskers can turn
 constexpr double kTurnClearance = 0.45;  // [m] of the robot's corners from its middle
 constexpr double kDoorClearance = 0.4;   // [m] half of the narrowest door that the robot passes
 constexpr std::int8_t kOccupiedFrom = 65;

@@ -32,7 +32,7 @@ struct Place {
 
 /// A start and `goals` goals, chosen by the seed, all in the largest part of the known free space
 /// that hangs together for the robot. Named places when there are such, those with names of their
-/// own before numbered way points, where the robot can turn on the spot; otherwise cells 0.6 m from
+/// own before numbered way points, where the robot can turn on the spot; otherwise cells 0.85 m from
 /// obstacles. Fewer when there are not so many places; the error says that there is no room at all.
 Result<std::vector<Place>> choose_places(const BuildingMap& building,
                                          const grid::OccupancyGrid& map, std::size_t goals,

@@ -7,7 +7,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr double kVertical =
@@ -260,4 +260,4 @@ bool any_avx2(const LethalBits& bits, const Rows& rows) { return any_portable(bi
 #endif
 
 }  // namespace detail
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -7,7 +7,7 @@
 #include "foundation/grid/grid.hpp"
 #include "navigation/local_planner/core/footprint.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// Values of a cost grid that decide (ROS costmap_2d): 252..1 fall with the distance, 0 is free.
 inline constexpr std::uint8_t kCostUnknown = 255;
@@ -122,4 +122,4 @@ bool any_portable(const LethalBits& bits, const Rows& rows);
 bool any_avx2(const LethalBits& bits, const Rows& rows);
 }  // namespace detail
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace usher::navigation::detail {
+namespace usher::local_planner::detail {
 namespace {
 
 #define USHER_AVX2 __attribute__((target("avx2")))
@@ -94,5 +94,5 @@ USHER_AVX2 bool any_avx2(const LethalBits& bits, const Rows& rows) {
   return false;
 }
 
-}  // namespace usher::navigation::detail
+}  // namespace usher::local_planner::detail
 #endif

@@ -4,7 +4,7 @@
 
 #include "navigation/local_planner/core/dynamic_window.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr double kBehind = 0.3;  // [m] of path behind the robot that still counts as near
@@ -280,4 +280,4 @@ int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticSco
   return winner;
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

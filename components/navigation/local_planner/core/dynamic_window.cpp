@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using geometry::Pose2;
@@ -422,4 +422,4 @@ Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose
   return recover({costs, pose, measured, last_command, seconds, {}}, {0.0, rate});
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

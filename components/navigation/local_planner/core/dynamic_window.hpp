@@ -18,7 +18,7 @@
 #include "navigation/local_planner/core/trail.hpp"
 #include "navigation/local_planner/core/wavefront.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// How strongly each critic counts; the trajectory with the smallest weighted sum wins. README.md
 /// has the formulas.
@@ -229,4 +229,4 @@ class DynamicWindow {
   std::vector<geometry::Pose2> winner_;
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr std::size_t kMaxCorners = 64;
@@ -108,4 +108,4 @@ Footprint Footprint::grown(double padding) const {
   return Footprint(std::move(corners));
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

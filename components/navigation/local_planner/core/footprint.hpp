@@ -6,7 +6,7 @@
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/result/result.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// The outline of the robot on the floor: a convex polygon in base_footprint, counter-clockwise,
 /// around the origin.
@@ -50,4 +50,4 @@ class Footprint {
   double circumscribed_ = 0.0;
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

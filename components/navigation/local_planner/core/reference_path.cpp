@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr std::size_t kMostPoses = 100000;
@@ -148,4 +148,4 @@ void PolylineDistance::measure(std::span<const float> x, std::span<const float> 
   for (float& d : distances) d = std::sqrt(d);
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -8,7 +8,7 @@
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/result/result.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// The path to follow: a polyline in the odometry frame, how far along it the robot is, and
 /// distances to it.
@@ -64,4 +64,4 @@ class PolylineDistance {
   std::vector<Side> sides_;
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

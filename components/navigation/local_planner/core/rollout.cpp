@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 /// Cosine and sine of a step's turn (below 0.5 rad): a short series, the same bits on every
@@ -213,4 +213,4 @@ void Rollout::poses(const RolloutStart& start, const SpeedProfile& speed, const 
   }
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -10,7 +10,7 @@
 #include "foundation/kinematics/acceleration_limiter.hpp"
 #include "navigation/local_planner/core/contact.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// Something that moves at a constant velocity, a person for example; in the frame of the cost
 /// grid. The cost grid should not hold it as well.
@@ -138,4 +138,4 @@ class Rollout {
   std::array<std::vector<TurnedFootprint>, 2> turned_;
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

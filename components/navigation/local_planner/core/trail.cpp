@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr double kStep = 0.05;        // [m] between two points
@@ -34,4 +34,4 @@ double Trail::turn_rate_back(const geometry::Pose2& pose, double speed) {
   return std::clamp(rate, -kFastestTurn, kFastestTurn);
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -5,7 +5,7 @@
 
 #include "foundation/geometry/pose2.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// The way that the robot came, for backing off along it: where it has just been there was room.
 /// Remembers the last 3.2 m.
@@ -29,4 +29,4 @@ class Trail {
   std::size_t begin_ = 0, size_ = 0;
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -6,7 +6,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 constexpr std::uint16_t kStraight = 5;
@@ -198,4 +198,4 @@ void Wavefront::spread(grid::Cell target, std::vector<std::uint16_t>& lengths) {
   }
 }
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

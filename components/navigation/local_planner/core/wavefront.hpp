@@ -6,7 +6,7 @@
 #include "foundation/cpu/cpu.hpp"
 #include "foundation/grid/grid.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 
 /// Lengths of shortest ways around obstacles from every cell to one target cell: 8-connected,
 /// chamfer weights 5 and 7 (fifths of a cell, at most 8 % longer than straight)
@@ -61,4 +61,4 @@ class Wavefront {
   Plane lying_;  // transposed
 };
 
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -12,7 +12,6 @@ namespace {
 
 using namespace usher_msgs::msg::GoalStatus_Constants;
 using namespace usher_msgs::msg::FollowGoal_Constants;
-using navigation::Decision;
 using runtime::HealthState;
 using std::chrono::milliseconds;
 
@@ -24,9 +23,9 @@ constexpr double kPathTurn = 0.002;         // [rad]
 
 }  // namespace
 
-navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) {
+DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) {
   auto& p = host.parameters();
-  navigation::DynamicWindowConfig c;
+  DynamicWindowConfig c;
   const auto corners =
       p.numbers("robot.footprint", "m", {-5, 5}, 6, 128,
                 "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
@@ -34,7 +33,7 @@ navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::
   for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
     outline.emplace_back(corners[i], corners[i + 1]);
   if (!outline.empty()) {
-    auto footprint = navigation::Footprint::make(outline);
+    auto footprint = Footprint::make(outline);
     if (!footprint) host.fault("robot.footprint: " + footprint.error());
     c.footprint = std::move(footprint).value();
   }
@@ -87,8 +86,8 @@ navigation::DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::
       p.choice("sampling", {"dynamic_window", "rollout"}, "dynamic_window",
                "Velocities that are tried: within reach now, or within the simulated time.") ==
               "rollout"
-          ? navigation::Sampling::kTrajectoryRollout
-          : navigation::Sampling::kDynamicWindow;
+          ? Sampling::kTrajectoryRollout
+          : Sampling::kDynamicWindow;
   c.speed_samples = static_cast<int>(
       p.integer("speed_samples", "-", {2, 64}, c.speed_samples, "Speeds that are tried."));
   c.turn_samples = static_cast<int>(
@@ -113,7 +112,7 @@ LocalPlannerComponent::LocalPlannerComponent(runtime::Host& host)
       transforms_(host) {
   const auto config = read_parameters(host);
   default_pace_ = config.pace;
-  auto planner = navigation::DynamicWindow::make(config);
+  auto planner = DynamicWindow::make(config);
   if (!planner) host.fault(planner.error());
   planner_.emplace(std::move(planner).value());
 
@@ -271,7 +270,7 @@ void LocalPlannerComponent::conclude(const Decision& decided, const geometry::Po
   publish_status(done              ? STATE_SUCCEEDED
                  : decided.blocked ? STATE_WAITING
                                    : STATE_ACTIVE,
-                 decided.blocked ? navigation::to_string(decided.reason) : "", remaining,
+                 decided.blocked ? to_string(decided.reason) : "", remaining,
                  decided.obstacle_distance);
   host_.health().set(HealthState::kOk);
 }

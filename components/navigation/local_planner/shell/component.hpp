@@ -17,21 +17,21 @@ class LocalPlannerComponent final : public runtime::Component {
   explicit LocalPlannerComponent(runtime::Host& host);
 
  private:
-  static navigation::DynamicWindowConfig read_parameters(runtime::Host& host);
+  static DynamicWindowConfig read_parameters(runtime::Host& host);
   void take_goal(const usher_msgs::msg::FollowGoal& goal);
   void cancel(const usher_msgs::msg::GoalCancel& cancel);
   void take_costs(const usher_msgs::msg::Costmap& message);
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
-  navigation::Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
-                                const geometry::Twist2& measured);
+  Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
+                    const geometry::Twist2& measured);
   bool place_path();
-  void conclude(const navigation::Decision& decision, const geometry::Pose2& pose);
+  void conclude(const Decision& decision, const geometry::Pose2& pose);
   void stand(std::uint8_t state, const std::string& reason);
   void publish_status(std::uint8_t state, const std::string& reason, double remaining,
                       double obstacle);
 
   runtime::Host& host_;
-  std::optional<navigation::DynamicWindow> planner_;
+  std::optional<DynamicWindow> planner_;
   double default_pace_ = 0.0;
   double back_off_speed_, turn_rate_;
 

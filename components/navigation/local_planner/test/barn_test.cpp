@@ -12,7 +12,7 @@
 #include "navigation/local_planner/test/world.hpp"
 #include "support/data.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using namespace testing_world;  // NOLINT: the test's own vocabulary
@@ -106,4 +106,4 @@ TEST(Barn, MostWorldsAreCrossed) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

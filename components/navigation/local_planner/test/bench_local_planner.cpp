@@ -13,7 +13,7 @@
 #include "navigation/local_planner/core/dynamic_window.hpp"
 #include "support/bench.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using geometry::Point2;
@@ -222,11 +222,11 @@ double undecided_share(const Cycle& cycle) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner
 
 int main(int argc, char** argv) {
   using usher::bench::Bound;
-  namespace nav = usher::navigation;
+  namespace nav = usher::local_planner;
   usher::bench::Bench bench(
       "local_planner",
       "willow-trinary, 4x4 m window with one scan and 0.55 m inflation, straight plan, 63 "

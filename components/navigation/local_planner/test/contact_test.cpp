@@ -9,7 +9,7 @@
 
 #include "foundation/random/random.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using geometry::Point2;
@@ -294,4 +294,4 @@ TEST(Footprint, RefusesWhatIsNotAConvexOutlineAroundTheBase) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

@@ -9,7 +9,7 @@
 #include "foundation/random/random.hpp"
 #include "navigation/local_planner/test/world.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using namespace testing_world;  // NOLINT: the test's own vocabulary
@@ -376,4 +376,4 @@ TEST(ClutteredRooms, AreCrossedWithoutContact) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

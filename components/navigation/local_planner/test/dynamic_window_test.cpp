@@ -9,7 +9,7 @@
 #include "foundation/random/random.hpp"
 #include "navigation/local_planner/test/world.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using namespace testing_world;  // NOLINT: the test's own vocabulary
@@ -307,4 +307,4 @@ TEST(Rotating, RefusesARateThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

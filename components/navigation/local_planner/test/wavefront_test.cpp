@@ -12,7 +12,7 @@
 #include "navigation/local_planner/core/contact.hpp"
 #include "navigation/local_planner/core/reference_path.hpp"
 
-namespace usher::navigation {
+namespace usher::local_planner {
 namespace {
 
 using Costs = grid::Grid<std::uint8_t>;
@@ -210,4 +210,4 @@ TEST(ReferencePath, RefusesNothingAndNonsenseAndKeepsWhatItHas) {
 }
 
 }  // namespace
-}  // namespace usher::navigation
+}  // namespace usher::local_planner

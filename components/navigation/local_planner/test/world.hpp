@@ -14,7 +14,7 @@
 
 #include "navigation/local_planner/core/dynamic_window.hpp"
 
-namespace usher::navigation::testing_world {
+namespace usher::local_planner::testing_world {
 
 using geometry::Point2;
 using geometry::Pose2;
@@ -289,4 +289,4 @@ inline Drive drive(DynamicWindow& planner, const World& world, Base& base, doubl
   return result;
 }
 
-}  // namespace usher::navigation::testing_world
+}  // namespace usher::local_planner::testing_world
