@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "navigation/roadmap/core/new_obstacles.hpp"
+#include "navigation/roadmap/core/roadmap_planner.hpp"
+#include "runtime/api/host.hpp"
+
+namespace usher::roadmap {
+
+/// Answers requests for a path with a roadmap: takes the place of the grid planner where the
+/// manifest says so.
+class RoadmapComponent final : public runtime::Component {
+ public:
+  explicit RoadmapComponent(runtime::Host& host);
+
+ private:
+  static RoadmapConfig read_parameters(runtime::Parameters& parameters);
+  void take_map(const nav_msgs::msg::OccupancyGrid& message);
+  void take_costs(const usher_msgs::msg::Costmap& message);
+  void take_outcome(const usher_msgs::msg::NavigateStatus& status);
+  void answer(const usher_msgs::msg::PlanRequest& request);
+  usher_msgs::msg::PlanReply plan(const usher_msgs::msg::PlanRequest& request);
+  void look_for_obstacles(const Point2& robot);
+
+  runtime::Host& host_;
+  double forget_distance_;
+  double obstacle_tolerance_;
+  std::optional<RoadmapPlanner> planner_;
+  double resolution_ = 0.05;
+  grid::DistanceField map_distances_;
+  std::optional<grid::Grid<std::uint8_t>> costs_;
+  std::vector<Point2> obstacles_;
+  usher_msgs::msg::PlanReply last_reply_;
+  std::uint64_t& rejected_;
+  std::uint64_t& plans_;
+  std::uint64_t& failures_;
+  std::uint64_t& regenerations_;
+
+  runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
+  runtime::Input<usher_msgs::msg::Costmap> map_costs_;
+  runtime::Input<usher_msgs::msg::NavigateStatus> outcome_;
+  runtime::Input<usher_msgs::msg::PlanRequest> request_;
+  runtime::Output<usher_msgs::msg::PlanReply> reply_;
+  runtime::Output<nav_msgs::msg::Path> view_;
+};
+
+}  // namespace usher::roadmap
