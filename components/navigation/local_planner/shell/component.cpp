@@ -189,6 +189,7 @@ void LocalPlannerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtim
   const auto measured = odom ? wire::from_message(odom->twist().twist())
                              : Result<geometry::Twist2>(Error{"no odometry"});
   if (!pose_then || !measured) {
+    if (odom != nullptr) ++rejected_;
     stand(STATE_WAITING, pose_then ? measured.error() : pose_then.error());
     return;
   }

@@ -190,7 +190,11 @@ Situation NavigatorComponent::situation() {
   if (const auto* status = localization_.fresh())
     s.localization = static_cast<Localization>(std::min<std::uint8_t>(status->state(), 2));
   if (const auto* odom = odom_.fresh()) {
-    if (const auto velocity = wire::from_message(odom->twist().twist())) s.velocity = *velocity;
+    if (const auto velocity = wire::from_message(odom->twist().twist())) {
+      s.velocity = *velocity;
+    } else {
+      ++rejected_;
+    }
   } else {
     s.stale = "no odometry";
   }

@@ -153,6 +153,17 @@ TEST(ScanFilter, LeavesNoHoleInAWallThatIsSeen) {
   }
 }
 
+TEST(ScanFilter, RefusesABlindScan) {
+  ScanFilter filter = ScanFilter::make({}).value();
+  PlanarScan out;
+  std::vector<float> ranges(541, 3.0F);
+  std::fill(ranges.begin(), ranges.begin() + 380, kNan);
+  EXPECT_TRUE(filter.filter(lms100(), ranges, {}, out).ok());
+  std::fill(ranges.begin(), ranges.begin() + 500, kNan);
+  EXPECT_THAT(filter.filter(lms100(), ranges, {}, out).error(), HasSubstr("blind"));
+  EXPECT_EQ(filter.counts().rejected, 1U);
+}
+
 TEST(ScanFilter, MakesTheFloorUnknownAndNotFree) {
   ScanFilter f = filter();
   PlanarScan out;
