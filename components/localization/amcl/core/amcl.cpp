@@ -41,7 +41,8 @@ constexpr std::size_t kNearbyCandidates = 1000;
 constexpr double kRangeOffsetGain =
     0.1;  // of what one scan says; the systematic error changes slowly if at all
 constexpr double kMostRangeOffset = 0.08;  // [m] LMS100: 30 mm, and half a cell
-constexpr std::size_t kGuidedEvery = 5;    // particles that follow the refinement of the estimate
+constexpr int kIdleScans = 10;  // without motion, between two updates of a robot that is lost
+constexpr std::size_t kGuidedEvery = 5;  // particles that follow the refinement of the estimate
 
 bool finite(const LaserBeams& scan) {
   return scan.base_T_laser.finite() && std::isfinite(scan.angle_min) &&
@@ -143,7 +144,11 @@ void Amcl::spread_over_free_space(const LaserBeams& scan) {
   search_updates_ = 1;
 }
 
-bool Amcl::due(const geometry::Pose2& base0_T_base1) const {
+bool Amcl::due(const geometry::Pose2& base0_T_base1) {
+  // A robot that does not know where it is stands still: it looks on all the same.
+  const bool lost =
+      search_updates_ > 0 || (estimate_ && estimate_->quality.confidence == Confidence::kLost);
+  if (lost && ++idle_scans_ >= kIdleScans) return true;
   return force_update_ || std::hypot(base0_T_base1.x, base0_T_base1.y) >= config_.update_distance ||
          std::abs(base0_T_base1.yaw) >= config_.update_angle;
 }
@@ -184,8 +189,8 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
       weigh(particles_, search_updates_ > 0 ? kSearchEvidence : config_.independent_beams);
   find_bins();
   const Cluster cluster = heaviest_cluster();
-  end_search(cluster);
   make_estimate(cluster, odom_T_base, unmapped);
+  end_search(cluster);
   const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - unmapped));
   result.injected = recovery.share;
   if (++updates_since_resampling_ >= config_.resample_interval || recovery.share > 0.0) {
@@ -194,6 +199,7 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
     updates_since_resampling_ = 0;
   }
   force_update_ = false;
+  idle_scans_ = 0;
   result.outcome = Outcome::kUpdated;
   return result;
 }
@@ -251,12 +257,14 @@ double Amcl::weigh(Particles& particles, double evidence) const {
   return mean;
 }
 
-/// A search ends with one place that has stood several scans.
+/// A search ends with one place that has stood several scans and explains what is seen.
 void Amcl::end_search(const Cluster& cluster) {
   if (search_updates_ == 0) return;
-  const bool won = search_updates_ >= kLeastSearch && cluster.weight >= kWonWeight;
+  const bool won = search_updates_ >= kLeastSearch && cluster.weight >= kWonWeight &&
+                   estimate_->quality.explained >= config_.confidence.good_explained;
   search_updates_ = won ? 0 : search_updates_ + 1;
   fast_likelihood_ = 0.0;
+  estimate_->quality.confidence = confidence_of(estimate_->quality);
 }
 
 /// Augmented MCL [thrun2005, table 8.3], with a search nearby as soon as a scan fits badly.

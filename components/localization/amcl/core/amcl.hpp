@@ -127,7 +127,7 @@ class Amcl {
     double share = 0.0;
   };
 
-  bool due(const geometry::Pose2& base0_T_base1) const;
+  bool due(const geometry::Pose2& base0_T_base1);
   void spread_over_free_space(const LaserBeams& scan);
   geometry::Pose2 random_free_pose();
   geometry::Pose2 random_nearby_pose();
@@ -166,6 +166,7 @@ class Amcl {
   bool spread_pending_ = false;  // a global start waits for its map or first scan
   int search_updates_ = 0;       // since a search over the whole map began; 0 without one
   int updates_since_resampling_ = 0;
+  int idle_scans_ = 0;                                    // since the last update, while lost
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;  // 0: none yet
   double range_offset_ = 0.0;  ///< [m] that all beams are too short by, learnt while tracking
   std::optional<Estimate> estimate_;

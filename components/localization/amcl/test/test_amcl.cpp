@@ -139,6 +139,25 @@ TEST(Amcl, RecoversFromBeingCarriedAway) {
   EXPECT_GE(found, 16);
 }
 
+TEST(Amcl, LooksOnWhileItIsLostAndStands) {
+  int lost = 0;
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    World world(seed);
+    world.start_near();
+    for (int i = 0; i < 50; ++i) world.step();
+    world.robot.kidnap(world.robot.pose() * geometry::Pose2{0.3, 0.2, 0.8});
+    world.robot.move({0.0, 0.0, 0.2});
+    world.amcl.update(world.robot.odometry(), world.robot.scan());
+    if (world.amcl.estimate()->quality.confidence != Confidence::kLost) continue;
+    ++lost;
+    for (int i = 0; i < 1000; ++i) world.amcl.update(world.robot.odometry(), world.robot.scan());
+    found += error(world.amcl, world.robot) < 0.1;
+  }
+  EXPECT_GE(lost, 5);
+  EXPECT_GE(found, lost * 3 / 4);
+}
+
 TEST(Amcl, LearnsThatItsRangeFinderReadsShort) {
   for (const double offset : {-0.03, 0.03}) {
     World world(1, {}, {.range_offset = offset});
