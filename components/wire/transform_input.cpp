@@ -5,7 +5,8 @@ namespace usher::wire {
 namespace {
 constexpr std::size_t kMaxWaiting = 16;
 constexpr auto kPatience = std::chrono::milliseconds(100);
-constexpr int kWriters = 8;  // of tf and tf_static on one robot
+constexpr auto kFuture = std::chrono::seconds(1);  // map -> odom is valid for a while ahead
+constexpr int kWriters = 8;                        // of tf and tf_static on one robot
 }  // namespace
 
 TransformInput::TransformInput(runtime::Host& host)
@@ -35,6 +36,11 @@ void TransformInput::take(const tf2_msgs::msg::TFMessage& message, bool fixed) {
     const auto& parent = transform.header().frame_id();
     const auto& child = transform.child_frame_id();
     const auto stamp = from_message(transform.header().stamp()).time_since_epoch();
+    // A stamp from the future would make all later ones old.
+    if (!fixed && stamp > (host_.now() + kFuture).time_since_epoch()) {
+      ++refused_;
+      continue;
+    }
     const Status added =
         fixed ? buffer_.add_static(parent, child, *pose) : buffer_.add(parent, child, stamp, *pose);
     if (!added) ++refused_;

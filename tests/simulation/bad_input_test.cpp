@@ -113,9 +113,11 @@ TEST_F(BadInput, ScansAreCountedAndTheRobotStandsWhenThereAreNoOthers) {
 }
 
 TEST_F(BadInput, ABlindLaserStopsTheRobot) {
+  const float blind[] = {kNan, 0.0F, std::numeric_limits<float>::infinity()};
+  std::size_t next = 0;
   run_->world().at(run_->world().now(), [this] { run_->world().hang("lms100", seconds(4)); });
   flood(seconds(4), [&] {
-    auto message = scan(541, kNan, 0.00873F);
+    auto message = scan(541, blind[next++ % std::size(blind)], 0.00873F);
     message.header().stamp(wire::to_message(run_->world().now()));
     run_->world().publish(topics::kScan, message);
   });

@@ -165,7 +165,8 @@ int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& argume
     const auto status = reader->take(milliseconds(100));
     if (!status || status->id() != goal.id()) continue;
     accepted = true;
-    if (arguments.no_wait) return 0;
+    const bool ended = status->state() >= GoalStatus_Constants::STATE_SUCCEEDED;
+    if (arguments.no_wait && !ended) return 0;
     if (terminal) show_progress(*status);
     switch (status->state()) {
       case GoalStatus_Constants::STATE_SUCCEEDED:

@@ -235,8 +235,15 @@ void Launcher::start(Process& process) {
     execv(arguments[0], arguments.data());
     _exit(127);
   }
+  if (pid < 0) {
+    process.pid = 0;
+    process.state = Process::State::kWaiting;
+    process.start_at = Clock::now() + kLongestPause;
+    events_.push_back(process.name + ": cannot start: " + std::strerror(errno));
+    return;
+  }
   process.pid = pid;
-  process.state = pid > 0 ? Process::State::kRunning : Process::State::kGaveUp;
+  process.state = Process::State::kRunning;
   ++process.starts;
   process.recent_starts.push_back(Clock::now());
   events_.push_back(process.name + (process.starts == 1 ? ": started" : ": started again"));

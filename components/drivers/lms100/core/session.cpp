@@ -143,12 +143,12 @@ bool Session::handle_scan(const Message& message, Time now) {
   last_counter_ = telegram_.scan_counter;
   last_scan_ = now;
   ++scans_;
-  if (telegram_.status[1] == 1) {
-    reason_ = "the scanner reports an error";
-  } else {
-    reason_.clear();
-  }
-  return true;
+  reason_.clear();
+  // 0 is well; 2 warns of pollution and still measures; 1, 4 and 5 are not to be trusted.
+  const int status = telegram_.status[1];
+  if (status == 1) reason_ = "the scanner reports an error";
+  if (telegram_.polluted()) reason_ = "the scanner's window is dirty";
+  return status == 0 || status == 2;
 }
 
 void Session::handle_answer(const Message& message, Time now) {

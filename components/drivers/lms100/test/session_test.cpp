@@ -23,6 +23,7 @@ class Scanner {
   std::string refuse_with_error;  ///< name that is answered with sFA 3
   std::string mute;               ///< name that is not answered
   int polls_until_ready = 3;
+  std::uint8_t device_status = 0;
   std::vector<std::string> heard;
 
   Bytes answer(const Bytes& sent) {
@@ -60,7 +61,7 @@ class Scanner {
 
   Bytes scan(std::uint16_t counter, std::uint32_t time_us) const {
     Command command(dialect_, "sSN", "LMDscandata");
-    command.number(1, 2).number(1, 2).number(77, 4).number(0, 1).number(0, 1);
+    command.number(1, 2).number(1, 2).number(77, 4).number(0, 1).number(device_status, 1);
     command.number(counter, 2).number(counter, 2).number(time_us, 4).number(time_us + 3000, 4);
     for (int i = 0; i < 4; ++i) command.number(0, 1);
     command.number(0, 2).number(5000, 4).number(360, 4).number(0, 2).number(1, 2);
@@ -233,6 +234,29 @@ TEST(Session, WatchesTheScans) {
   link.scanner.polls_until_ready = 0;
   link.run(1000);
   EXPECT_EQ(link.session.state(), Session::State::kStreaming);
+}
+
+TEST(Session, TrustsNoScanOfADeviceWithAnError) {
+  Link link;
+  link.run(5000);
+  std::uint16_t counter = 0;
+  const auto hear = [&](std::uint8_t status) {
+    link.scanner.device_status = status;
+    ++counter;
+    link.hear(link.scanner.scan(counter, counter * 20000U));
+    return link.scans.size();
+  };
+  EXPECT_EQ(hear(0), 1U);
+  EXPECT_TRUE(link.session.healthy());
+  EXPECT_EQ(hear(1), 1U);
+  EXPECT_EQ(link.session.reason(), "the scanner reports an error");
+  EXPECT_EQ(hear(2), 2U) << "a dirty window still measures";
+  EXPECT_EQ(link.session.reason(), "the scanner's window is dirty");
+  EXPECT_EQ(hear(4), 2U);
+  EXPECT_EQ(hear(5), 2U);
+  EXPECT_FALSE(link.session.healthy());
+  EXPECT_EQ(hear(0), 3U);
+  EXPECT_TRUE(link.session.healthy());
 }
 
 TEST(Session, IgnoresARepeatedScanAndSurvivesTheCountersWrap) {

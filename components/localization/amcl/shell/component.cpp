@@ -192,7 +192,7 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   if (result.outcome == Outcome::kScanRejected) ++rejected_scans_;
   if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected)
     last_scan_ = stamp;
-  if (!core_.estimate()) return;
+  if (!core_.estimate() || last_scan_ != stamp) return;
   publish_transform(stamp);
   if (result.outcome == Outcome::kUpdated) {
     publish_pose(stamp);
@@ -239,9 +239,10 @@ void AmclComponent::publish_status() {
   } else {
     reason = map_known_ ? "no pose yet" : "no map";
   }
-  if (!scan_.fresh()) {
+  // Scans that come but say nothing, or whose place is not known, are none.
+  if (!scan_.fresh() || host_.now() - last_scan_ > kScanAge) {
     confidence = Confidence::kLost;
-    reason = "no scan";
+    reason = scan_.fresh() ? "no scan that can be used" : "no scan";
   }
   message.state(static_cast<std::uint8_t>(confidence));
   message.reason(reason);

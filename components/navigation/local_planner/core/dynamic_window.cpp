@@ -163,7 +163,6 @@ Status DynamicWindow::set_pace(double pace) {
                  ", 3] m/s, got " + std::to_string(pace)};
   }
   config_.pace = pace;
-  config_.tight_speed = std::min(config_.tight_speed, pace);
   return {};
 }
 
@@ -345,7 +344,7 @@ Decision DynamicWindow::follow(const Input& input) {
   if (standing && std::abs(error) > kAligned && can_turn(input, error)) {
     return with_obstacle(turn_to(input, heading, Reason::kTurning));
   }
-  const double slow = std::min(fastest, config_.tight_speed);
+  const double slow = std::min({fastest, config_.tight_speed, config_.pace});
   decision = drive(input, {&whole_, &narrow_}, slow);
   // Who overlaps part of a cell already must be let out by its center.
   if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {

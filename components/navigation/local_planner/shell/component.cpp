@@ -155,7 +155,8 @@ void LocalPlannerComponent::take_goal(const usher_msgs::msg::FollowGoal& goal) {
   if (!wants_path) planner_->clear_path();
   const double pace =
       goal.max_speed() > 0.0F ? static_cast<double>(goal.max_speed()) : default_pace_;
-  if (!planner_->set_pace(std::min(pace, default_pace_))) ++rejected_;
+  // Slower than the base can follow is as slow as it can.
+  if (!planner_->set_pace(std::clamp(pace, planner_->config().slowest, default_pace_))) ++rejected_;
   state_ = mode_ == MODE_STOP ? STATE_IDLE : STATE_ACTIVE;
 }
 

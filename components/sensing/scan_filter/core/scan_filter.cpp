@@ -49,9 +49,6 @@ Result<ScanFilter> ScanFilter::make(const ScanFilterConfig& c) {
   return ScanFilter(c);
 }
 
-/// Share of beams without a number beyond which a scan says nothing.
-constexpr double kBlind = 0.75;
-
 Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> ranges,
                           const Pitch& pitch, PlanarScan& out) {
   const auto reject = [&](Error error) {
@@ -67,11 +64,14 @@ Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> r
     }
   }
   const auto seen = ranges.subspan(first_, cos_.size());
-  const auto without = static_cast<std::size_t>(
-      std::count_if(seen.begin(), seen.end(), [](float r) { return r != r; }));
-  if (static_cast<double>(without) > kBlind * static_cast<double>(seen.size())) {
-    return reject({std::to_string(without) + " of " + std::to_string(seen.size()) +
-                   " beams hold no number: the sensor is blind"});
+  const auto low = static_cast<float>(geometry_.range_min);
+  const auto high = static_cast<float>(geometry_.range_max);
+  const auto echoes = static_cast<std::size_t>(
+      std::count_if(seen.begin(), seen.end(), [=](float r) { return r >= low && r <= high; }));
+  if (echoes < config_.least_echoes) {
+    return reject({std::to_string(echoes) + " of " + std::to_string(seen.size()) +
+                   " beams have an echo, expected " + std::to_string(config_.least_echoes) +
+                   " at least: the sensor is blind"});
   }
   project(ranges, pitch);
   out.base_T_scan = {config_.mount_x, config_.mount_y, config_.mount_yaw};

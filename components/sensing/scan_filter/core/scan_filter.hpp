@@ -26,6 +26,7 @@ struct ScanFilterConfig {
   double floor_angle = 0.006;  ///< [rad] and this more for each metre of range: error of the pitch
   double floor_time = 0.003;   ///< [s] and this, times pitch rate and range: error of its time
   double max_height = 1.9;     ///< [m] what is higher is nothing to a robot of 1.8 m
+  std::size_t least_echoes = 0;  ///< fewer beams with a range say that the sensor is blind
   bool joined =
       true;  ///< beams are so close that two neighbours on one surface stand for all between
 };

@@ -25,6 +25,10 @@ ScanFilterConfig laser_config(runtime::Parameters& p) {
                             "What is lower than this counts as floor.");
   c.max_height = p.number("max_height", "m", {0.5, 5}, c.max_height,
                           "What is higher is nothing to the robot.");
+  c.least_echoes = static_cast<std::size_t>(
+      p.integer("least_echoes", "-", {0, 500}, 20,
+                "Beams of a laser scan that must meet something; with fewer the laser is blind and "
+                "the robot stops."));
   return c;
 }
 
@@ -36,6 +40,7 @@ ScanFilterConfig ultrasonic_config(runtime::Parameters& p, const ScanFilterConfi
   c.bearing_limit = 3.1;
   c.floor_margin = p.number("ultrasonic_floor_margin", "m", {0, 0.5}, 0.1,
                             "The same for the ultrasonic sensors with their wide beams.");
+  c.least_echoes = 0;  // nothing within reach of five narrow beams is usual
   c.joined = false;
   return c;
 }

@@ -154,14 +154,15 @@ TEST(ScanFilter, LeavesNoHoleInAWallThatIsSeen) {
 }
 
 TEST(ScanFilter, RefusesABlindScan) {
-  ScanFilter filter = ScanFilter::make({}).value();
+  ScanFilter filter = ScanFilter::make({.least_echoes = 20}).value();
   PlanarScan out;
-  std::vector<float> ranges(541, 3.0F);
-  std::fill(ranges.begin(), ranges.begin() + 380, kNan);
-  EXPECT_TRUE(filter.filter(lms100(), ranges, {}, out).ok());
-  std::fill(ranges.begin(), ranges.begin() + 500, kNan);
-  EXPECT_THAT(filter.filter(lms100(), ranges, {}, out).error(), HasSubstr("blind"));
-  EXPECT_EQ(filter.counts().rejected, 1U);
+  for (const float blind : {kNan, 0.0F, std::numeric_limits<float>::infinity(), 100.0F, -1.0F}) {
+    std::vector<float> ranges(541, blind);
+    EXPECT_THAT(filter.filter(lms100(), ranges, {}, out).error(), HasSubstr("blind")) << blind;
+    std::fill(ranges.begin() + 260, ranges.begin() + 280, 3.0F);
+    EXPECT_TRUE(filter.filter(lms100(), ranges, {}, out).ok()) << blind;
+  }
+  EXPECT_EQ(filter.counts().rejected, 5U);
 }
 
 TEST(ScanFilter, MakesTheFloorUnknownAndNotFree) {
