@@ -49,11 +49,19 @@ class Stream {
   /// Closes and opens anew after `delay`.
   virtual void reopen(Duration delay) = 0;
 };
+/// A guard process beside the driver: it owns the port, so that the device hears something safe
+/// though the driver dies or hangs. It sends `safe` at once when the driver ends, and every 10 ms
+/// while the driver has written nothing for `silence`; never before its first write.
+struct StreamGuard {
+  Bytes safe;  ///< one whole message to the device, for example "velocity zero"; empty = no guard
+  Duration silence{};  ///< {>= 1 ms}
+};
 struct StreamHandlers {
   std::function<void()> on_open;
   std::function<void(std::span<const std::uint8_t>)> on_bytes;
   std::function<void(const std::string& reason)>
       on_close;  ///< also when opening failed; the host opens anew each second
+  StreamGuard guard{};
 };
 
 /// Everything that a component may ask for. Called only from the component's constructor and
@@ -122,8 +130,9 @@ class Host {
   virtual void offload(Duration declared, std::function<void()> job,
                        std::function<void()> done) = 0;
 
-  /// "tcp://192.168.1.2:2112" or "serial:///dev/ttyUSB0?baud=115200". In simulation there is none:
-  /// the handlers get a close with that reason.
+  /// "tcp://192.168.1.2:2112", "serial:///dev/ttyUSB0?baud=115200", "device:///dev/input/js0" or,
+  /// to be called instead, "listen://127.0.0.1:2112". In simulation there is none: the handlers get
+  /// a close with that reason.
   virtual Stream& open_stream(const std::string& uri, StreamHandlers handlers) = 0;
 
   /// Memory over restarts: small values (at most 1 MB) in the run directory of the launcher.

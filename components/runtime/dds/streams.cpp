@@ -1,13 +1,13 @@
 #include "runtime/dds/streams.hpp"
 
-#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <spawn.h>
 #include <sys/eventfd.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <termios.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,14 +15,13 @@
 #include <atomic>
 #include <cassert>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cstring>
-#include <map>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <vector>
+
+#include "runtime/guard/port.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -30,61 +29,65 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxQueued = 65536;
 constexpr auto kReopenAfter = std::chrono::seconds(1);
+/// After a guard or the one who called has gone: the next one is there at once.
+constexpr auto kReopenSoon = std::chrono::milliseconds(50);
 constexpr auto kConnectTimeout = std::chrono::seconds(3);
+constexpr auto kGuardStart = std::chrono::seconds(1);
 constexpr auto kOfferAgain = std::chrono::milliseconds(10);
 
 std::string reason(const std::string& what) { return what + ": " + std::strerror(errno); }
 
-const std::map<int, speed_t>& baud_rates() {
-  static const std::map<int, speed_t> rates = {
-      {9600, B9600},     {19200, B19200},    {38400, B38400},   {57600, B57600},
-      {115200, B115200}, {230400, B230400},  {460800, B460800}, {500000, B500000},
-      {921600, B921600}, {1000000, B1000000}};
-  return rates;
+/// The program beside this one.
+std::string guard_program() {
+  std::array<char, 4096> path{};
+  const ssize_t size = ::readlink("/proc/self/exe", path.data(), path.size());
+  const std::string_view self(path.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+  const std::string folder(self.substr(0, self.rfind('/') + 1));
+  // The build tree keeps test programs in a folder of their own.
+  const std::string beside = folder + "usher-guard";
+  return ::access(beside.c_str(), X_OK) == 0 ? beside : folder + "../bin/usher-guard";
 }
 
-std::optional<int> whole_number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+std::string hexadecimal(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : bytes) text.append({kDigits[byte >> 4], kDigits[byte & 15]});
+  return text;
 }
 
-/// -1 and errno when it fails. A TCP connection may still be under way.
-int open_descriptor(const StreamAddress& address) {
-  if (!address.serial) {
-    const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (descriptor < 0) return -1;
-    const int yes = 1;
-    ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
-    sockaddr_in peer{};
-    peer.sin_family = AF_INET;
-    peer.sin_port = htons(static_cast<std::uint16_t>(address.number));
-    inet_pton(AF_INET, address.target.c_str(), &peer.sin_addr);
-    if (::connect(descriptor, reinterpret_cast<sockaddr*>(&peer), sizeof(peer)) == 0 ||
-        errno == EINPROGRESS) {
-      return descriptor;
-    }
-    ::close(descriptor);
+/// Starts a guard that owns the port: our end of the pair of sockets, or -1 and errno. In a process
+/// group of its own, so that nothing that ends this one by its group ends the guard too.
+int start_guard(const std::string& uri, const StreamGuard& guard, pid_t& pid) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
     return -1;
+  constexpr int kGuardsEnd = 3;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (ends[1] == kGuardsEnd) {
+    ::fcntl(ends[1], F_SETFD, 0);  // a duplicate onto itself would stay close-on-exec
+  } else {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], kGuardsEnd);
   }
-  const int descriptor = ::open(address.target.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return -1;
-  termios settings{};
-  if (::ioctl(descriptor, TIOCEXCL) == 0 && ::tcgetattr(descriptor, &settings) == 0) {
-    ::cfmakeraw(&settings);
-    settings.c_cflag |= CLOCAL | CREAD;
-    settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-    const speed_t speed = baud_rates().at(address.number);
-    ::cfsetispeed(&settings, speed);
-    ::cfsetospeed(&settings, speed);
-    if (::tcsetattr(descriptor, TCSANOW, &settings) == 0) {
-      ::tcflush(descriptor, TCIOFLUSH);
-      return descriptor;
-    }
-  }
-  const int error = errno;
-  ::close(descriptor);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  std::string program = guard_program();
+  std::string safe = hexadecimal(guard.safe);
+  std::string silence =
+      std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(guard.silence).count());
+  std::string number = std::to_string(kGuardsEnd);
+  std::string address = uri;
+  std::array<char*, 6> words{program.data(), number.data(),  safe.data(),
+                             silence.data(), address.data(), nullptr};
+  const int error =
+      ::posix_spawn(&pid, program.c_str(), &actions, &attributes, words.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  if (error == 0) return ends[0];
+  ::close(ends[0]);
+  pid = 0;
   errno = error;
   return -1;
 }
@@ -97,6 +100,8 @@ class Connection final : public Stream {
       : uri_(std::move(uri)), address_(std::move(address)), sink_(std::move(sink)), wake_(wake) {}
   ~Connection() override {
     if (descriptor_ >= 0) ::close(descriptor_);
+    if (listener_ >= 0) ::close(listener_);
+    reap();
   }
 
   // --- Stream ---
@@ -129,7 +134,10 @@ class Connection final : public Stream {
   pollfd interest() const {
     const std::scoped_lock lock(mutex_);
     pollfd entry{-1, 0, 0};
-    if (state_ == State::kConnecting) entry = {descriptor_, POLLOUT, 0};
+    if (state_ == State::kListening) entry = {listener_, POLLIN, 0};
+    if (state_ == State::kConnecting) {
+      entry = {descriptor_, static_cast<short>(guarded() ? POLLIN : POLLOUT), 0};
+    }
     if (state_ == State::kOpen) {
       // While the component refuses bytes, nothing is read and a hang-up has to wait with them.
       if (held_.empty()) entry = {descriptor_, POLLIN, 0};
@@ -140,7 +148,8 @@ class Connection final : public Stream {
   /// When to call advance() without any event.
   Clock::time_point due() const {
     const std::scoped_lock lock(mutex_);
-    return state_ == State::kOpen && held_.empty() ? Clock::time_point::max() : due_;
+    const bool waits = (state_ == State::kOpen && held_.empty()) || state_ == State::kListening;
+    return waits ? Clock::time_point::max() : due_;
   }
 
   void advance(short events, Clock::time_point now) {
@@ -154,8 +163,14 @@ class Connection final : public Stream {
         if (state_ != State::kDead) close_until(now + reopen_delay_);
       } else if (state_ == State::kWaiting) {
         if (now >= due_) begin(now, outcome);
+      } else if (state_ == State::kListening) {
+        accept(now, outcome);
       } else if (state_ == State::kConnecting) {
-        connect(events, now, outcome);
+        if (guarded()) {
+          hear_guard(events, now, outcome);
+        } else {
+          connect(events, now, outcome);
+        }
       } else if (state_ == State::kOpen && (events & POLLOUT) != 0) {
         drain(now, outcome);
       }
@@ -170,7 +185,7 @@ class Connection final : public Stream {
   }
 
  private:
-  enum class State { kWaiting, kConnecting, kOpen, kDead };
+  enum class State { kWaiting, kListening, kConnecting, kOpen, kDead };
   struct Outcome {
     bool opened = false;
     std::string closed;
@@ -181,8 +196,13 @@ class Connection final : public Stream {
     static_cast<void>(!::write(wake_, &one, sizeof(one)));
   }
   ssize_t put(std::span<const std::uint8_t> bytes) const {
-    return address_->serial ? ::write(descriptor_, bytes.data(), bytes.size())
-                            : ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return address_->socket() || guarded()
+               ? ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+               : ::write(descriptor_, bytes.data(), bytes.size());
+  }
+  bool guarded() const { return !sink_.guard.safe.empty(); }
+  void reap() {
+    if (guard_pid_ > 0 && ::waitpid(guard_pid_, nullptr, WNOHANG) == guard_pid_) guard_pid_ = 0;
   }
   void close_until(Clock::time_point due) {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -198,17 +218,54 @@ class Connection final : public Stream {
       outcome.closed = address_.error();
       return;
     }
-    descriptor_ = open_descriptor(*address_);
-    if (descriptor_ < 0) {
+    const bool listens = address_->kind == StreamAddress::Kind::kListen;
+    int& descriptor = listens && !guarded() ? listener_ : descriptor_;
+    if (guarded()) reap();
+    if (descriptor < 0)
+      descriptor = guarded() ? start_guard(uri_, sink_.guard, guard_pid_) : open_port(*address_);
+    if (descriptor < 0) {
       outcome.closed = reason("cannot open " + uri_);
       close_until(now + kReopenAfter);
-    } else if (address_->serial) {
+    } else if (!guarded() && listens) {
+      state_ = State::kListening;
+    } else if (!guarded() && address_->kind != StreamAddress::Kind::kTcp) {
       state_ = State::kOpen;
       outcome.opened = true;
     } else {
       state_ = State::kConnecting;
-      due_ = now + kConnectTimeout;
+      due_ = now + kConnectTimeout + kGuardStart;
     }
+  }
+  void accept(Clock::time_point now, Outcome& outcome) {
+    descriptor_ = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (descriptor_ >= 0) {
+      const int yes = 1;
+      ::setsockopt(descriptor_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
+      state_ = State::kOpen;
+      outcome.opened = true;
+    } else if (errno != EAGAIN && errno != EINTR && errno != ECONNABORTED) {
+      outcome.closed = reason("listening at " + uri_);
+      ::close(listener_);
+      listener_ = -1;
+      close_until(now + kReopenAfter);
+    }
+  }
+  /// The guard's first message says whether it has the port.
+  void hear_guard(short events, Clock::time_point now, Outcome& outcome) {
+    if (events == 0 && now < due_) return;
+    std::array<char, 1024> answer{};
+    const ssize_t count =
+        events == 0 ? 0 : ::recv(descriptor_, answer.data(), answer.size(), MSG_DONTWAIT);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    if (count > 0 && answer[0] == '\0') {
+      state_ = State::kOpen;
+      outcome.opened = true;
+      return;
+    }
+    outcome.closed =
+        count > 1 ? std::string(answer.data() + 1, static_cast<std::size_t>(count - 1))
+                  : "cannot open " + uri_ + ": the guard " + guard_program() + " does not answer";
+    close_until(now + kReopenAfter);
   }
   void connect(short events, Clock::time_point now, Outcome& outcome) {
     if (events == 0 && now < due_) return;
@@ -244,7 +301,8 @@ class Connection final : public Stream {
             count == 0 ? uri_ + ": closed by the other side" : reason("reading from " + uri_);
         {
           const std::scoped_lock lock(mutex_);
-          close_until(now + kReopenAfter);
+          const bool at_once = guarded() || address_->kind == StreamAddress::Kind::kListen;
+          close_until(now + (at_once ? kReopenSoon : kReopenAfter));
         }
         sink_.closed(text);
         return;
@@ -267,6 +325,8 @@ class Connection final : public Stream {
   State state_ = State::kWaiting;
   Clock::time_point due_ = Clock::time_point::min();
   int descriptor_ = -1;  // changed by the I/O thread only
+  int listener_ = -1;    // I/O thread only
+  pid_t guard_pid_ = 0;  // I/O thread only
   std::vector<std::uint8_t> queue_;
   std::vector<std::uint8_t> held_;  // I/O thread only
   bool reopen_asked_ = false;
@@ -274,36 +334,6 @@ class Connection final : public Stream {
 };
 
 }  // namespace
-
-Result<StreamAddress> StreamAddress::parse(const std::string& uri) {
-  const Error error{"a stream is tcp://ADDRESS:PORT or serial://DEVICE?baud=RATE, found '" + uri +
-                    "'"};
-  StreamAddress address;
-  if (uri.starts_with("tcp://")) {
-    const std::size_t colon = uri.rfind(':');
-    if (colon <= 6) return error;
-    address.target = uri.substr(6, colon - 6);
-    if (address.target == "localhost") address.target = "127.0.0.1";
-    in_addr ignored{};
-    const auto port = whole_number(std::string_view(uri).substr(colon + 1));
-    if (inet_pton(AF_INET, address.target.c_str(), &ignored) != 1 || !port || *port < 1 ||
-        *port > 65535)
-      return error;
-    address.number = *port;
-    return address;
-  }
-  if (uri.starts_with("serial://")) {
-    address.serial = true;
-    const std::size_t question = uri.find("?baud=");
-    if (question == std::string::npos || question == 9) return error;
-    address.target = uri.substr(9, question - 9);
-    const auto baud = whole_number(std::string_view(uri).substr(question + 6));
-    if (!baud || !baud_rates().contains(*baud)) return error;
-    address.number = *baud;
-    return address;
-  }
-  return error;
-}
 
 class Streams::Implementation {
  public:

@@ -162,6 +162,7 @@ class EngineStream final : public Stream {
         if (handlers->on_close) handlers->on_close(reason);
       });
     };
+    sink.guard = handlers_->guard;
     stream_ = &platform.open_stream(uri_, std::move(sink));
   }
 

@@ -22,6 +22,7 @@ struct StreamSink {
   /// will do).
   std::function<bool(std::span<const std::uint8_t>)> received;
   std::function<void(const std::string& reason)> closed;
+  StreamGuard guard{};
 };
 
 /// What an Engine needs of its host besides the Transport. It outlives the engine.

@@ -12,6 +12,7 @@ class SegwayRmpComponent final : public runtime::Component {
 
  private:
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
+  void emergency(bool on);
   Time now() const { return host_.now().time_since_epoch(); }
 
   runtime::Host& host_;

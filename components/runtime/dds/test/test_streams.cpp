@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include "runtime/dds/streams.hpp"
+#include "runtime/guard/port.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -110,24 +111,32 @@ class Server {
   std::uint16_t port_ = 0;
 };
 
-TEST(StreamAddress, ReadsTcpAndSerial) {
-  const auto tcp = StreamAddress::parse("tcp://192.168.1.2:2112");
-  ASSERT_TRUE(tcp.ok());
-  EXPECT_FALSE(tcp->serial);
-  EXPECT_EQ(tcp->target, "192.168.1.2");
-  EXPECT_EQ(tcp->number, 2112);
-  const auto serial = StreamAddress::parse("serial:///dev/ttyUSB0?baud=115200");
-  ASSERT_TRUE(serial.ok());
-  EXPECT_TRUE(serial->serial);
-  EXPECT_EQ(serial->target, "/dev/ttyUSB0");
-  EXPECT_EQ(serial->number, 115200);
+TEST(StreamAddress, ReadsEachKind) {
+  struct Case {
+    const char* uri;
+    StreamAddress::Kind kind;
+    const char* target;
+    int number;
+  };
+  using enum StreamAddress::Kind;
+  for (const Case& test :
+       {Case{"tcp://192.168.1.2:2112", kTcp, "192.168.1.2", 2112},
+        Case{"listen://localhost:7400", kListen, "127.0.0.1", 7400},
+        Case{"serial:///dev/ttyUSB0?baud=115200", kSerial, "/dev/ttyUSB0", 115200},
+        Case{"device:///dev/input/js0", kDevice, "/dev/input/js0", 0}}) {
+    const auto address = StreamAddress::parse(test.uri);
+    ASSERT_TRUE(address.ok()) << test.uri;
+    EXPECT_EQ(address->kind, test.kind) << test.uri;
+    EXPECT_EQ(address->target, test.target);
+    EXPECT_EQ(address->number, test.number);
+  }
 }
 
 TEST(StreamAddress, RefusesEverythingElse) {
-  for (const char* uri :
-       {"", "tcp://", "tcp://host.local:1", "tcp://1.2.3.4", "tcp://1.2.3.4:0",
-        "tcp://1.2.3.4:65536", "tcp://1.2.3.4:1x", "tcp://:5", "serial:///dev/x",
-        "serial:///dev/x?baud=12345", "serial://?baud=9600", "udp://1.2.3.4:5", "/dev/ttyUSB0"}) {
+  for (const char* uri : {"", "tcp://", "tcp://host.local:1", "tcp://1.2.3.4", "tcp://1.2.3.4:0",
+                          "tcp://1.2.3.4:65536", "tcp://1.2.3.4:1x", "tcp://:5", "serial:///dev/x",
+                          "serial:///dev/x?baud=12345", "serial://?baud=9600", "udp://1.2.3.4:5",
+                          "/dev/ttyUSB0", "listen://0.0.0.0", "device://"}) {
     EXPECT_FALSE(StreamAddress::parse(uri).ok()) << uri;
   }
 }
@@ -272,6 +281,104 @@ TEST(Streams, ReportASerialLineThatIsNotThereOrUnplugged) {
   ASSERT_TRUE(unplugged.wait([&] { return unplugged.opened == 1; }));
   ::close(master);
   EXPECT_TRUE(unplugged.wait([&] { return !unplugged.closed.empty(); }));
+}
+
+TEST(Streams, ListenForOneCallerAfterTheOther) {
+  Server free_port;
+  const std::string where = free_port.uri().substr(6);
+  free_port.stop();
+  Log here;
+  Log there;
+  Streams streams;
+  Stream& stream = streams.open("listen://" + where, here.sink());
+  {
+    Streams callers;
+    Stream& caller = callers.open("tcp://" + where, there.sink());
+    ASSERT_TRUE(here.wait([&] { return here.opened == 1; }));
+    ASSERT_TRUE(there.wait([&] { return there.opened == 1; }));
+    EXPECT_TRUE(caller.write(bytes("hello")));
+    EXPECT_TRUE(here.wait([&] { return here.received == "hello"; }));
+    EXPECT_TRUE(stream.write(bytes("welcome")));
+    EXPECT_TRUE(there.wait([&] { return there.received == "welcome"; }));
+  }
+  ASSERT_TRUE(here.wait([&] { return here.closed.size() == 1; }));
+  Streams callers;
+  callers.open("tcp://" + where, there.sink());
+  EXPECT_TRUE(here.wait([&] { return here.opened == 2; }));
+}
+
+/// A sink whose port belongs to a guard process.
+StreamSink guarded(Log& log, std::chrono::milliseconds silence) {
+  StreamSink sink = log.sink();
+  sink.guard = {bytes("[stop]"), silence};
+  return sink;
+}
+
+TEST(GuardedStreams, PassBytesBothWays) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  EXPECT_EQ(server.read(5), "drive");
+  server.send("moving");
+  EXPECT_TRUE(log.wait([&] { return log.received == "moving"; }));
+}
+
+TEST(GuardedStreams, AreSafeWhenTheDriverIsGone) {
+  Server server;
+  Log log;
+  {
+    Streams streams;
+    Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+    server.accept();
+    ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+    EXPECT_TRUE(stream.write(bytes("drive")));
+    EXPECT_EQ(server.read(5), "drive");
+  }
+  EXPECT_EQ(server.read(1000), "[stop][stop][stop]") << "and the guard has ended";
+}
+
+TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 50ms));
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  EXPECT_EQ(server.read(29), "drive[stop][stop][stop][stop]");
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  std::string heard;
+  while (heard.find("drive") == std::string::npos) heard += server.read(1);
+  EXPECT_EQ(heard.find_first_not_of("[stop]drive"), std::string::npos) << heard;
+}
+
+TEST(GuardedStreams, SayWhyThePortCannotBeOpened) {
+  Server server;
+  const std::string uri = server.uri();
+  server.stop();
+  Log log;
+  Streams streams;
+  streams.open(uri, guarded(log, 50ms));
+  ASSERT_TRUE(log.wait([&] { return !log.closed.empty(); }));
+  EXPECT_THAT(log.closed[0], HasSubstr("cannot open " + uri + ": Connection refused"));
+  EXPECT_EQ(log.opened, 0);
+}
+
+TEST(GuardedStreams, OpenAnewAfterThePortHasFailed) {
+  Server server;
+  Log log;
+  Streams streams;
+  streams.open(server.uri(), guarded(log, 50ms));
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  server.drop();
+  ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
+  server.accept();
+  EXPECT_TRUE(log.wait([&] { return log.opened == 2; }));
 }
 
 }  // namespace

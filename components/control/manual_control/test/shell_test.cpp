@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include "control/manual_control/shell/component.hpp"
+#include "runtime/testing/test_host.hpp"
+
+namespace usher::manual_control {
+namespace {
+
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg::SupervisorRequest_Constants;
+
+sensor_msgs::msg::Joy joy(float forward, std::vector<std::int32_t> buttons) {
+  sensor_msgs::msg::Joy message;
+  message.axes({0.0F, forward, 0.0F, 0.0F});
+  message.buttons(std::move(buttons));
+  return message;
+}
+
+runtime::TestHost make() {
+  return runtime::TestHost(runtime::component_factory<ManualControlComponent>("manual_control"));
+}
+
+TEST(ManualControlShell, PublishesWhileHeldAndFallsSilentAfterZeros) {
+  auto host = make();
+  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0, 0}));
+  host.run_for(milliseconds(20));
+  EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
+  for (int i = 0; i < 10; ++i) {
+    host.publish(topics::kJoy, joy(1, {0, 0, 0, 0, 1}));
+    host.run_for(milliseconds(50));
+  }
+  ASSERT_GE(host.written(topics::kCmdVelManual).size(), 10U);
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.8);
+  host.run_for(milliseconds(400));  // the pad is gone
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.0);
+  host.run_for(milliseconds(400));
+  host.clear();
+  host.run_for(milliseconds(1000));
+  EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
+}
+
+TEST(ManualControlShell, AsksUntilAnsweredAndNotForEver) {
+  auto host = make();
+  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+  host.run_for(milliseconds(20));
+  host.publish(topics::kJoy, joy(0, {0, 0, 1, 0}));
+  host.run_for(milliseconds(500));
+  const auto asked = host.written(topics::kSupervisorRequest);
+  ASSERT_GE(asked.size(), 2U);
+  EXPECT_EQ(asked.front().command(), COMMAND_MANUAL_ON);
+  EXPECT_EQ(asked.front().client(), "manual_control");
+  EXPECT_EQ(asked.front().id(), asked.back().id());
+  usher_msgs::msg::SupervisorStatus status;
+  status.last_request(asked.front().id());
+  host.publish(topics::kSupervisorStatus, status);
+  host.run_for(milliseconds(20));
+  host.clear();
+  host.run_for(milliseconds(1000));
+  EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty());
+
+  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+  host.run_for(milliseconds(20));
+  host.publish(topics::kJoy, joy(0, {0, 1, 0, 0}));
+  host.run_for(milliseconds(2500));
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
+  host.clear();
+  host.run_for(milliseconds(2000));
+  EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty());
+}
+
+}  // namespace
+}  // namespace usher::manual_control

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace usher::runtime {
+
+/// What a guard process sends to the port that it owns: everything that the driver writes, and the
+/// safe bytes instead as soon as the driver is gone or has written nothing for `silence`.
+///
+/// A driver that was silent is passed on again from its next write on: what it writes then was
+/// decided then. Nothing is sent before the driver's first write: the device may not be ready for
+/// it. Bytes that wait because the port is slow are dropped for the safe ones, but never a part of
+/// what is already on its way.
+///
+/// Fixed memory, no allocation after the constructor, no clock of its own.
+class Guard {
+ public:
+  using Time = std::chrono::nanoseconds;
+  static constexpr auto kRepeat = std::chrono::milliseconds(10);  ///< between two safe messages
+  static constexpr int kFarewells = 3;  ///< safe messages to the port after the driver's end
+  static constexpr std::size_t kMostWaiting = 65536;  ///< bytes
+  static constexpr std::size_t kMostMessages = 1024;
+
+  Guard(std::vector<std::uint8_t> safe, Time silence);
+
+  /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
+  /// messages, wait for it.
+  bool heard(std::span<const std::uint8_t> message, Time now);
+  /// The driver ended.
+  void gone(Time now);
+  /// Puts a safe message up when one is due.
+  void tick(Time now);
+
+  /// What the port shall get next; empty when nothing waits.
+  std::span<const std::uint8_t> output() const;
+  /// The port took so many bytes of it.
+  void sent(std::size_t count);
+
+  /// When tick() has something to do; nothing while the driver was never heard.
+  std::optional<Time> due() const;
+  /// The driver is gone and the port was told so: the guard may end.
+  bool finished() const { return gone_ && farewells_ == 0 && waiting_.empty(); }
+  /// The driver is being overruled.
+  bool overruling() const { return overruling_; }
+
+ private:
+  void append(std::span<const std::uint8_t> message);
+  void put_safe(Time now);
+
+  const std::vector<std::uint8_t> safe_;
+  const Time silence_;
+  std::vector<std::uint8_t> waiting_;
+  std::vector<std::size_t> lengths_;  ///< of the messages in it, of the first one what is left
+  bool first_under_way_ = false;      ///< a part of the first one was sent
+  std::optional<Time> heard_at_;
+  Time safe_at_{};
+  bool overruling_ = false;
+  bool gone_ = false;
+  int farewells_ = 0;
+};
+
+}  // namespace usher::runtime

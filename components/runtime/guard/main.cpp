@@ -1,0 +1,186 @@
+// The guard process: usher-guard DESCRIPTOR SAFE_HEX SILENCE_MS ADDRESS
+//
+// Started by a driver's host with one end of a socket pair of whole messages. It opens the port and
+// answers with one message: a zero octet, or a one octet and why it could not. From then on it
+// passes messages both ways (guard.hpp). It ends when the driver's end of the pair is closed, when
+// the port fails, and by no signal that can be ignored.
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "runtime/guard/guard.hpp"
+#include "runtime/guard/port.hpp"
+
+namespace usher::runtime {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Time = Guard::Time;
+constexpr int kConnectMs = 3000;
+/// A port that takes nothing must not hold the guard, and with it the port, for ever.
+constexpr auto kLongestFarewell = std::chrono::milliseconds(200);
+
+Time now() {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+template <class Number>
+bool read_number(std::string_view text, Number& value, int base = 10) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+bool read_hex(std::string_view text, Bytes& bytes) {
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    std::uint8_t byte = 0;
+    if (!read_number(text.substr(i, 2), byte, 16)) return false;
+    bytes.push_back(byte);
+  }
+  return text.size() % 2 == 0 && !bytes.empty();
+}
+
+/// The opened port, or why not.
+Result<int> open_for_good(const std::string& uri) {
+  const auto address = StreamAddress::parse(uri);
+  if (!address) return Error{address.error()};
+  const int port = open_port(*address);
+  int error = port < 0 ? errno : 0;
+  if (port >= 0 && address->kind == StreamAddress::Kind::kTcp) {
+    pollfd entry{port, POLLOUT, 0};
+    socklen_t size = sizeof(error);
+    if (::poll(&entry, 1, kConnectMs) <= 0) error = ETIMEDOUT;
+    if (error == 0) ::getsockopt(port, SOL_SOCKET, SO_ERROR, &error, &size);
+  }
+  if (error == 0) return port;
+  return Error{"cannot open " + uri + ": " + std::strerror(error)};
+}
+
+class Process {
+ public:
+  Process(int driver, int port, Guard guard)
+      : driver_(driver), port_(port), guard_(std::move(guard)) {}
+
+  /// Exit code.
+  int run() {
+    while (!guard_.finished()) {
+      if (gone_at_ && now() - *gone_at_ > kLongestFarewell) return 1;
+      wait();
+      if (!from_driver() || !from_port()) return 1;
+      guard_.tick(now());
+      if (!to_port()) return 1;
+    }
+    return 0;
+  }
+
+ private:
+  void wait() {
+    entries_[0] = {gone_at_ ? -1 : driver_, POLLIN, 0};
+    entries_[1] = {port_, static_cast<short>(guard_.output().empty() ? POLLIN : POLLIN | POLLOUT),
+                   0};
+    timespec timeout{};
+    const auto due = guard_.due();
+    if (due) {
+      const auto rest = std::max<std::int64_t>(0, (*due - now()).count());
+      timeout = {static_cast<time_t>(rest / 1'000'000'000),
+                 static_cast<long>(rest % 1'000'000'000)};
+    }
+    if (::ppoll(entries_.data(), entries_.size(), due ? &timeout : nullptr, nullptr) < 0) {
+      entries_[0].revents = entries_[1].revents = 0;
+    }
+  }
+
+  bool from_driver() {
+    if (entries_[0].revents == 0) return true;
+    // At most this many before the clock is looked at again: a flood cannot hold the guard.
+    for (int i = 0; i < 16; ++i) {
+      const ssize_t count = ::recv(driver_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+      if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
+      if (count <= 0) {
+        gone_at_ = now();
+        guard_.gone(*gone_at_);
+        return true;
+      }
+      if (!guard_.heard({buffer_.data(), static_cast<std::size_t>(count)}, now()))
+        return complain("the port takes nothing");
+    }
+    return true;
+  }
+
+  bool from_port() {
+    if ((entries_[1].revents & (POLLIN | POLLHUP | POLLERR)) == 0) return true;
+    const ssize_t count = ::read(port_, buffer_.data(), 4096);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
+    if (count == 0) return complain("closed by the other side");
+    if (count < 0) return complain(std::strerror(errno));
+    // A driver that does not read loses what it does not read; the port is never held up.
+    if (!gone_at_) {
+      static_cast<void>(!::send(driver_, buffer_.data(), static_cast<std::size_t>(count),
+                                MSG_DONTWAIT | MSG_NOSIGNAL));
+    }
+    return true;
+  }
+
+  bool to_port() {
+    while (!guard_.output().empty()) {
+      const auto output = guard_.output();
+      const ssize_t count = ::write(port_, output.data(), output.size());
+      if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
+      if (count < 0) return complain(std::strerror(errno));
+      guard_.sent(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
+
+  static bool complain(const char* why) {
+    std::fprintf(stderr, "guard: the port failed: %s\n", why);
+    return false;
+  }
+
+  const int driver_;
+  const int port_;
+  Guard guard_;
+  std::optional<Time> gone_at_;
+  std::array<pollfd, 2> entries_{};
+  std::array<std::uint8_t, Guard::kMostWaiting> buffer_{};
+};
+
+int guard_main(int argc, char** argv) {
+  int driver = -1;
+  int silence_ms = 0;
+  Bytes safe;
+  if (argc != 5 || !read_number(argv[1], driver) || !read_hex(argv[2], safe) ||
+      !read_number(argv[3], silence_ms) || silence_ms < 1) {
+    std::fprintf(stderr, "started by the host of a driver: usher-guard FD SAFE_HEX MS ADDRESS\n");
+    return 2;
+  }
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2})
+    ::signal(number, SIG_IGN);
+  ::prctl(PR_SET_TIMERSLACK, 1000UL);
+  const auto port = open_for_good(argv[4]);
+  std::string answer(1, port ? '\0' : '\1');
+  if (!port) answer += port.error();
+  if (::send(driver, answer.data(), answer.size(), MSG_NOSIGNAL) < 0 || !port) return 1;
+  ::fcntl(*port, F_SETFL, O_NONBLOCK);
+  static Process process(driver, *port,
+                         Guard(std::move(safe), std::chrono::milliseconds(silence_ms)));
+  return process.run();
+}
+
+}  // namespace
+}  // namespace usher::runtime
+
+int main(int argc, char** argv) { return usher::runtime::guard_main(argc, argv); }

@@ -1,0 +1,155 @@
+#include "runtime/guard/guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+namespace usher::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+using Time = Guard::Time;
+
+constexpr std::string_view kSafe = "0.";
+
+Time at(int ms) { return milliseconds(1000 + ms); }
+
+/// A guard, and a port that has taken everything so far.
+struct Bench {
+  Guard guard{std::vector<std::uint8_t>(kSafe.begin(), kSafe.end()), milliseconds(100)};
+  bool hear(std::string_view text, int ms) {
+    return guard.heard({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, at(ms));
+  }
+  std::string take(std::size_t most = 100) {
+    const auto output = guard.output();
+    const std::string text(output.begin(), output.begin() + static_cast<std::ptrdiff_t>(
+                                                                std::min(most, output.size())));
+    guard.sent(text.size());
+    return text;
+  }
+  std::string tick(int ms) {
+    guard.tick(at(ms));
+    return take();
+  }
+};
+
+TEST(Guard, PassesWhatTheDriverWrites) {
+  Bench bench;
+  bench.hear("abc", 0);
+  bench.hear("de", 10);
+  EXPECT_EQ(bench.take(), "abcde");
+  EXPECT_EQ(bench.tick(109), "");
+  EXPECT_FALSE(bench.guard.overruling());
+}
+
+TEST(Guard, SaysNothingBeforeTheDriverDoes) {
+  Bench bench;
+  EXPECT_FALSE(bench.guard.due());
+  EXPECT_EQ(bench.tick(100000), "");
+  bench.guard.gone(at(100001));
+  EXPECT_TRUE(bench.guard.finished());
+  EXPECT_EQ(bench.take(), "");
+}
+
+TEST(Guard, OverrulesASilentDriverUntilItWrites) {
+  Bench bench;
+  bench.hear("go", 0);
+  EXPECT_EQ(bench.take(), "go");
+  EXPECT_EQ(bench.guard.due(), at(100));
+  EXPECT_EQ(bench.tick(99), "");
+  EXPECT_EQ(bench.tick(100), "0.");
+  EXPECT_TRUE(bench.guard.overruling());
+  EXPECT_EQ(bench.tick(105), "");
+  EXPECT_EQ(bench.tick(110), "0.");
+  EXPECT_EQ(bench.tick(500), "0.");
+  bench.hear("go", 505);
+  EXPECT_EQ(bench.tick(510), "go");
+  EXPECT_FALSE(bench.guard.overruling());
+  EXPECT_EQ(bench.tick(605), "0.");
+}
+
+TEST(Guard, AnEmptyMessageIsALifeSignToo) {
+  Bench bench;
+  bench.hear("go", 0);
+  bench.hear("", 90);
+  EXPECT_EQ(bench.tick(150), "go");
+}
+
+TEST(Guard, SaysFarewellThreeTimesAndEnds) {
+  Bench bench;
+  bench.hear("go", 0);
+  bench.take();
+  bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(), "0.") << "at once";
+  EXPECT_FALSE(bench.guard.finished());
+  EXPECT_EQ(bench.tick(13), "0.");
+  bench.guard.tick(at(23));
+  EXPECT_FALSE(bench.guard.finished()) << "the last one is not sent yet";
+  EXPECT_EQ(bench.take(), "0.");
+  EXPECT_TRUE(bench.guard.finished());
+  EXPECT_FALSE(bench.guard.due());
+}
+
+TEST(Guard, DropsWhatWaitsButNoPartOfAMessage) {
+  Bench bench;
+  bench.hear("first", 0);
+  bench.hear("second", 1);
+  bench.hear("third", 2);
+  EXPECT_EQ(bench.take(7), "firstse");
+  bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(3), "con");
+  bench.guard.tick(at(13));
+  EXPECT_EQ(bench.take(2), "d0") << "the safe message that waited is not doubled";
+  EXPECT_EQ(bench.tick(23), ".0.");
+  EXPECT_TRUE(bench.guard.finished());
+}
+
+TEST(Guard, DropsWhatWaitsWhenNothingIsUnderWay) {
+  Bench bench;
+  bench.hear("first", 0);
+  bench.hear("second", 1);
+  bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(), "0.");
+}
+
+TEST(Guard, RefusesMoreThanItsBounds) {
+  Bench bench;
+  const std::string big(30000, 'x');
+  EXPECT_TRUE(bench.hear(big, 0));
+  EXPECT_TRUE(bench.hear(big, 0));
+  EXPECT_FALSE(bench.hear(big, 0));
+  Bench many;
+  for (std::size_t i = 0; i < Guard::kMostMessages; ++i) EXPECT_TRUE(many.hear("x", 0));
+  EXPECT_FALSE(many.hear("x", 0));
+}
+
+// From whatever the driver did, the port hears only safe messages from `silence` after its last
+// write on, and every message whole.
+TEST(Guard, KeepsItsPromiseForEveryLengthOfSilence) {
+  for (int pause = 1; pause < 400; ++pause) {
+    Bench bench;
+    std::string heard;
+    int last_go = -1, first_safe = -1;
+    for (int ms = 0; ms < pause + 300; ++ms) {
+      if (ms % 10 == 0 && (ms < 100 || ms >= 100 + pause)) bench.hear("go", ms);
+      const std::string got = bench.tick(ms);
+      heard += got;
+      if (got.find("go") != std::string::npos && ms < 100) last_go = ms;
+      if (got.find("0.") != std::string::npos && first_safe < 0) first_safe = ms;
+    }
+    for (std::size_t i = 0; i < heard.size(); i += 2) {
+      const std::string word = heard.substr(i, 2);
+      ASSERT_TRUE(word == "go" || word == "0.") << "pause " << pause << ": " << heard;
+    }
+    const int next_go = (100 + pause + 9) / 10 * 10;
+    if (next_go - last_go > 100) {
+      ASSERT_EQ(first_safe, last_go + 100) << "pause " << pause;
+    } else {
+      ASSERT_EQ(first_safe, -1) << "pause " << pause;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace usher::runtime
