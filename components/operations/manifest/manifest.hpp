@@ -23,9 +23,9 @@ struct ManifestComponent {
   std::string host;
   Criticality criticality = Criticality::kStop;
   RestartPolicy restart = RestartPolicy::kAlways;
-  int restart_budget = 10;         ///< starts within a minute before the launcher gives up
-  double heartbeat_timeout = 0.2;  ///< [s]
-  std::string group;               ///< components of one group share a process; empty = its own
+  int restart_budget = 10;          ///< starts within a minute before the launcher gives up
+  double heartbeat_timeout = 0.12;  ///< [s] six heartbeats of a critical component
+  std::string group;                ///< components of one group share a process; empty = its own
   std::vector<runtime::ParameterValue> parameters;
   std::string origin;
   std::map<std::string, std::string> origins;  ///< of the keys that are given

@@ -17,6 +17,9 @@ namespace {
 
 constexpr Duration kCriticalHeartbeat = std::chrono::milliseconds(20);
 constexpr Duration kHeartbeat = std::chrono::milliseconds(100);
+/// How long handlers may take; a component that exceeds it again and again is degraded.
+constexpr Duration kCriticalHandler = std::chrono::milliseconds(20);
+constexpr Duration kHandler = std::chrono::milliseconds(100);
 
 /// Ends a handler. Not an std::exception, so that a component that catches those does not go on.
 struct HandlerEnded {};
@@ -194,7 +197,7 @@ class Engine::State {
         platform(its_platform),
         transport(its_transport),
         inbox(std::make_shared<Inbox>(its_platform, kMaxPosted, kMaxWriters)),
-        heart(file.name, file.host),
+        heart(file.name, file.host, file.critical ? kCriticalHandler : kHandler),
         parameters(file.values, file.name) {}
 
   enum class Phase { kConstructing, kRunning, kEnded };
@@ -218,7 +221,7 @@ class Engine::State {
       end();
       return false;
     }
-    heart.handler_took(platform.work_time() - begin);
+    heart.handler_took(platform.work_time() - begin, now, kind, subject);
     return true;
   }
 

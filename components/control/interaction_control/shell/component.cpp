@@ -1,6 +1,7 @@
 #include "control/interaction_control/shell/component.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -16,6 +17,13 @@ constexpr auto kPeriod = milliseconds(50);
 constexpr auto kTargetAge = milliseconds(500);
 constexpr auto kOdometryAge = milliseconds(200);
 constexpr auto kEnableAge = milliseconds(120);
+
+/// Nothing without odometry, or with one that is no pose in the plane.
+std::optional<double> yaw_of(const nav_msgs::msg::Odometry* odometry) {
+  if (odometry == nullptr) return std::nullopt;
+  const auto pose = wire::to_planar(odometry->pose().pose());
+  return pose ? std::optional(pose->yaw) : std::nullopt;
+}
 
 }  // namespace
 
@@ -51,27 +59,25 @@ InteractionControlComponent::InteractionControlComponent(runtime::Host& host)
 }
 
 void InteractionControlComponent::aim(const usher_msgs::msg::FaceTarget& target) {
-  const auto* odom = odom_.fresh();
-  const auto pose = odom != nullptr ? wire::to_planar(odom->pose().pose()) : std::nullopt;
+  const auto yaw = yaw_of(odom_.fresh());
   const bool known = target.mode() <= MODE_SEARCH && std::isfinite(target.bearing());
   if (!known) ++rejected_;
   if (!known || target.mode() == MODE_STAND) {
     core_.stand();
   } else if (target.mode() == MODE_SEARCH) {
     core_.search(target.bearing() >= 0.0);
-  } else if (pose) {
-    core_.face(pose->yaw + target.bearing());
+  } else if (yaw) {
+    core_.face(*yaw + target.bearing());
   } else {
     core_.stand();
   }
 }
 
 void InteractionControlComponent::drive() {
-  const auto* odom = odom_.fresh();
+  const auto yaw = yaw_of(odom_.fresh());
   const auto* enable = enable_.fresh();
-  const auto pose = odom != nullptr ? wire::to_planar(odom->pose().pose()) : std::nullopt;
   geometry::Twist2 twist;
-  if (pose && enable != nullptr && enable->interaction_control()) twist.w = core_.step(pose->yaw);
+  if (yaw && enable != nullptr && enable->interaction_control()) twist.w = core_.step(*yaw);
   auto message = wire::to_message(host_.now(), twist);
   message.header().frame_id(frames::kBaseFootprint);
   command_.publish(message);

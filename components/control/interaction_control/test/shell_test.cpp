@@ -5,6 +5,7 @@
 
 #include "control/interaction_control/shell/component.hpp"
 #include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::interaction_control {
 namespace {
@@ -22,12 +23,16 @@ struct Bench {
     for (int i = 0; i < ms; i += 50) {
       for (int j = 0; j < 2; ++j) {
         usher_msgs::msg::MovementEnable enable;
+        enable.header(wire::header(host.now(), ""));
         enable.interaction_control(enabled);
         host.publish(topics::kMovementEnable, enable);
-        if (odometry) host.publish(topics::kOdom, nav_msgs::msg::Odometry{});
+        nav_msgs::msg::Odometry odom;
+        odom.header(wire::header(host.now(), "odom"));
+        if (odometry) host.publish(topics::kOdom, odom);
         host.run_for(milliseconds(5));
         if (j == 0 && mode >= 0) {
           usher_msgs::msg::FaceTarget target;
+          target.header(wire::header(host.now(), "base_footprint"));
           target.mode(static_cast<std::uint8_t>(mode));
           target.bearing(bearing);
           host.publish(topics::kInteractionTarget, target);

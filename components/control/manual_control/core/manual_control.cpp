@@ -29,7 +29,7 @@ ManualControl::Pad& ManualControl::pad_of(const drive::WriterId& writer, Time no
       pad = std::min_element(pads_.begin(), end,
                              [](const Pad& a, const Pad& b) { return a.heard_at < b.heard_at; });
     }
-    *pad = Pad{writer, now, false, false, {true, true, true, true}};
+    *pad = Pad{writer, now, false, {true, true, true, true}};
   }
   // Whoever was silent for long may have been pressed meanwhile: that is no new press.
   if (now - pad->heard_at > parameters_.patience) {

@@ -73,7 +73,6 @@ class ManualControl {
     drive::WriterId writer{};
     Time heard_at{};
     bool seen_released = false;
-    bool pressed = false;
     std::array<bool, 4> wishes{};  ///< buttons of the four wishes, as last seen
   };
 

@@ -78,7 +78,7 @@ TEST_F(ManifestFile, IsSafeWhereNothingIsSaid) {
   const auto& amcl = manifest->components.front();
   EXPECT_EQ(amcl.criticality, Criticality::kStop);
   EXPECT_EQ(amcl.restart, RestartPolicy::kAlways);
-  EXPECT_EQ(amcl.heartbeat_timeout, 0.2);
+  EXPECT_EQ(amcl.heartbeat_timeout, 0.12);
 }
 
 TEST_F(ManifestFile, NamesTheLineOfEachKey) {
