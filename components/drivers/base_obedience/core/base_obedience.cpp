@@ -1,5 +1,6 @@
 #include "drivers/base_obedience/core/base_obedience.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -69,14 +70,15 @@ void BaseObedience::grant(const Grant& grant, Time now) {
     granted_at_.reset();
     command_.reset();
   } else {
-    granted_at_ = now;
+    granted_at_ = now - grant.age;
+    grant_life_ = std::min(limits_.grant_expiry, grant.valid_for);
   }
 }
 
 Reason BaseObedience::grant_state(Time now) const {
   if (dispute_at_ && now - *dispute_at_ < limits_.grant_expiry) return Reason::kTwoGrantors;
   if (!granted_at_) return Reason::kNoGrant;
-  if (now - *granted_at_ >= limits_.grant_expiry) return Reason::kGrantExpired;
+  if (now - *granted_at_ >= grant_life_) return Reason::kGrantExpired;
   return Reason::kObeyed;
 }
 
@@ -101,7 +103,7 @@ Decision BaseObedience::permitted(const Command& command, Time now) {
     if (!sequence_known_ || command.sequence > last_sequence_) last_sequence_ = command.sequence;
     sequence_known_ = true;
     if (verdict == Reason::kObeyed) {
-      command_ = Heard{now, command.twist};
+      command_ = Heard{now - command.age, command.twist};
     } else {
       command_.reset();
     }

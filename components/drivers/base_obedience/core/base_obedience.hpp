@@ -19,6 +19,8 @@ struct Grant {
   WriterId writer = kNobody;   ///< who may drive; kNobody withdraws the right at once
   std::uint64_t epoch = 0;     ///< grows with every new decision of the supervisor, never shrinks
   WriterId grantor = kNobody;  ///< the writer of the grant itself
+  Time age{};                  ///< {>= 0} since it was written, as far as this host can tell
+  Time valid_for = std::chrono::milliseconds(120);  ///< {>= 0} wish of the grantor; the limit holds
   bool operator==(const Grant&) const = default;
 };
 
@@ -28,6 +30,7 @@ struct Command {
   std::uint64_t epoch = 0;     ///< the epoch of the grant that the writer believes to hold
   std::uint64_t sequence = 0;  ///< grows with every command of one writer
   geometry::Twist2 twist;
+  Time age{};  ///< {>= 0} since it was written, as far as this host can tell
 };
 
 /// Why the base drives, or why it does not.
@@ -59,7 +62,9 @@ struct Decision {
 /// grant, in growing sequence, with finite values within absolute limits, and only for as long as
 /// they are fresh. Anything else is zero.
 ///
-/// - A grant lives for `grant_expiry` from its arrival. Epochs only grow: a grant of an older epoch
+/// - A grant lives for `grant_expiry` from its writing, or shorter where it says so; a command for
+///   `command_expiry` from its writing. Late is as good as never.
+/// - Epochs only grow: a grant of an older epoch
 ///   is ignored, and one of the present epoch may only renew or withdraw. After a withdrawal the
 ///   next grant needs a higher epoch.
 /// - While two grantors speak within one expiry, nobody drives.
@@ -107,6 +112,7 @@ class BaseObedience {
 
   Limits limits_;
   std::uint64_t highest_epoch_ = 0;
+  Time grant_life_{};       ///< of the present grant
   bool withdrawn_ = false;  ///< the present epoch was ended by its grantor
   WriterId holder_ = kNobody;
   std::optional<Time> granted_at_;  ///< arrival of the newest renewal

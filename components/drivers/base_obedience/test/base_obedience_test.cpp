@@ -190,6 +190,36 @@ TEST(BaseObedience, FollowsTheTable) {
   }
 }
 
+TEST(BaseObedience, WhatComesLateIsAsOldAsItIs) {
+  using std::chrono::milliseconds;
+  const WriterId movement{1}, supervisor{2};
+  BaseObedience obedience;
+  obedience.grant({movement, 1, supervisor, milliseconds(100)}, milliseconds(0));
+  EXPECT_EQ(obedience.permitted({movement, 1, 1, {0.5, 0.0}}, milliseconds(10)).reason,
+            Reason::kObeyed);
+  EXPECT_EQ(obedience.permitted(milliseconds(20)).reason, Reason::kGrantExpired);
+  obedience.grant({movement, 1, supervisor}, milliseconds(30));
+  const Decision late =
+      obedience.permitted({movement, 1, 2, {0.5, 0.0}, milliseconds(120)}, milliseconds(40));
+  EXPECT_EQ(late.twist, (geometry::Twist2{}));
+  EXPECT_EQ(obedience.permitted({movement, 1, 3, {0.5, 0.0}, milliseconds(100)}, milliseconds(50))
+                .twist.v,
+            0.5);
+  EXPECT_EQ(obedience.permitted(milliseconds(71)).reason, Reason::kCommandExpired);
+}
+
+TEST(BaseObedience, AGrantMayLiveShorterThanTheLimitNeverLonger) {
+  using std::chrono::milliseconds;
+  const WriterId movement{1}, supervisor{2};
+  for (const auto& [wished, lives] : {std::pair{40, 40}, {500, 120}}) {
+    BaseObedience obedience;
+    obedience.grant({movement, 1, supervisor, {}, milliseconds(wished)}, milliseconds(0));
+    obedience.permitted({movement, 1, 1, {0.5, 0.0}}, milliseconds(0));
+    EXPECT_EQ(obedience.permitted(milliseconds(lives - 1)).reason, Reason::kObeyed) << wished;
+    EXPECT_EQ(obedience.permitted(milliseconds(lives)).reason, Reason::kGrantExpired) << wished;
+  }
+}
+
 TEST(BaseObedience, EveryReasonHasAnOwnText) {
   for (std::size_t i = 0; i < kReasonCount; ++i) {
     EXPECT_NE(text(static_cast<Reason>(i)), "unknown reason");

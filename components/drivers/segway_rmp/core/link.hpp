@@ -46,7 +46,7 @@ class Link {
 
   /// Motors off until reset().
   void emergency_stop() { emergency_ = true; }
-  /// An operator asks to balance again. Has no effect without an emergency.
+  /// An operator asks to balance again: configures the base anew. No effect while it balances.
   void reset();
 
   /// The settings were all sent.

@@ -46,4 +46,9 @@ bool Odometry::update(const SegwayFeedback& feedback) {
   return true;
 }
 
+void Odometry::interrupt() {
+  started_ = false;
+  twist_ = raw_twist_ = {};
+}
+
 }  // namespace usher::segway_rmp

@@ -26,6 +26,10 @@ class Odometry {
   /// is not finite or a leap.
   bool update(const SegwayFeedback& feedback);
 
+  /// The line to the base is lost: the velocities are not known, reported as zero, and the next
+  /// cycle is a new beginning of the way, wherever its counters stand.
+  void interrupt();
+
   const geometry::Pose2& pose() const { return pose_; }          ///< of base_footprint in odom
   const geometry::Twist2& twist() const { return twist_; }       ///< over the floor
   const geometry::Pose2& raw_pose() const { return raw_pose_; }  ///< without the pitch taken out

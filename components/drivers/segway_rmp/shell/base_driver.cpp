@@ -44,17 +44,23 @@ BaseDriver::BaseDriver(runtime::Host& host, Device device)
   grant_ = host.input(
       topics::kDriveGrant, {.max_age = milliseconds(120), .on_loss = "commands zero to the base"},
       [this](const auto& message, const auto& info) {
+        const auto valid_for = std::chrono::duration<double>(
+            std::isfinite(message.valid_for()) ? static_cast<double>(message.valid_for()) : 0.0);
         obedience_.grant(
-            {message.granted() ? message.writer() : drive::kNobody, message.epoch(), info.writer},
+            {message.granted() ? message.writer() : drive::kNobody, message.epoch(), info.writer,
+             host_.now() - info.effective, std::chrono::duration_cast<drive::Time>(valid_for)},
             host_.now().time_since_epoch());
       },
       [this] { cycle(); });
   command_ = host.input(
       topics::kDriveCommand, {.max_age = milliseconds(120), .on_loss = "commands zero to the base"},
       [this](const auto& message, const auto& info) {
-        decision_ = obedience_.permitted(
-            {info.writer, message.epoch(), message.number(), {message.v(), message.w()}},
-            host_.now().time_since_epoch());
+        decision_ = obedience_.permitted({info.writer,
+                                          message.epoch(),
+                                          message.number(),
+                                          {message.v(), message.w()},
+                                          host_.now() - info.effective},
+                                         host_.now().time_since_epoch());
         foreign_ = obedience_.count(drive::Reason::kForeignWriter);
         device_.drive(decision_.twist);
       },
@@ -95,6 +101,7 @@ void BaseDriver::take(const SegwayFeedback& feedback) {
 
 void BaseDriver::disconnected(const std::string& reason) {
   disconnected_ = reason;
+  odometry_.interrupt();
   feedback_ = {};
   feedback_.mode = Mode::kDisconnected;
   feedback_.stamp = host_.now().time_since_epoch();

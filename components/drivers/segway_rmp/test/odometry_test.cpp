@@ -90,6 +90,26 @@ TEST(Odometry, StartsWhereverTheCountersStand) {
   EXPECT_NEAR(odometry.pose().x, 0.01, 1e-9);
 }
 
+TEST(Odometry, AnInterruptedLineIsNoMotion) {
+  Odometry odometry;
+  SegwayFeedback feedback;
+  feedback.left_velocity = feedback.right_velocity = 0.8;
+  for (int i = 0; i <= 100; ++i) {
+    feedback.left_travel = feedback.right_travel = 0.008 * i;
+    ASSERT_TRUE(odometry.update(feedback));
+  }
+  const geometry::Pose2 before = odometry.pose();
+  EXPECT_NEAR(before.x, 0.8, 1e-9);
+  odometry.interrupt();
+  EXPECT_EQ(odometry.twist(), (geometry::Twist2{})) << "nobody knows, so nothing moves";
+  feedback.left_travel = feedback.right_travel = 0.0;  // a reopened line counts from zero
+  ASSERT_TRUE(odometry.update(feedback));
+  EXPECT_EQ(odometry.pose(), before);
+  feedback.left_travel = feedback.right_travel = 0.01;
+  ASSERT_TRUE(odometry.update(feedback));
+  EXPECT_NEAR(odometry.pose().x, 0.81, 1e-9);
+}
+
 TEST(Odometry, RejectsLeapsAndNonsenseAndGoesOn) {
   Odometry odometry;
   TrueBase base;

@@ -381,6 +381,20 @@ TEST(Link, NoticesASilentBase) {
   EXPECT_EQ(bench.link.mode(bench.now()), Mode::kDisconnected);
 }
 
+TEST(Link, ConfiguresABaseAnewThatWasAway) {
+  Bench bench;
+  bench.run(500);
+  const auto settings = bench.base.settings;
+  bench.base_speaks = false;
+  bench.base.settings.clear();  // somebody switches it off and on
+  bench.run(1500);
+  EXPECT_TRUE(bench.base.settings.empty());
+  bench.base_speaks = true;
+  bench.run(500, {0.5, 0.0});
+  EXPECT_EQ(bench.base.settings, settings);
+  EXPECT_EQ(bench.base.speed, 164);
+}
+
 TEST(Link, ReportsTheEmergencyButtonOfTheBase) {
   Bench bench;
   bench.run(500);
