@@ -51,14 +51,16 @@ constexpr Enables enables_of(State state) {
 /// the commands of the last behavior are gone before the next one drives. A loss leads to Inactive
 /// and, when all is well again, back to what was wanted; a fault forgets what was wanted.
 ///
-///   Initialise -> Inactive                        when able
-///   Inactive   -> Manual | Navigation start | Navigation active | Interaction   as wanted
-///   Interaction, Manual -> Inactive               when something else is wanted
-///   Navigation start -> Navigation active         when the visitor is ready
-///   Navigation start, active -> Navigation end    when it is over; -> Inactive for Manual, new
-///   goal Navigation end -> Inactive                    after `dwell` all but Initialise ->
-///   Inactive                when not able all -> Fault -> Inactive                      while a
-///   latched fault is there
+// clang-format off
+///   Initialise                       -> Inactive            when able
+///   Inactive                         -> Manual | Navigation start | Navigation active | Interaction   as wanted
+///   Interaction, Manual              -> Inactive            when something else is wanted
+///   Navigation start                 -> Navigation active   when the visitor is ready
+///   Navigation start, active         -> Navigation end      when it is over; -> Inactive for Manual or a new goal
+///   Navigation end                   -> Inactive            after `dwell`
+///   all but Initialise               -> Inactive            when not able
+///   all                              -> Fault -> Inactive   while a latched fault is there
+// clang-format on
 class Behavior {
  public:
   explicit Behavior(Time dwell) : dwell_(dwell) {}

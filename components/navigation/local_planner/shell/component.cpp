@@ -89,7 +89,7 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
           ? Sampling::kTrajectoryRollout
           : Sampling::kDynamicWindow;
   c.speed_samples = static_cast<int>(
-      p.integer("speed_samples", "-", {2, 64}, c.speed_samples, "Speeds that are tried."));
+      p.integer("speed_samples", "-", {3, 64}, c.speed_samples, "Speeds that are tried."));
   c.turn_samples = static_cast<int>(
       p.integer("turn_samples", "-", {3, 255}, c.turn_samples, "Turn rates that are tried."));
   c.simulated_time = p.number("simulated_time", "s", {0.5, 4}, c.simulated_time,

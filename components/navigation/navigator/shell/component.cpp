@@ -35,13 +35,13 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
   number("settle_time", "s", 0, 10, c.settle_time, "Time to stand at the goal before it counts.");
   number("replan_period", "s", 0, 600, c.replan_period,
          "A better path may have appeared; 0 = never.");
-  number("wait_object", "s", 0, 600, c.wait_object,
+  number("wait_object", "s", 0, 120, c.wait_object,
          "Blocked by a thing: wait before planning round it.");
-  number("wait_person", "s", 0, 600, c.wait_person, "Blocked by somebody, who probably moves.");
-  number("recovery_patience", "s", 0, 600, c.recovery_patience,
+  number("wait_person", "s", 0, 120, c.wait_person, "Blocked by somebody, who probably moves.");
+  number("recovery_patience", "s", 0.1, 120, c.recovery_patience,
          "Still blocked after the new path: recover.");
-  number("stall_time", "s", 1, 600, c.stall_time, "Without getting nearer it counts as blocked.");
-  number("pause_timeout", "s", 1, 3600, c.pause_timeout,
+  number("stall_time", "s", 1, 120, c.stall_time, "Without getting nearer it counts as blocked.");
+  number("pause_timeout", "s", 1, 600, c.pause_timeout,
          "Without localization or inputs before giving up.");
   number("plan_timeout", "s", 0.5, 60, c.plan_timeout, "Without an answer is a failed plan.");
   number("time_base", "s", 1, 36000, c.time_base, "A goal may take this long, and the following.");

@@ -17,7 +17,7 @@ ScanFilterConfig laser_config(runtime::Parameters& p) {
   ScanFilterConfig c;
   c.mount_x = p.number("robot.laser.mount_x", "m", {-2, 2}, "Laser ahead of the axle's middle.");
   c.mount_z = p.number("robot.laser.mount_z", "m", {-1, 3}, "Laser above the axle's middle.");
-  c.bearing_limit = p.number("robot.laser.self_filter", "rad", {0.1, 3.14},
+  c.bearing_limit = p.number("robot.laser.self_filter", "rad", {0.1, 3.1},
                              "Beams beyond, to either side, see the robot itself.");
   c.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
                            "Of the driven wheels; also the axle's height.");
