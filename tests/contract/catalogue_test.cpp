@@ -93,8 +93,9 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 /// components that later work brings or that live in another's folder; a role that has become a
 /// folder must leave this list.
 const std::set<std::string> kRoles{
-    "kinect",   "depth_pipeline",  "people_detector", "p3dx",   "urg04lx", "waypoint_follower",
-    "operator", "segway_emulator", "meeting",         "tablet", "speech"};
+    "kinect",   "depth_pipeline",  "people_detector", "waypoint_follower",
+    "operator", "segway_emulator", "meeting",         "tablet",
+    "speech"};
 
 TEST(Catalogue, WritersAreComponentsOrKnownRoles) {
   std::set<std::string> types;

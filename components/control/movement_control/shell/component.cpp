@@ -77,9 +77,9 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       wake);
   navigation_ = host.input(topics::kCmdVelNavigation,
                            {.max_age = kCommandAge, .on_loss = "commands zero"}, wake);
-  whiskers_ =
-      host.input(topics::kWhiskers,
-                 {.max_age = kSensorAge, .on_loss = "commands zero where whiskers are required"});
+  whiskers_ = host.input(topics::kWhiskers, {.max_age = kSensorAge,
+                                             .on_loss = "commands zero where whiskers are required",
+                                             .optional = true});
   base_ = host.input(topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "commands zero"});
   scan_ = host.input(
       topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "drives as in a confined place"},

@@ -80,6 +80,9 @@ void Laser::scan(const Scene& scene, std::span<const Mover> movers,
   const std::uint32_t mixed_below = threshold(config_.mixed_share);
   const float step = static_cast<float>(config_.step);
   const float steps_per_metre = 1.0f / step;
+  const float growth = config_.statistical_error > 0.0
+                           ? static_cast<float>(config_.relative_error / config_.statistical_error)
+                           : 0.0F;
   constexpr float kBinsPerMetre = 1.0f / static_cast<float>(kSystematicStep);
   for (std::size_t i = 0; i < count; ++i) {
     float range = hits_.range[i];
@@ -92,7 +95,7 @@ void Laser::scan(const Scene& scene, std::span<const Mover> movers,
       range = mixed(i);
     }
     range += systematic_[static_cast<std::size_t>(static_cast<int>(range * kBinsPerMetre))] +
-             noise_[bits_[i] & kNoiseMask];
+             noise_[bits_[i] & kNoiseMask] * std::max(1.0F, range * growth);
     const int whole = static_cast<int>(range * steps_per_metre + 0.5f);
     ranges[i] = static_cast<float>(std::max(whole, 1)) * step;
   }

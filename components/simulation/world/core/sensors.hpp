@@ -35,6 +35,7 @@ struct LaserConfig {
   int count = 541;                           ///< beams
   double range_max = 20.0;                   ///< [m] beyond: no return
   double statistical_error = 0.012;          ///< [m] standard deviation
+  double relative_error = 0.0;               ///< the same as share of the range, where that is more
   double systematic_error = 0.030;           ///< [m] bound; drawn once for the device
   double step = 0.001;                       ///< [m] resolution of a range
   double glass_share = 0.1;   ///< of the beams that meet glass at nearly a right angle return

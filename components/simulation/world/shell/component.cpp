@@ -17,7 +17,6 @@ using namespace usher_sim_msgs::msg;
 
 constexpr auto kStepTime = milliseconds(10);
 static_assert(kStep == 0.01);
-constexpr int kScanEvery = 2;   // steps: 50 Hz
 constexpr int kBoardEvery = 2;  // 50 Hz
 constexpr int kTruthEvery = 2;  // 50 Hz
 /// The firmware of the base holds a command for so long, then it stops.
@@ -25,8 +24,27 @@ constexpr auto kCommandHold = milliseconds(400);
 /// More than this in one go would be a jump for the robot; the rest is time that the simulation
 /// loses.
 constexpr std::uint64_t kMostStepsAtOnce = 5;
-constexpr float kRangeMin = 0.5F;  // [m] of the LMS100
-constexpr double kBehind = 0.1;    // [s] of lag from which the simulation says that it is behind
+constexpr double kBehind = 0.1;  // [s] of lag from which the simulation says that it is behind
+
+/// The defaults are MARVIN's SICK LMS100.
+void read_laser(runtime::Parameters& p, LaserConfig& laser) {
+  laser.angle_min = p.number("robot.laser.angle_min", "rad", {-3.2, 0}, laser.angle_min,
+                             "Bearing of the first beam.");
+  laser.increment =
+      p.number("robot.laser.increment", "rad", {0.001, 0.2}, laser.increment, "From beam to beam.");
+  laser.count = static_cast<int>(
+      p.integer("robot.laser.beams", "-", {2, 10000}, laser.count, "Beams of a turn."));
+  laser.range_max = p.number("robot.laser.range_max", "m", {0.5, 100}, laser.range_max,
+                             "Farther things give no echo.");
+  laser.statistical_error = p.number("robot.laser.statistical_error", "m", {0, 0.2},
+                                     laser.statistical_error, "Standard deviation of a range.");
+  laser.relative_error = p.number("robot.laser.relative_error", "-", {0, 0.1}, laser.relative_error,
+                                  "The same as share of the range, where that is more.");
+  laser.systematic_error = p.number("robot.laser.systematic_error", "m", {0, 0.2},
+                                    laser.systematic_error, "Bound of an error that stays.");
+  laser.self_angle = p.number("robot.laser.self_filter", "rad", {0.1, 3.2}, laser.self_angle,
+                              "Beams beyond, to either side, see the robot itself.");
+}
 
 }  // namespace
 
@@ -58,6 +76,17 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
       p.number("robot.laser.mount_x", "m", {-2, 2}, "Laser ahead of the axle's middle.");
   robot.lasers.front().mount.z =
       p.number("robot.laser.mount_z", "m", {-1, 3}, "Laser above the axle's middle.");
+  read_laser(p, robot.lasers.front());
+  robot.kind = p.choice("robot.base", {"segway", "pioneer"}, "segway",
+                        "What the simulated robot drives on.") == "pioneer"
+                   ? RobotConfig::Kind::kPioneer
+                   : RobotConfig::Kind::kSegway;
+  robot.sonar.count = static_cast<int>(p.integer("robot.ultrasonic.count", "-", {1, 16}, 5,
+                                                 "Sensors on the ring, the middle looks ahead."));
+  robot.sonar.range_max =
+      p.number("robot.ultrasonic.range_max", "m", {0.5, 10}, 6.0, "Farther things are not heard.");
+  robot.height = p.number("robot.height", "m", {0.1, 3}, robot.height,
+                          "Of the whole robot: what is higher does not touch it.");
   robot.sonar.ring_radius = p.number("robot.ultrasonic.mount_x", "m", {-2, 2},
                                      "Ring of the ultrasonic sensors ahead of the axle's middle.");
   robot.sonar.z = p.number("robot.ultrasonic.mount_z", "m", {-1, 3},
@@ -105,6 +134,10 @@ WorldComponent::WorldComponent(runtime::Host& host)
       world_(make(host)),
       rejected_(host.health().counter("commands: rejected")),
       late_steps_(host.health().counter("steps: late")) {
+  auto& p = host.parameters();
+  range_min_ = p.number("robot.laser.range_min", "m", {0, 5}, 0.5, "Nearer ranges are no ranges.");
+  scan_every_ = std::lround(
+      p.number("robot.laser.period", "s", {0.01, 1}, 0.02, "Of a turn of the laser.") / kStep);
   command_ = host.input(
       topics::kSimBaseCommand,
       {.max_age = kCommandHold, .on_loss = "the base stops, as its firmware does"},
@@ -157,7 +190,7 @@ void WorldComponent::advance(std::uint64_t skipped) {
   for (std::uint64_t i = 0; i < due; ++i) {
     world_->step();
     ++steps_;
-    scan = scan || steps_ % kScanEvery == 0;
+    scan = scan || steps_ % scan_every_ == 0;
     board = board || steps_ % kBoardEvery == 0;
     truth = truth || steps_ % kTruthEvery == 0;
   }
@@ -195,8 +228,8 @@ void WorldComponent::publish_scan() {
   scan_.angle_increment(static_cast<float>(laser.increment));
   scan_.angle_max(static_cast<float>(
       laser.angle_min + laser.increment * (static_cast<double>(scan_.ranges().size()) - 1.0)));
-  scan_.scan_time(0.02F);
-  scan_.range_min(kRangeMin);
+  scan_.scan_time(static_cast<float>(static_cast<double>(scan_every_) * kStep));
+  scan_.range_min(static_cast<float>(range_min_));
   scan_.range_max(static_cast<float>(laser.range_max));
   scans_.publish(scan_);
 }

@@ -30,6 +30,8 @@ class WorldComponent final : public runtime::Component {
   std::unique_ptr<World> world_;  ///< null while the component is only described
   runtime::Time start_{};
   std::int64_t steps_ = 0;
+  std::int64_t scan_every_ = 2;  ///< [steps]
+  double range_min_ = 0.5;       ///< [m]
   sensor_msgs::msg::LaserScan scan_;
   usher_sim_msgs::msg::SensorBoardReading board_;
   std::uint64_t& rejected_;

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/p3dx/core/device.hpp"
+#include "drivers/p3dx/core/information.hpp"
+#include "drivers/p3dx/core/packet.hpp"
+
+namespace usher::p3dx {
+
+/// Turns information packets into the way of the robot: unwraps positions, keeps sonar readings.
+class Tracker {
+ public:
+  struct Parameters {
+    double track = 0.357;         ///< [m] {> 0} effective: half wheel difference x 0.0056 rad/mm
+    double full_battery = 12.8;   ///< [V]
+    double empty_battery = 11.0;  ///< [V]
+    double sonar_memory = 0.5;    ///< [s] a sonar that fires in turn is heard every 0.32 s
+    double longest_step = 0.5;    ///< [m] between two packets; more is a reset of the origin
+  };
+  explicit Tracker(const Parameters& parameters);
+  void reset();
+  Feedback take(const Information& information, Time now);
+
+ private:
+  void move(const Information& information);
+  Parameters parameters_;
+  std::optional<Information> last_;
+  geometry::Pose2 pose_;
+  std::array<float, kSonarSlots> sonar_{};
+  std::array<Time, kSonarSlots> heard_{};
+};
+
+/// The dialogue with the base's controller over its serial line (ARCOS): three handshakes, open,
+/// motors on, sonars on; then velocities, at least one packet a second, or the controller's
+/// watchdog stops the wheels. There are no acknowledgements: what must hold is seen in the base's
+/// reports and asked again.
+///
+///   closed -> SYNC0 -> SYNC1 -> SYNC2 -> running (waits for the first report, then drives)
+class Link {
+ public:
+  struct Parameters {
+    Tracker::Parameters tracker;
+    int acceleration = 600;                          ///< [mm/s^2]
+    int turn_acceleration = 140;                     ///< [deg/s^2]
+    int max_velocity = 1200;                         ///< [mm/s]
+    int max_turn_rate = 300;                         ///< [deg/s]
+    Time patience = std::chrono::milliseconds(500);  ///< for an answer to a handshake
+    Time repeat =
+        std::chrono::milliseconds(40);    ///< of velocities; a packet takes 10 ms at 9600 baud
+    Time lost = std::chrono::seconds(1);  ///< without a report
+  };
+
+  explicit Link(const Parameters& parameters);
+
+  void opened(Time now);
+  void closed();
+
+  /// Bytes arrived; calls `on_feedback(const Feedback&)` for each report.
+  template <class OnFeedback>
+  void received(std::span<const std::uint8_t> bytes, Time now, OnFeedback&& on_feedback) {
+    decoder_.feed(bytes, [&](std::span<const std::uint8_t> packet) {
+      if (const auto feedback = take(packet, now)) on_feedback(*feedback);
+    });
+  }
+
+  /// What to send now, valid until the next call; call it at 25 Hz or more. Zero velocity goes out
+  /// before the motors are switched on: the controller would resume what it was told last.
+  std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
+
+  /// Stops at once and stays stopped until reset().
+  void emergency_stop() { emergency_ = true; }
+  void reset() { emergency_ = false; }
+
+  Mode mode(Time now) const;
+  /// Why it does not drive; empty when all is well.
+  const std::string& reason() const { return reason_; }
+  const Decoder& decoder() const { return decoder_; }
+
+ private:
+  enum class State : std::uint8_t { kClosed, kSync0, kSync1, kSync2, kRunning };
+
+  std::optional<Feedback> take(std::span<const std::uint8_t> packet, Time now);
+  void handshake(std::span<const std::uint8_t> packet, Time now);
+  void send(const Frame& frame);
+  void send_sync(Time now);
+  void send_setup();
+  void send_velocity(const geometry::Twist2& wanted, Time now);
+
+  Parameters parameters_;
+  Decoder decoder_;
+  Tracker tracker_;
+  State state_ = State::kClosed;
+  Time asked_{};    ///< the last handshake
+  Time told_{};     ///< the last velocity
+  Time enabled_{};  ///< when the motors were last asked on
+  std::optional<Time> reported_;
+  Mode reported_mode_ = Mode::kStandby;
+  bool emergency_ = false;
+  std::string reason_ = "not connected";
+  std::vector<std::uint8_t> output_, sent_;
+};
+
+}  // namespace usher::p3dx
