@@ -166,7 +166,8 @@ DdsHost::~DdsHost() = default;
 
 Result<std::unique_ptr<DdsHost>> DdsHost::create(ParameterFile file, const StopFlag& stop) {
   const MonotonicClock clock(file.clock_anchor);
-  auto transport = DdsTransport::create({file.name, file.host, file.domain, file.peers}, clock);
+  auto transport = DdsTransport::create(
+      {file.name, file.host, file.domain, file.peers, file.discovery_server, file.identity}, clock);
   if (!transport) return Error{transport.error()};
   return std::unique_ptr<DdsHost>(new DdsHost(std::make_unique<Implementation>(
       std::move(file), clock, std::move(transport).value(), stop)));

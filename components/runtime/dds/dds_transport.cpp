@@ -154,8 +154,9 @@ DdsTransport::~DdsTransport() = default;
 
 Result<std::unique_ptr<DdsTransport>> DdsTransport::create(const Options& options,
                                                            const MonotonicClock& clock) {
-  auto participant =
-      Participant::create({options.name, options.host, options.domain, options.peers}, clock);
+  auto participant = Participant::create({options.name, options.host, options.domain, options.peers,
+                                          options.discovery_server, options.identity},
+                                         clock);
   if (!participant) return Error{participant.error()};
   auto implementation = std::make_unique<Implementation>(
       Implementation{clock, clock.now(), {}, {}, std::move(participant).value()});

@@ -21,6 +21,8 @@ class DdsTransport final : public Transport {
     std::string host;
     std::uint32_t domain = 0;
     std::vector<std::string> peers;  ///< numeric IPv4 addresses besides multicast
+    std::string discovery_server;    ///< "10.0.0.1:11811"; empty = everybody announces to everybody
+    std::string identity;            ///< folder of `usher keys`; empty = without security
   };
   /// Fails when the domain is not 0..232, a peer is no address, or the machine has no network at
   /// all.

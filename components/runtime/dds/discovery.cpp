@@ -31,6 +31,15 @@ std::optional<Identity> Identity::parse(std::string_view user_data) {
   return identity;
 }
 
+std::string to_string(const Refusal& refusal) {
+  const std::string from =
+      refusal.address.empty() ? " from an unknown address" : " from " + refusal.address;
+  if (!refusal.name.empty())
+    return "refused: participant '" + refusal.name + "'" + from + " has no identity of this robot";
+  return "refused: " + std::to_string(refusal.messages) + " messages" + from +
+         " that are malformed or not signed by this robot";
+}
+
 DiscoveryBook::DiscoveryBook(std::string host, std::function<Time()> clock)
     : host_(std::move(host)), clock_(std::move(clock)) {}
 
@@ -40,9 +49,10 @@ DiscoveryBook::Prefix DiscoveryBook::prefix_of(const Guid& guid) {
   return prefix;
 }
 
-void DiscoveryBook::participant_seen(const Guid& guid, const Identity& identity) {
+void DiscoveryBook::participant_seen(const Guid& guid, const Identity& identity,
+                                     std::string address) {
   const std::scoped_lock event_lock(event_mutex_);
-  ParticipantInfo info{guid, identity, clock_()};
+  ParticipantInfo info{guid, identity, std::move(address), clock_()};
   {
     const std::scoped_lock lock(mutex_);
     if (!participants_.emplace(prefix_of(guid), info).second) return;
@@ -98,6 +108,36 @@ void DiscoveryBook::endpoint_gone(const Guid& guid) {
     endpoints_.erase(found);
   }
   notify(endpoint, false);
+}
+
+void DiscoveryBook::participant_refused(const Guid& guid) {
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = participants_.find(prefix_of(guid));
+    if (found == participants_.end()) return;  // told before, or it has left
+    refusal(found->second.identity.name, found->second.address);
+  }
+  participant_gone(guid);
+}
+
+void DiscoveryBook::message_refused(const std::string& address) {
+  const std::scoped_lock lock(mutex_);
+  ++refusal({}, address).messages;
+}
+
+/// Under mutex_.
+Refusal& DiscoveryBook::refusal(const std::string& name, const std::string& address) {
+  const auto found = std::ranges::find_if(refusals_, [&](const Refusal& known) {
+    return known.name == name && known.address == address;
+  });
+  if (found != refusals_.end()) return *found;
+  if (refusals_.size() == kMaxRefusals) return refusals_.back();
+  return refusals_.emplace_back(Refusal{name, address, 0, clock_()});
+}
+
+std::vector<Refusal> DiscoveryBook::refusals() const {
+  const std::scoped_lock lock(mutex_);
+  return refusals_;
 }
 
 void DiscoveryBook::notify(const EndpointInfo& endpoint, bool alive) const {

@@ -29,10 +29,24 @@ struct Identity {
 
 /// A participant of the domain that is alive.
 struct ParticipantInfo {
-  Guid guid{};        ///< 12 bytes of prefix, then the participant's entity
-  Identity identity;  ///< of a foreign one only the name, as it announces it
+  Guid guid{};          ///< 12 bytes of prefix, then the participant's entity
+  Identity identity;    ///< of a foreign one only the name, as it announces it
+  std::string address;  ///< where it says that it listens; empty = not known
   Time since{};
 };
+
+/// Somebody who was kept out.
+struct Refusal {
+  std::string name;     ///< that a participant without valid identity announces; empty = only
+                        ///< messages were seen
+  std::string address;  ///< IPv4
+  std::uint64_t messages = 0;  ///< dropped: malformed or, with security, not signed by anybody of
+                               ///< this robot
+  Time since{};
+};
+
+/// "refused: intruder at 10.0.0.9 has no identity of this robot", for an operator.
+std::string to_string(const Refusal& refusal);
 
 /// A reader or writer of the domain that is alive.
 struct EndpointInfo {
@@ -56,17 +70,25 @@ class DiscoveryBook {
   /// `host`: where this process runs, as in the manifest.
   DiscoveryBook(std::string host, std::function<Time()> clock);
 
-  void participant_seen(const Guid& guid, const Identity& identity);
+  void participant_seen(const Guid& guid, const Identity& identity, std::string address = {});
   /// With everything that it owned.
   void participant_gone(const Guid& guid);
   void endpoint_seen(EndpointInfo endpoint);
   void endpoint_gone(const Guid& guid);
+  /// A participant that could not prove who it is: no longer listed, but among the refusals.
+  void participant_refused(const Guid& guid);
+  /// A message from there was dropped.
+  void message_refused(const std::string& address);
 
   /// First reports what is already there. A null event is left out.
   void observe(ParticipantEvent participant, EndpointEvent endpoint);
 
   std::vector<ParticipantInfo> participants() const;
   std::vector<EndpointInfo> endpoints() const;
+  /// One for each name and address, at most kMaxRefusals; what comes after those is counted in the
+  /// last one.
+  std::vector<Refusal> refusals() const;
+  static constexpr std::size_t kMaxRefusals = 64;
   /// A writer that has just been matched may not be in the book yet: then only its guid is known.
   WriterInfo writer(const Guid& guid) const;
   /// Whether the writer's stamps are on this host's clock: its participant names the same host. A
@@ -78,6 +100,7 @@ class DiscoveryBook {
   using Prefix = std::array<std::uint8_t, 12>;
   static Prefix prefix_of(const Guid& guid);
   void notify(const EndpointInfo& endpoint, bool alive) const;
+  Refusal& refusal(const std::string& name, const std::string& address);
 
   const std::string host_;
   const std::function<Time()> clock_;
@@ -87,6 +110,7 @@ class DiscoveryBook {
   mutable std::mutex mutex_;  // the maps; never held while somebody is called
   std::map<Prefix, ParticipantInfo> participants_;
   std::map<Guid, EndpointInfo> endpoints_;
+  std::vector<Refusal> refusals_;
 };
 
 }  // namespace usher::runtime

@@ -190,7 +190,8 @@ Result<std::unique_ptr<Observer>> Observer::create(const Options& options) {
     ::gethostname(name.data(), name.size() - 1);
     host = name.data();
   }
-  auto participant = Participant::create({options.name, host, options.domain, options.peers},
+  auto participant = Participant::create({options.name, host, options.domain, options.peers,
+                                          options.discovery_server, options.identity},
                                          implementation->clock);
   if (!participant) return Error{participant.error()};
   Implementation& state = *implementation;
@@ -211,6 +212,9 @@ std::vector<ParticipantInfo> Observer::participants() const {
 }
 std::vector<EndpointInfo> Observer::endpoints() const {
   return implementation_->participant->book().endpoints();
+}
+std::vector<Refusal> Observer::refusals() const {
+  return implementation_->participant->book().refusals();
 }
 
 void Observer::watch(DiscoveryBook::ParticipantEvent participant,

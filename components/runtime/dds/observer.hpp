@@ -28,6 +28,8 @@ class Observer {
     std::uint32_t domain = 0;
     std::vector<std::string> peers;
     std::int64_t clock_anchor = 0;  ///< [ns] as the launcher's; 0 = wall clock now
+    std::string discovery_server;   ///< "10.0.0.1:11811"; empty = everybody announces to everybody
+    std::string identity;           ///< folder of `usher keys`; empty = without security
   };
   /// A sample as it came, of whatever type. The bytes are gone when the callback returns.
   struct RawSample {
@@ -71,6 +73,8 @@ class Observer {
   /// This observer and its endpoints are listed too.
   std::vector<ParticipantInfo> participants() const;
   std::vector<EndpointInfo> endpoints() const;
+  /// Who was kept out, and whose messages were dropped.
+  std::vector<Refusal> refusals() const;
   /// First what is already there, then every change. Callbacks may ask the observer but not
   /// subscribe.
   void watch(DiscoveryBook::ParticipantEvent participant, DiscoveryBook::EndpointEvent endpoint);

@@ -10,10 +10,15 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <sstream>
 
 #include "runtime/dds/bytes_type.hpp"
+#include "runtime/dds/security.hpp"
 #include "runtime/dds/socket_buffers.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -44,12 +49,28 @@ Duration_t milliseconds(std::uint32_t count) {
   return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
 }
 
-/// Errors of the library on standard error, where they do not mix with what a program prints.
+/// Errors of the library on standard error, where they do not mix with what a program prints. Who
+/// floods the network with nonsense shall not fill the disk: so many lines in a while, the rest is
+/// counted.
 class ErrorLog : public dds::LogConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - window_ > kWindow) {
+      if (lines_ > kLines)
+        std::fprintf(stderr, "fast dds: %zu more messages like these\n", lines_ - kLines);
+      window_ = now;
+      lines_ = 0;
+    }
+    if (++lines_ > kLines) return;
     std::fprintf(stderr, "fast dds: %s: %s\n", entry.context.category, entry.message.c_str());
   }
+
+ private:
+  static constexpr std::chrono::seconds kWindow{10};
+  static constexpr std::size_t kLines = 20;
+  std::chrono::steady_clock::time_point window_{};
+  std::size_t lines_ = 0;
 };
 
 /// The library reads profiles and discovery settings from the environment and the working
@@ -90,7 +111,48 @@ Status add_peers(const ParticipantOptions& options, dds::DomainParticipantQos& q
   return {};
 }
 
-Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& options) {
+/// The one server of a domain, by a prefix that all its clients know.
+constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
+
+/// With a server, everybody tells it alone who is there, and hears everything from it: the
+/// supervisor must see each writer of a command, also those that match none of its readers.
+Status use_server(const ParticipantOptions& options, dds::DomainParticipantQos& qos) {
+  if (options.discovery_server.empty()) return {};
+  const auto colon = options.discovery_server.rfind(':');
+  const std::string address = options.discovery_server.substr(0, colon);
+  std::uint16_t port = 0;
+  const char* end = options.discovery_server.data() + options.discovery_server.size();
+  const bool numeric =
+      colon != std::string::npos &&
+      std::from_chars(options.discovery_server.data() + colon + 1, end, port).ptr == end;
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  if (!numeric || port == 0 || !rtps::IPLocator::isIPv4(address) ||
+      !rtps::IPLocator::setIPv4(locator, address)) {
+    return Error{"discovery server of " + options.name +
+                 ": expected ADDRESS:PORT like 10.0.0.1:11811, found '" + options.discovery_server +
+                 "'"};
+  }
+  locator.port = port;
+  auto& builtin = qos.wire_protocol().builtin;
+  if (options.serves_discovery) {
+    qos.wire_protocol().prefix = {};
+    std::istringstream(kServerPrefix) >> qos.wire_protocol().prefix;
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SERVER;
+    builtin.metatrafficUnicastLocatorList.push_back(locator);
+    return {};
+  }
+  rtps::RemoteServerAttributes server;
+  server.ReadguidPrefix(kServerPrefix);
+  server.metatrafficUnicastLocatorList.push_back(locator);
+  builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  builtin.discovery_config.discoveryServer_client_syncperiod = milliseconds(200);
+  return {};
+}
+
+Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& options,
+                                                  std::function<void(const std::string&)> refused) {
   dds::DomainParticipantQos qos;
   qos.name(options.name.c_str());
   const std::string user_data = Identity{options.name, options.host, USHER_IDL_DIGEST}.user_data();
@@ -101,7 +163,11 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = kPeerRange;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  const bool secure = !options.identity.empty();
+  if (secure) {
+    if (auto status = apply_identity(options.identity, qos); !status) return Error{status.error()};
+  }
+  qos.transport().user_transports.push_back(guarded_transport(udp, secure, std::move(refused)));
   qos.transport().send_socket_buffer_size = kSocketBuffer;
   qos.transport().listen_socket_buffer_size = kSocketBuffer;
 
@@ -114,7 +180,16 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   discovery.initial_announcements.count = 10;
   discovery.initial_announcements.period = milliseconds(20);
   if (const Status status = add_peers(options, qos); !status) return Error{status.error()};
+  if (const Status status = use_server(options, qos); !status) return Error{status.error()};
   return qos;
+}
+
+/// Where a participant says that it listens.
+std::string address_of(const rtps::ParticipantProxyData& data) {
+  for (const auto& locators : {data.default_locators, data.metatraffic_locators}) {
+    if (!locators.unicast.empty()) return rtps::IPLocator::toIPv4string(*locators.unicast.begin());
+  }
+  return {};
 }
 
 template <class ProxyData>
@@ -153,8 +228,13 @@ class Participant::Listener : public dds::DomainParticipantListener {
       const auto& data = event.info.m_userData;
       auto identity = Identity::parse({reinterpret_cast<const char*>(data.data()), data.size()});
       if (!identity) identity = Identity{event.info.m_participantName.to_string(), {}, 0};
-      book_.participant_seen(guid, *identity);
+      book_.participant_seen(guid, *identity, address_of(event.info));
     }
+  }
+  void onParticipantAuthentication(dds::DomainParticipant*,
+                                   rtps::ParticipantAuthenticationInfo&& event) override {
+    if (event.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+      book_.participant_refused(to_guid(event.guid));
   }
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& event) override {
     if (event.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
@@ -178,7 +258,8 @@ class Participant::Listener : public dds::DomainParticipantListener {
 
 Participant::Participant(const ParticipantOptions& options, const MonotonicClock& clock)
     : book_(options.host, [clock] { return clock.now(); }),
-      listener_(std::make_unique<Listener>(book_)) {}
+      listener_(std::make_unique<Listener>(book_)),
+      identity_(options.identity) {}
 
 Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                          const MonotonicClock& clock) {
@@ -186,16 +267,22 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   if (options.domain > 232)
     return Error{"a DDS domain is 0..232, found " + std::to_string(options.domain)};
   isolate_library();
-  const auto qos = participant_qos(options);
-  if (!qos) return Error{qos.error()};
   std::unique_ptr<Participant> self(new Participant(options, clock));
+  const auto qos = participant_qos(options, [book = &self->book_](const std::string& address) {
+    book->message_refused(address);
+  });
+  if (!qos) return Error{qos.error()};
   auto* factory = dds::DomainParticipantFactory::get_instance();
   self->participant_ = factory->create_participant(options.domain, *qos, self->listener_.get(),
                                                    dds::StatusMask::none());
   if (self->participant_ == nullptr) {
     return Error{"no participant '" + options.name + "' in DDS domain " +
                  std::to_string(options.domain) +
-                 " (it needs a network interface and free UDP ports)"};
+                 (options.identity.empty()
+                      ? " (it needs a network interface and free UDP ports)"
+                      : " with the identity " + options.identity +
+                            " (it needs a network interface, free UDP ports, and keys that are "
+                            "valid in this domain)")};
   }
   self->guid_ = to_guid(self->participant_->guid());
   self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});
@@ -226,6 +313,12 @@ Result<dds::Topic*> Participant::topic(const std::string& name, const std::strin
   return topics_.emplace(name, created).first->second;
 }
 
+Error Participant::refusal(const std::string& what, const std::string& topic_name) const {
+  if (identity_.empty()) return Error{"cannot " + what + " " + topic_name};
+  return Error{"no permission to " + what + " " + topic_name + " (" + identity_ +
+               "/permissions.smime)"};
+}
+
 Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_name,
                                                     const std::string& type, const Qos& qos,
                                                     dds::DataWriterListener* listener) {
@@ -245,7 +338,7 @@ Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_nam
   writer.reliable_writer_qos().times.heartbeatPeriod = milliseconds(100);
   writer.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
   dds::DataWriter* created = publisher_->create_datawriter(*made, writer, listener);
-  if (created == nullptr) return Error{"no writer of " + topic_name + " could be made"};
+  if (created == nullptr) return refusal("write", topic_name);
   return created;
 }
 
@@ -266,7 +359,7 @@ Result<dds::DataReader*> Participant::create_reader(const std::string& topic_nam
   reader.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
   reader.reliable_reader_qos().times.initialAcknackDelay = milliseconds(10);
   dds::DataReader* created = subscriber_->create_datareader(*made, reader, listener);
-  if (created == nullptr) return Error{"no reader of " + topic_name + " could be made"};
+  if (created == nullptr) return refusal("read", topic_name);
   return created;
 }
 

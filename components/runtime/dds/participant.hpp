@@ -24,6 +24,9 @@ struct ParticipantOptions {
   std::string host;
   std::uint32_t domain = 0;
   std::vector<std::string> peers;  ///< numeric IPv4 addresses besides multicast
+  std::string discovery_server;    ///< "10.0.0.1:11811"; empty = everybody announces to everybody
+  std::string identity;            ///< folder of `usher keys`; empty = without security
+  bool serves_discovery = false;   ///< this one is the server, at that address
 };
 
 /// A DomainParticipant with the settings that hold everywhere (README.md says why), its discovery
@@ -54,9 +57,11 @@ class Participant {
   class Listener;
   Participant(const ParticipantOptions& options, const MonotonicClock& clock);
   Result<eprosima::fastdds::dds::Topic*> topic(const std::string& name, const std::string& type);
+  Error refusal(const std::string& what, const std::string& topic_name) const;
 
   DiscoveryBook book_;
   std::unique_ptr<Listener> listener_;
+  std::string identity_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

@@ -158,6 +158,10 @@ ParameterFile read_file(const Document& document, const YAML::Node& root) {
                       document.fail(node, "peers must be a list of addresses");
                     for (const auto& peer : node)
                       file.peers.push_back(document.scalar(peer, "a peer"));
+                  } else if (key == "discovery_server") {
+                    file.discovery_server = document.scalar(node, key);
+                  } else if (key == "identity") {
+                    file.identity = document.scalar(node, key);
                   } else if (key == "parameters") {
                     if (node.IsNull()) return;
                     if (!node.IsMap()) document.fail(node, "parameters must be a mapping");

@@ -27,6 +27,8 @@ struct ParameterFile {
   std::string run_directory;       ///< empty = nothing is kept over restarts
   std::int64_t clock_anchor = 0;   ///< [ns] added to CLOCK_MONOTONIC gives stamps
   std::vector<std::string> peers;  ///< addresses of further initial peers
+  std::string discovery_server;    ///< "10.0.0.1:11811"; empty = everybody announces to everybody
+  std::string identity;            ///< folder with the keys of this one; empty = without security
   std::vector<ParameterValue> values;
 };
 

@@ -121,6 +121,28 @@ TEST_F(Book, JudgesTheHostByNameAndElseByNumber) {
   EXPECT_FALSE(book.same_host(guid(5, 3, 2), own));
 }
 
+TEST_F(Book, ListsWhoWasKeptOutAndNotAmongThoseThatTakePart) {
+  observe();
+  book.participant_seen(guid(7, 0xc1), {"intruder", "", 0}, "10.0.0.9");
+  book.participant_refused(guid(7, 0xc1));
+  book.participant_refused(guid(7, 0xc1));  // asks again and again
+  book.message_refused("10.0.0.9");
+  book.message_refused("10.0.0.9");
+  EXPECT_THAT(events, ElementsAre("+intruder", "-intruder"));
+  EXPECT_THAT(book.participants(), IsEmpty());
+  const auto refusals = book.refusals();
+  ASSERT_EQ(refusals.size(), 2U);
+  EXPECT_EQ(refusals[0].name, "intruder");
+  EXPECT_EQ(refusals[0].address, "10.0.0.9");
+  EXPECT_EQ(refusals[1].name, "");
+  EXPECT_EQ(refusals[1].messages, 2U);
+}
+
+TEST_F(Book, RemembersABoundedNumberOfRefusals) {
+  for (int i = 0; i < 1000; ++i) book.message_refused("10.0.0." + std::to_string(i));
+  EXPECT_EQ(book.refusals().size(), DiscoveryBook::kMaxRefusals);
+}
+
 TEST_F(Book, MayBeAskedFromItsEvents) {
   std::size_t seen = 99;
   book.observe({}, [&](const EndpointInfo&, bool) { seen = book.endpoints().size(); });

@@ -1,0 +1,127 @@
+#include "runtime/dds/security.hpp"
+
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "runtime/dds/rtps_message.hpp"
+
+namespace usher::runtime {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::ChainingTransport;
+using eprosima::fastdds::rtps::ChainingTransportDescriptor;
+using eprosima::fastdds::rtps::TransportDescriptorInterface;
+using eprosima::fastdds::rtps::TransportInterface;
+using eprosima::fastdds::rtps::TransportReceiverInterface;
+
+class GuardedTransport final : public ChainingTransport {
+ public:
+  GuardedTransport(const ChainingTransportDescriptor& descriptor, bool only_signed,
+                   std::function<void(const std::string&)> refused)
+      : ChainingTransport(descriptor), only_signed_(only_signed), refused_(std::move(refused)) {}
+
+  TransportDescriptorInterface* get_configuration() override {
+    return low_level_transport_->get_configuration();
+  }
+
+  bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    return below->send(bytes, size, begin, end, timeout);
+  }
+  void receive(TransportReceiverInterface* next, const rtps::octet* bytes, std::uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
+    const MessageKind kind = classify({bytes, size});
+    const bool welcome =
+        only_signed_ ? kind <= MessageKind::kHandshake : kind != MessageKind::kMalformed;
+    if (!welcome) {
+      if (kind != MessageKind::kFarewell) refused_(rtps::IPLocator::toIPv4string(remote));
+      return;
+    }
+    next->OnDataReceived(bytes, size, local, remote);
+  }
+
+ private:
+  const bool only_signed_;
+  const std::function<void(const std::string&)> refused_;
+};
+
+class GuardedTransportDescriptor final : public ChainingTransportDescriptor {
+ public:
+  GuardedTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below, bool only_signed,
+                             std::function<void(const std::string&)> refused)
+      : ChainingTransportDescriptor(std::move(below)),
+        only_signed_(only_signed),
+        refused_(std::move(refused)) {}
+  TransportInterface* create_transport() const override {
+    return new GuardedTransport(*this, only_signed_, refused_);  // NOLINT: the library takes it
+  }
+
+ private:
+  const bool only_signed_;
+  const std::function<void(const std::string&)> refused_;
+};
+
+/// The library says nothing useful about a file that it cannot use.
+Status judge_file(const std::string& path, bool is_private) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0 || ::access(path.c_str(), R_OK) != 0) {
+    return Error{"cannot read " + path + ": " + std::strerror(errno) +
+                 " (`usher keys` makes the keys of a manifest)"};
+  }
+  if (is_private && (file.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    return Error{"others may read the key " + path + ": its mode must be 0600"};
+  return {};
+}
+
+}  // namespace
+
+Status apply_identity(const std::string& folder,
+                      eprosima::fastdds::dds::DomainParticipantQos& qos) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path own = fs::absolute(folder, error);
+  const fs::path above = own.parent_path();
+  const std::string authority = above / "ca.pem";
+  const std::string governance = above / "governance.smime";
+  const std::string certificate = own / "certificate.pem";
+  const std::string key = own / "key.pem";
+  const std::string permissions = own / "permissions.smime";
+  for (const std::string& path : {authority, governance, certificate, key, permissions}) {
+    if (auto status = judge_file(path, path == key); !status) return status;
+  }
+  const auto set = [&qos](const std::string& name, const std::string& value) {
+    qos.properties().properties().emplace_back(name, value);
+  };
+  const std::string authentication = "dds.sec.auth.builtin.PKI-DH.";
+  const std::string access = "dds.sec.access.builtin.Access-Permissions.";
+  set("dds.sec.auth.plugin", "builtin.PKI-DH");
+  set(authentication + "identity_ca", "file://" + authority);
+  set(authentication + "identity_certificate", "file://" + certificate);
+  set(authentication + "private_key", "file://" + key);
+  set("dds.sec.access.plugin", "builtin.Access-Permissions");
+  set(access + "permissions_ca", "file://" + authority);
+  set(access + "governance", "file://" + governance);
+  set(access + "permissions", "file://" + permissions);
+  set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  return {};
+}
+
+std::shared_ptr<TransportDescriptorInterface> guarded_transport(
+    std::shared_ptr<TransportDescriptorInterface> below, bool only_signed,
+    std::function<void(const std::string& address)> refused) {
+  return std::make_shared<GuardedTransportDescriptor>(std::move(below), only_signed,
+                                                      std::move(refused));
+}
+
+}  // namespace usher::runtime

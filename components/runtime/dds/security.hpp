@@ -1,0 +1,28 @@
+#pragma once
+
+// Private to this folder: includes Fast DDS.
+
+#include <fastdds/rtps/transport/TransportDescriptorInterface.h>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "foundation/result/result.hpp"
+
+namespace usher::runtime {
+
+/// Gives the participant the identity that lies in a folder: certificate.pem, key.pem and
+/// permissions.smime there, ca.pem and governance.smime in the folder above (`usher keys` makes
+/// them). Fails when a file cannot be read or others may read the key.
+Status apply_identity(const std::string& folder, eprosima::fastdds::dds::DomainParticipantQos& qos);
+
+/// A transport that passes on from `below` no malformed message and, with `only_signed`, nothing
+/// that classify() calls unsigned and no farewell (the lease ends who has left). `refused` gets the
+/// address that a malformed or unsigned message came from, on the thread that received it.
+std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> guarded_transport(
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, bool only_signed,
+    std::function<void(const std::string& address)> refused);
+
+}  // namespace usher::runtime
