@@ -1,8 +1,13 @@
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -167,6 +172,22 @@ Table live_table(const Launcher& launcher, const Heartbeats& heartbeats) {
   return table;
 }
 
+/// One datagram to systemd where it started this program (sd_notify's protocol): that it is up, and
+/// in every round that it still goes round, so that WatchdogSec restarts a launcher that hangs.
+void tell_service_manager(std::string_view state) {
+  const char* path = std::getenv("NOTIFY_SOCKET");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::size_t size = path == nullptr ? 0 : std::strlen(path);
+  if (size < 2 || size >= sizeof(address.sun_path)) return;
+  std::memcpy(address.sun_path, path, size);
+  if (path[0] == '@') address.sun_path[0] = '\0';  // an abstract name
+  static const int handle = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  static_cast<void>(!sendto(handle, state.data(), state.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+                            reinterpret_cast<const sockaddr*>(&address),
+                            static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + size)));
+}
+
 struct LaunchArguments {
   std::string manifest, host, run_directory;
   std::vector<std::string> settings;
@@ -210,11 +231,15 @@ int launch(const LaunchArguments& arguments) {
   std::cout << "launching " << deployment->manifest.name << "; logs in " << options.run_directory
             << "; Ctrl-C stops\n"
             << std::flush;
+  tell_service_manager("READY=1");
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   auto next_table = std::chrono::steady_clock::now() + milliseconds(1000);
   std::size_t table_lines = 0;
   while (!stop_asked && !launcher->broken()) {
+    for (const auto& [component, entry] : heartbeats.entries())
+      launcher->heard(component, entry.at);
     launcher->poll();
+    tell_service_manager("WATCHDOG=1");
     const auto events = launcher->events();
     if (!events.empty()) table_lines = 0;
     for (const auto& event : events) std::cout << event << "\n";

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   usher::operations::add_deployment_commands(app, exit_code);
   usher::operations::add_inspection_commands(app, exit_code);
   usher::operations::add_operator_commands(app, exit_code);
+  usher::operations::add_teleop_command(app, exit_code);
   usher::operations::add_demo_command(app, exit_code);
   usher::operations::add_measuring_commands(app, exit_code);
   try {

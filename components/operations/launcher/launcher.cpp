@@ -28,6 +28,7 @@ constexpr auto kBudgetWindow = seconds(60);
 constexpr auto kShortestPause = milliseconds(100);
 constexpr auto kLongestPause = seconds(5);
 constexpr auto kGrace = seconds(2);
+constexpr auto kLongestPollPause = milliseconds(500);
 constexpr int kWrongParameters = 2;  // exit code of a component program
 
 std::string quoted(const std::string& text) {
@@ -128,7 +129,9 @@ Launcher::Launcher(Launcher&& other) noexcept
     : options_(std::move(other.options_)),
       processes_(std::move(other.processes_)),
       events_(std::move(other.events_)),
-      locks_(std::exchange(other.locks_, {})) {
+      locks_(std::exchange(other.locks_, {})),
+      last_poll_(other.last_poll_),
+      trusted_from_(other.trusted_from_) {
   other.processes_.clear();
 }
 
@@ -245,6 +248,7 @@ void Launcher::start(Process& process) {
   process.pid = pid;
   process.state = Process::State::kRunning;
   ++process.starts;
+  process.heard_at.clear();
   process.recent_starts.push_back(Clock::now());
   events_.push_back(process.name + (process.starts == 1 ? ": started" : ": started again"));
 }
@@ -290,8 +294,38 @@ bool Launcher::reap(Process& process) {
   return true;
 }
 
+void Launcher::heard(const std::string& component, Clock::time_point at) {
+  for (auto& process : processes_) {
+    if (process.state != Process::State::kRunning || process.recent_starts.empty() ||
+        at < process.recent_starts.back())
+      continue;  // a word of its former life
+    const auto& names = process.components;
+    if (std::find(names.begin(), names.end(), component) != names.end())
+      process.heard_at[component] = at;
+  }
+}
+
+void Launcher::kill_what_hangs() {
+  const auto now = Clock::now();
+  // A launcher that was stopped itself has heard nobody: that is no reason to kill anybody.
+  if (now - last_poll_ > kLongestPollPause) trusted_from_ = now;
+  last_poll_ = now;
+  if (now - trusted_from_ <= kHang) return;
+  for (auto& process : processes_) {
+    if (process.state != Process::State::kRunning) continue;
+    for (const auto& [component, at] : process.heard_at) {
+      if (now - at <= kHang) continue;
+      events_.push_back(component + ": hangs, killed");
+      kill(process.pid, SIGKILL);
+      process.heard_at.clear();
+      break;
+    }
+  }
+}
+
 void Launcher::poll() {
   for (auto& process : processes_) reap(process);
+  kill_what_hangs();
   for (auto& process : processes_) {
     if (process.state == Process::State::kWaiting && Clock::now() >= process.start_at)
       start(process);

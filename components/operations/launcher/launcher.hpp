@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,8 @@ struct Process {
   std::string last_end;  ///< how it ended the last time, in words; empty before the first
   std::chrono::steady_clock::time_point start_at{};
   std::deque<std::chrono::steady_clock::time_point> recent_starts;
+  /// When its components were last heard, since this start; by name.
+  std::map<std::string, std::chrono::steady_clock::time_point> heard_at;
 };
 
 /// Runs one host's part of a deployment as child processes: starts them in the manifest's order,
@@ -60,6 +63,11 @@ class Launcher {
   Launcher(Launcher&& other) noexcept;
   Launcher& operator=(Launcher&&) = delete;
   Launcher(const Launcher&) = delete;
+
+  /// A component showed life. One that did once and then is silent for `kHang` hangs: it is killed,
+  /// and its restart policy decides.
+  void heard(const std::string& component, std::chrono::steady_clock::time_point at);
+  static constexpr auto kHang = std::chrono::seconds(5);
 
   /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.
   /// What happened since the last call is in events().
@@ -83,11 +91,14 @@ class Launcher {
   void start(Process& process);
   void ended(Process& process, int status);
   bool reap(Process& process);
+  void kill_what_hangs();
 
   LaunchOptions options_;
   std::vector<Process> processes_;
   std::vector<std::string> events_;
   std::vector<int> locks_;  ///< open files, locked while this launcher lives
+  std::chrono::steady_clock::time_point last_poll_{};
+  std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
 };
 
 /// Where a deployment runs on this machine by default: one place for each user and DDS domain.

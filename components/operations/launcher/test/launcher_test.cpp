@@ -286,5 +286,33 @@ TEST_F(Launching, ForgetsWhatWasKeptForAFreshStart) {
   EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
+TEST_F(Launching, KillsWhatWasHeardAndFallsSilent) {
+  component("legs", "sleeper");
+  component("arms", "sleeper");
+  auto launcher = this->launcher();
+  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("arms")->pid != 0; }));
+  const pid_t legs = launcher.find("legs")->pid;
+  const pid_t arms = launcher.find("arms")->pid;
+  const auto begin = std::chrono::steady_clock::now();
+  launcher.heard("legs", begin);
+  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("legs")->starts == 2; }));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, Launcher::kHang);
+  EXPECT_NE(launcher.find("legs")->pid, legs);
+  EXPECT_EQ(launcher.find("arms")->pid, arms) << "never heard: it may not speak at all";
+  EXPECT_THAT(events_, Contains("legs: hangs, killed"));
+}
+
+TEST_F(Launching, BelievesNoSilenceWhenItWasStoppedItself) {
+  component("legs", "sleeper");
+  auto launcher = this->launcher();
+  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("legs")->pid != 0; }));
+  launcher.heard("legs", std::chrono::steady_clock::now());
+  std::this_thread::sleep_for(Launcher::kHang + std::chrono::milliseconds(100));  // as SIGSTOP does
+  launcher.poll();
+  launcher.poll();
+  EXPECT_EQ(launcher.find("legs")->starts, 1);
+  EXPECT_TRUE(alive(launcher.find("legs")->pid));
+}
+
 }  // namespace
 }  // namespace usher::operations
