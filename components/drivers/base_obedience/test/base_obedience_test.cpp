@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -218,6 +219,17 @@ TEST(BaseObedience, AGrantMayLiveShorterThanTheLimitNeverLonger) {
     EXPECT_EQ(obedience.permitted(milliseconds(lives - 1)).reason, Reason::kObeyed) << wished;
     EXPECT_EQ(obedience.permitted(milliseconds(lives)).reason, Reason::kGrantExpired) << wished;
   }
+}
+
+TEST(BaseObedience, TheTableHasACaseForEveryReason) {
+  std::set<Reason> seen;
+  for (const Case& test : cases()) {
+    for (const Step& step : test.steps) {
+      if (const auto* command = std::get_if<CommandAt>(&step)) seen.insert(command->verdict);
+      if (const auto* look = std::get_if<LookAt>(&step)) seen.insert(look->reason);
+    }
+  }
+  EXPECT_EQ(seen.size(), kReasonCount);
 }
 
 TEST(BaseObedience, EveryReasonHasAnOwnText) {
