@@ -31,13 +31,10 @@ class LockstepHost::DeadStream final : public Stream {
 class LockstepHost::Life final : public Platform, public Transport {
  public:
   Life(LockstepHost& host, Network::ParticipantId participant)
-      : id(participant),
-        engine(host.file_, *this, *this),
-        host_(host),
-        clock_(host.network_.clock_of(participant)) {}
+      : id(participant), engine(host.file_, *this, *this), host_(host) {}
 
   // --- Platform
-  Time now() const override { return host_.schedule_.now() + clock_; }
+  Time now() const override { return host_.schedule_.now() + clock(); }
   /// The engine asks before and after each handler.
   Duration work_time() const override { return host_.options_.handler_cost * (asked_++); }
   void wake() override {
@@ -94,8 +91,7 @@ class LockstepHost::Life final : public Platform, public Transport {
   Duration spent() const {
     return host_.options_.handler_cost * ((asked_ - asked_at_turn_ + 1) / 2);
   }
-  Time host_time(Time world) const { return world + clock_; }
-  Time world_time(Time host) const { return host == Time::max() ? host : host - clock_; }
+  Time world_time(Time host) const { return host == Time::max() ? host : host - clock(); }
 
   const Network::ParticipantId id;
 
@@ -128,8 +124,9 @@ class LockstepHost::Life final : public Platform, public Transport {
   Engine engine;  // after what it uses
 
  private:
+  Duration clock() const { return host_.network_.clock_of(id); }
+
   LockstepHost& host_;
-  const Duration clock_;
 };
 
 LockstepHost::LockstepHost(std::uint32_t index, Schedule& schedule, Network& network,
@@ -193,6 +190,10 @@ void LockstepHost::restart_later() {
 }
 
 void LockstepHost::hang(Time until) { hung_until_ = std::max(hung_until_, until); }
+
+void LockstepHost::clock_jumped() {
+  if (life_) plan_turn(schedule_.now());
+}
 
 Time LockstepHost::earliest() const {
   return std::max({schedule_.now(), busy_until_, hung_until_});

@@ -35,6 +35,8 @@ class LockstepHost {
   void stop();  ///< as SIGTERM
   /// No turn until then, while samples go on to arrive: a handler that does not return.
   void hang(Time until);
+  /// The host's clock is another one now: what is due by it is planned anew.
+  void clock_jumped();
 
   const ParameterFile& file() const { return file_; }
   bool running() const { return life_ != nullptr; }

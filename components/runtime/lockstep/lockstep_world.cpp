@@ -62,6 +62,13 @@ void LockstepWorld::hang(const std::string& name, Duration duration) {
   host(name).hang(now() + duration);
 }
 
+void LockstepWorld::jump_clock(const std::string& host, Duration by) {
+  network_.jump_clock(host, by);
+  for (const auto& each : hosts_) {
+    if (each->file().host == host) each->clock_jumped();
+  }
+}
+
 void LockstepWorld::run_until(Time time) {
   Schedule::Event event;
   while (schedule_.next(time, event)) {

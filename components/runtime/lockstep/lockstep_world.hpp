@@ -63,6 +63,31 @@ class LockstepWorld {
   void cut(const std::string& a, const std::string& b, Time from, Time until) {
     network_.cut(a, b, from, until);
   }
+  /// No sample passes from the one host to the other.
+  void cut_one_way(const std::string& from_host, const std::string& to_host, Time from,
+                   Time until) {
+    network_.cut(from_host, to_host, from, until, true);
+  }
+  /// The host's clock goes on from later, as after a suspension.
+  void jump_clock(const std::string& host, Duration by);
+  /// May change samples of the topic as they are written, by whom ever, or swallow them (false).
+  template <class Message>
+  void tamper(const topics::Topic<Message>& topic,
+              std::type_identity_t<std::function<bool(const Guid& writer, Message&)>> change) {
+    network_.tamper(std::string(topic.name),
+                    [change = std::move(change)](const Guid& writer, Bytes& cdr) {
+                      const MessageType& type = message_type<Message>();
+                      const auto read = type.deserialize(cdr);
+                      if (!read) return true;  // no message: left as it is
+                      Message message = *static_cast<const Message*>(read.get());
+                      if (!change(writer, message)) return false;
+                      cdr.clear();
+                      return type.serialize(&message, cdr);
+                    });
+  }
+  void tamper_bytes(const std::string& topic, Network::Tamper change) {
+    network_.tamper(topic, std::move(change));
+  }
   /// Anything, at a time of the world; before deliveries and turns of the same moment.
   void at(Time time, std::function<void()> action) {
     schedule_.add_action(time, std::move(action));

@@ -60,6 +60,7 @@ struct Network::Participant {
 struct Network::Topic {
   std::string name;
   std::uint64_t digest = 0;
+  std::deque<Tamper> tampers;
   std::deque<std::pair<const MessageType*, Observer>> observers;  ///< an observer may add observers
 };
 
@@ -166,11 +167,16 @@ void Network::set_link(const std::string& a, const std::string& b, const Link& l
   way(to, from).link = link;
 }
 
-void Network::cut(const std::string& a, const std::string& b, Time from, Time until) {
+void Network::jump_clock(const std::string& host, Duration by) {
+  assert(by >= Duration::zero());
+  clocks_[host_index(host)] += by;
+}
+
+void Network::cut(const std::string& a, const std::string& b, Time from, Time until, bool one_way) {
   const std::size_t first = host_index(a), second = host_index(b);
   assert(first != second && from < until);
   way(first, second).cuts.push_back({from, until});
-  way(second, first).cuts.push_back({from, until});
+  if (!one_way) way(second, first).cuts.push_back({from, until});
   const auto for_pairs = [this, first,
                           second](void (Network::*action)(ParticipantId, ParticipantId)) {
     for (ParticipantId p = 0; p < participants_.size(); ++p) {
@@ -401,17 +407,28 @@ void Network::unmatch_all(const Participant& writers, const Participant& readers
 void Network::write(Writer& writer, std::shared_ptr<const Bytes> cdr) {
   const Participant& own = writer.participant;
   if (own.departure <= schedule_.now()) {
-    write_now(writer, cdr);
+    write_now(writer, std::move(cdr));
   } else {
     schedule_.add_action(own.departure,
                          [this, &writer, cdr = std::move(cdr)] { write_now(writer, cdr); });
   }
 }
 
-void Network::write_now(Writer& writer, const std::shared_ptr<const Bytes>& cdr) {
+void Network::tamper(const std::string& topic_name, Tamper tamper) {
+  topic(topic_name).tampers.push_back(std::move(tamper));
+}
+
+void Network::write_now(Writer& writer, std::shared_ptr<const Bytes> cdr) {
   if (!writer.participant.alive) return;
   const Time now = schedule_.now();
   Topic& own_topic = writer.topic;
+  if (!own_topic.tampers.empty()) {
+    Bytes bytes = *cdr;
+    for (const Tamper& each : own_topic.tampers) {
+      if (!each(writer.id, bytes)) return;
+    }
+    cdr = std::make_shared<const Bytes>(std::move(bytes));
+  }
   ++written_;
   const std::uint64_t number = ++writer.number;
   digest_.add(own_topic.digest ^ writer.participant.id);

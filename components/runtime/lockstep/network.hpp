@@ -55,7 +55,10 @@ class Network {
   void set_clock(const std::string& host, Duration ahead);
   Duration clock_of(ParticipantId id) const;
   void set_link(const std::string& a, const std::string& b, const Link& link);
-  void cut(const std::string& a, const std::string& b, Time from, Time until);
+  /// The clock of the host and all that runs there goes on from later; it never goes back.
+  void jump_clock(const std::string& host, Duration by);
+  /// One-way: samples from a do not reach b, those from b reach a. Discovery needs both ways.
+  void cut(const std::string& a, const std::string& b, Time from, Time until, bool one_way = false);
 
   // --- Participants
   /// `instant` ones are discovered at once (tests and experiments that were always there).
@@ -77,6 +80,11 @@ class Network {
   /// When writers of this participant write at the earliest; a component that takes time for its
   /// handlers sets it.
   void set_departure(ParticipantId id, Time departure);
+
+  // --- Tampering
+  /// May change the bytes of a sample on its way out, or keep it (false); in the order of adding.
+  using Tamper = std::function<bool(const Guid& writer, Bytes& cdr)>;
+  void tamper(const std::string& topic, Tamper tamper);
 
   // --- Observation
   using Observer =
@@ -122,7 +130,7 @@ class Network {
   WriterInfo info_of(const Writer& writer, const Participant& by, bool alive) const;
 
   void write(Writer& writer, std::shared_ptr<const Bytes> cdr);
-  void write_now(Writer& writer, const std::shared_ptr<const Bytes>& cdr);
+  void write_now(Writer& writer, std::shared_ptr<const Bytes> cdr);
   void send(Writer& writer, Match& match, Flight flight);
   void launch(Match& match, Flight flight);
   void plan_retry(Writer& writer, Match& match);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "idl/topics.hpp"
@@ -71,6 +72,74 @@ ComponentFactory watcher(const topics::Topic<Message>& topic,
             });
             return std::make_unique<Component>();
           }};
+}
+
+TEST(LockstepWorld, AOneWayCutStopsOneDirection) {
+  LockstepWorld world;
+  std::vector<Seen> here, there;
+  constexpr topics::Topic<Message> kBack{"test/back", topics::Kind::kStream, 5, 0, "*", ""};
+  ASSERT_TRUE(world.add(counter(kStream, milliseconds(10)), file("one", "a")).ok());
+  ASSERT_TRUE(world.add(counter(kBack, milliseconds(10)), file("two", "b")).ok());
+  ASSERT_TRUE(world.add(listener(kStream, there), file("three", "b")).ok());
+  ASSERT_TRUE(world.add(listener(kBack, here), file("four", "a")).ok());
+  world.run_for(milliseconds(200));
+  const std::size_t heard_here = here.size(), heard_there = there.size();
+  world.cut_one_way("a", "b", world.now(), world.now() + milliseconds(300));
+  world.run_for(milliseconds(300));
+  EXPECT_LE(there.size(), heard_there + 1);
+  EXPECT_GE(here.size(), heard_here + 29);
+  world.run_for(milliseconds(200));
+  EXPECT_GE(there.size(), heard_there + 19);
+}
+
+TEST(LockstepWorld, AClockJumpsForAllOfItsHostAndTimersCountWhatTheySkipped) {
+  LockstepWorld world;
+  struct Clock final : Component {
+    explicit Clock(Host& host)
+        : timer(host.timer("tick", milliseconds(10), [this, &host](std::uint64_t skipped) {
+            times.push_back(host.now());
+            most_skipped = std::max(most_skipped, skipped);
+          })) {}
+    std::vector<Time> times;
+    std::uint64_t most_skipped = 0;
+    Timer timer;
+  };
+  Clock *a = nullptr, *b = nullptr;
+  const auto make = [](Clock*& place) {
+    return ComponentFactory{"subject", [&place](Host& host) {
+                              auto clock = std::make_unique<Clock>(host);
+                              place = clock.get();
+                              return clock;
+                            }};
+  };
+  ASSERT_TRUE(world.add(make(a), file("one", "a")).ok());
+  ASSERT_TRUE(world.add(make(b), file("two", "b")).ok());
+  world.run_for(milliseconds(105));
+  world.jump_clock("a", seconds(2));
+  world.run_for(milliseconds(100));
+  EXPECT_EQ(a->times.back() - b->times.back(), seconds(2));
+  EXPECT_GE(a->most_skipped, 199U);
+  EXPECT_EQ(b->most_skipped, 0U);
+  EXPECT_TRUE(std::is_sorted(a->times.begin(), a->times.end()));
+  EXPECT_GE(a->times.size(), 20U) << "it goes on at once";
+}
+
+TEST(LockstepWorld, TamperingChangesAndSwallowsSamples) {
+  LockstepWorld world;
+  std::vector<Seen> seen;
+  world.tamper(kStream, [](const Guid&, Message& each) {
+    const int number = number_of(each);
+    each = message(number + 1000);
+    return number % 2 == 0;
+  });
+  ASSERT_TRUE(world.add(counter(kStream, milliseconds(10)), file("one")).ok());
+  ASSERT_TRUE(world.add(listener(kStream, seen), file("two")).ok());
+  world.run_for(milliseconds(105));
+  ASSERT_FALSE(seen.empty());
+  for (const Seen& each : seen) {
+    EXPECT_GT(each.number, 1000);
+    EXPECT_EQ(each.number % 2, 0);
+  }
 }
 
 TEST(LockstepWorld, TheSameSeedWritesTheSameBytes) {
