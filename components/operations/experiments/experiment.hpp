@@ -29,6 +29,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_prm_experiment(const ExperimentOptions& options);
 
 /// One line that is rewritten: "17 of 100  ...".
 void show_progress(const std::string& line);

@@ -33,6 +33,10 @@ const std::vector<Experiment>& experiments() {
        "Localizes on recorded logs from raw odometry and laser, against their reference poses; "
        "--only LOG",
        run_tracking_log_experiment},
+      {"prm",
+       "Samplings and connections of the roadmap in the arena: path lengths beside figure 8 of the "
+       "meeting report",
+       run_prm_experiment},
   };
   return all;
 }
