@@ -48,8 +48,7 @@ void GraphSearch::prepare(const Graph& graph) {
   std::uint32_t from = spread_widely(graph);
   // Each landmark is as far as can be from those before it, in the part that hangs together.
   for (std::size_t landmark = 0; landmark < kLandmarks; ++landmark) {
-    for (Distances& distances : landmarks_) distances[landmark] = kUnreached;
-    spread(graph, from, landmark);
+    if (landmark > 0) spread(graph, from, landmark);
     float farthest = -1.0F;
     for (std::uint32_t v = 0; v < graph.size(); ++v) {
       const float near = *std::min_element(

@@ -18,7 +18,7 @@ using usher::grid::Cell;
 using usher::grid::OccupancyGrid;
 
 constexpr double kInflation = 0.3;
-constexpr double kSquare = 0.6;  // [m] with two vertices each these are 5248
+constexpr double kSquare = 0.65;  // [m] two vertices in each
 constexpr int kVertices = 5000;
 
 OccupancyGrid read_map(const std::string& path) {
