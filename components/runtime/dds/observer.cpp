@@ -271,8 +271,9 @@ class ObserverWriter final : public Base, private dds::DataWriterListener {
   ~ObserverWriter() override {
     if (writer_ != nullptr) participant_.delete_writer(writer_);
   }
-  Status open(const std::string& topic, const std::string& type, const Qos& qos) {
-    const auto made = participant_.create_writer(topic, type, qos, this);
+  Status open(const std::string& topic, const std::string& type, const Qos& qos,
+              const ForeignQuality& foreign = {}) {
+    const auto made = participant_.create_writer(topic, type, qos, this, foreign);
     if (!made) return Error{made.error()};
     writer_ = *made;
     return {};
@@ -313,6 +314,16 @@ Result<std::unique_ptr<Observer::RawWriter>> Observer::raw_writer(const std::str
                                                                   const Qos& qos) {
   auto writer = std::make_unique<ObserverWriter<RawWriter>>(*implementation_->participant);
   if (const Status status = writer->open(topic, type, qos); !status) return Error{status.error()};
+  return std::unique_ptr<RawWriter>(std::move(writer));
+}
+
+Result<std::unique_ptr<Observer::RawWriter>> Observer::foreign_writer(const std::string& topic,
+                                                                      const std::string& type,
+                                                                      const Foreign& foreign) {
+  auto writer = std::make_unique<ObserverWriter<RawWriter>>(*implementation_->participant);
+  const Status status = writer->open(topic, type, {!foreign.best_effort, foreign.latched, 1},
+                                     {foreign.best_effort, foreign.exclusive, foreign.strength});
+  if (!status) return Error{status.error()};
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
 

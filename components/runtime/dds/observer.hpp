@@ -63,6 +63,22 @@ class Observer {
   class Reader;
   template <class Message>
   class Writer;
+  /// Writes bytes as they are. Must end before its observer.
+  class RawWriter {
+   public:
+    virtual ~RawWriter() = default;
+    virtual bool write(std::span<const std::uint8_t> cdr) = 0;
+    virtual std::size_t reader_count() const = 0;
+    virtual bool wait_for_readers(std::size_t count, Duration limit) const = 0;
+    virtual Guid guid() const = 0;
+  };
+  /// What a foreign participant can do: any quality of service. For attacks in tests.
+  struct Foreign {
+    bool best_effort = false;
+    bool latched = false;
+    bool exclusive = false;      ///< exclusive ownership ...
+    std::uint32_t strength = 0;  ///< ... of this strength
+  };
 
   static Result<std::unique_ptr<Observer>> create(const Options& options);
   ~Observer();
@@ -94,17 +110,13 @@ class Observer {
       std::type_identity_t<std::function<void(const Message&, const RawSample&)>> on_sample = {});
   template <class Message>
   Result<Writer<Message>> writer(const topics::Topic<Message>& topic);
+  /// Any topic by its wire name and type name.
+  Result<std::unique_ptr<RawWriter>> foreign_writer(const std::string& topic,
+                                                    const std::string& type,
+                                                    const Foreign& foreign);
 
  private:
   class Implementation;
-  class RawWriter {
-   public:
-    virtual ~RawWriter() = default;
-    virtual bool write(std::span<const std::uint8_t> cdr) = 0;
-    virtual std::size_t reader_count() const = 0;
-    virtual bool wait_for_readers(std::size_t count, Duration limit) const = 0;
-    virtual Guid guid() const = 0;
-  };
   class Inbox;
   explicit Observer(std::unique_ptr<Implementation> implementation);
   Result<std::unique_ptr<RawWriter>> raw_writer(const std::string& topic, const std::string& type,

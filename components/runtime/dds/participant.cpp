@@ -321,11 +321,17 @@ Error Participant::refusal(const std::string& what, const std::string& topic_nam
 
 Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_name,
                                                     const std::string& type, const Qos& qos,
-                                                    dds::DataWriterListener* listener) {
+                                                    dds::DataWriterListener* listener,
+                                                    const ForeignQuality& foreign) {
   const auto made = topic(topic_name, type);
   if (!made) return Error{made.error()};
   dds::DataWriterQos writer;
-  writer.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  writer.reliability().kind =
+      foreign.best_effort ? dds::BEST_EFFORT_RELIABILITY_QOS : dds::RELIABLE_RELIABILITY_QOS;
+  if (foreign.exclusive) {
+    writer.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
+    writer.ownership_strength().value = foreign.strength;
+  }
   writer.durability().kind =
       qos.latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   writer.history().kind = dds::KEEP_LAST_HISTORY_QOS;

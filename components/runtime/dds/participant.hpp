@@ -29,6 +29,13 @@ struct ParticipantOptions {
   bool serves_discovery = false;   ///< this one is the server, at that address
 };
 
+/// How a writer may differ from ours; only what attacks the robot in tests does.
+struct ForeignQuality {
+  bool best_effort = false;
+  bool exclusive = false;  ///< exclusive ownership, with a strength
+  std::uint32_t strength = 0;
+};
+
 /// A DomainParticipant with the settings that hold everywhere (README.md says why), its discovery
 /// book, and topics and endpoints by wire name. Everything it made goes with it. Thread-safe.
 class Participant {
@@ -43,7 +50,7 @@ class Participant {
   /// Fails when this participant already has the topic with another type.
   Result<eprosima::fastdds::dds::DataWriter*> create_writer(
       const std::string& topic, const std::string& type, const Qos& qos,
-      eprosima::fastdds::dds::DataWriterListener* listener);
+      eprosima::fastdds::dds::DataWriterListener* listener, const ForeignQuality& foreign = {});
   Result<eprosima::fastdds::dds::DataReader*> create_reader(
       const std::string& topic, const std::string& type, const Qos& qos,
       eprosima::fastdds::dds::DataReaderListener* listener);
