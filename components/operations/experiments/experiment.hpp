@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,10 +12,12 @@ namespace usher::operations {
 
 /// What every experiment is given.
 struct ExperimentOptions {
-  int seeds = 0;     ///< 0 = the experiment's own number
-  std::string out;   ///< folder for result.json, table.md, *.csv, *.png; exists
-  std::string data;  ///< folder with real data, empty = none
-  std::string only;  ///< one of the experiment's inputs; empty = all
+  int seeds = 0;              ///< 0 = the experiment's own number
+  std::string out;            ///< folder for result.json, table.md, *.csv, *.png; exists
+  std::string data;           ///< folder with real data, empty = none
+  std::string only;           ///< one of the experiment's inputs; empty = all
+  double minutes = 0.0;       ///< how long, for those that run for a time; 0 = their own
+  std::uint32_t domain = 44;  ///< of those with real processes
   Installation installation;
 };
 
@@ -30,6 +33,11 @@ Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_prm_experiment(const ExperimentOptions& options);
+
+Result<ResultSheet> run_stopping_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options);
 
 /// One line that is rewritten: "17 of 100  ...".
 void show_progress(const std::string& line);

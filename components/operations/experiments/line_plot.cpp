@@ -59,18 +59,26 @@ class Plot {
     }
     cv::rectangle(image_, pixel(x_.low, y_.high), pixel(x_.high, y_.low), kInk, 1);
     text(title, 12, 26, 0.75);
-    text(y_label, 12, kTop - 8, 0.55);
+    text(y_label, 12, kTop - 14, 0.55);
     text(x_label, kWidth - kRight - 9 * static_cast<int>(x_label.size()), kHeight - kBottom + 46,
          0.55);
   }
 
   void curve(const Curve& curve, int entry) {
     const cv::Scalar color(curve.blue, curve.green, curve.red);
-    std::vector<cv::Point> line;
+    std::vector<cv::Point> line;  // what is not finite interrupts it
+    const auto end_line = [&] {
+      cv::polylines(image_, line, false, color, 1, cv::LINE_AA, kShift);
+      line.clear();
+    };
     for (const auto& [x, y] : curve.points) {
-      if (std::isfinite(x) && std::isfinite(y)) line.push_back(fixed(x, y));
+      if (std::isfinite(x) && std::isfinite(y)) {
+        line.push_back(fixed(x, y));
+      } else {
+        end_line();
+      }
     }
-    cv::polylines(image_, line, false, color, 1, cv::LINE_AA, kShift);
+    end_line();
     const int x = kLeft + entry * 260, y = kHeight - 20;
     cv::line(image_, {x, y - 5}, {x + 30, y - 5}, color, 3, cv::LINE_AA);
     text(curve.label, x + 38, y, 0.55);

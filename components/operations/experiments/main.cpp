@@ -37,6 +37,20 @@ const std::vector<Experiment>& experiments() {
        "Samplings and connections of the roadmap in the arena: path lengths beside figure 8 of the "
        "meeting report",
        run_prm_experiment},
+      {"stopping", "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step",
+       run_stopping_experiment},
+      {"reaction",
+       "Kills and hangs every critical component of a driving robot (real processes): time to zero "
+       "at the base, standstill, return; --only COMPONENT",
+       run_reaction_experiment},
+      {"false-stops",
+       "Drives beside two busy loops (real processes) and counts stops without a cause; --minutes "
+       "N",
+       run_false_stops_experiment},
+      {"monopoly",
+       "Foreign writers on every topic that moves the robot (real processes): samples executed, "
+       "time until they are named",
+       run_monopoly_experiment},
   };
   return all;
 }
@@ -77,6 +91,11 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number");
   app.add_option("--out", options.out, "Folder for the results");
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
+  app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--domain", options.domain, "DDS domain of experiments with real processes")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   for (const auto& experiment : experiments()) {
     if (list) std::cout << experiment.name << ": " << experiment.text << "\n";

@@ -1,0 +1,235 @@
+#include "operations/experiments/attacked_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Observer;
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg;
+
+constexpr const char* kOperator = "operator";
+constexpr auto kRound = milliseconds(10);
+constexpr auto kJoyPeriod = milliseconds(40);
+constexpr double kStanding = 0.02;  // [m/s] [rad/s]
+/// Of manual_control's defaults: full deflection.
+constexpr double kFullLinear = 0.8, kFullAngular = 0.8, kDeadZone = 0.12;
+
+float deflection(double share) {
+  if (share == 0.0) return 0.0F;
+  return static_cast<float>(std::copysign(kDeadZone + (1.0 - kDeadZone) * std::abs(share), share));
+}
+
+/// A port of its own for each domain: two robots may run beside each other.
+int emulator_port(std::uint32_t domain) { return 17420 + static_cast<int>(domain); }
+
+}  // namespace
+
+AttackedRobot::AttackedRobot(Launcher launcher, Deployment deployment, std::uint32_t domain)
+    : launcher_(std::move(launcher)), deployment_(std::move(deployment)), domain_(domain) {}
+
+Result<std::unique_ptr<AttackedRobot>> AttackedRobot::launch(const Installation& installation,
+                                                             const std::string& run_directory,
+                                                             std::uint32_t domain) {
+  const std::string port = std::to_string(emulator_port(domain));
+  auto deployment =
+      load_deployment(installation.share + "/deploy/marvin-emulated.yaml", installation,
+                      {{"segway_rmp", "address", "tcp://127.0.0.1:" + port},
+                       {"segway_emulator", "address", "listen://127.0.0.1:" + port}});
+  if (!deployment) return Error{deployment.error()};
+  deployment->manifest.domain = domain;
+  // A component may be killed more often than a robot would forgive.
+  for (auto& component : deployment->manifest.components) component.restart_budget = 1000;
+  for (auto& file : deployment->files) file.domain = domain;
+  auto launcher = Launcher::create(*deployment, {"", installation.programs, run_directory});
+  if (!launcher) return Error{launcher.error()};
+  std::unique_ptr<AttackedRobot> robot(
+      new AttackedRobot(std::move(launcher).value(), std::move(deployment).value(), domain));
+  if (auto status = robot->listen(); !status) return Error{status.error()};
+  robot->hand_ = std::thread([self = robot.get()] { self->run(); });
+  return robot;
+}
+
+AttackedRobot::~AttackedRobot() {
+  ends_ = true;
+  if (hand_.joinable()) hand_.join();
+}
+
+Status AttackedRobot::listen() {
+  auto observer = Observer::create({.name = kOperator, .host = "nuc", .domain = domain_});
+  if (!observer) return Error{observer.error()};
+  observer_ = std::move(observer).value();
+  Status status;
+  const auto keep = [&](auto made, auto& port) {
+    if (made) {
+      port = std::move(made).value();
+    } else {
+      status = Error{made.error()};
+    }
+  };
+  const auto note = [this](auto change) {
+    {
+      const std::lock_guard lock(mutex_);
+      change();
+    }
+    changed_.notify_all();
+  };
+  keep(observer_->reader(topics::kSimBaseCommand,
+                         [this, note](const auto& message, const auto&) {
+                           const Wheels wheels{Clock::now(), message.v(), message.w()};
+                           note([&] { wheels_.push_back(wheels); });
+                         }),
+       wheels_reader_);
+  keep(observer_->reader(topics::kSimGroundTruth,
+                         [this, note](const auto& message, const auto&) {
+                           const auto& position = message.pose().position();
+                           const Motion motion{Clock::now(), position.x(), position.y(),
+                                               message.v(),  message.w(),  message.contacts()};
+                           note([&] { motions_.push_back(motion); });
+                         }),
+       truth_reader_);
+  keep(observer_->reader(topics::kSupervisorStatus,
+                         [this, note](const auto& message, const auto&) {
+                           note([&] {
+                             status_ = message;
+                             status_at_ = Clock::now();
+                           });
+                         }),
+       status_reader_);
+  keep(observer_->reader(topics::kDriveGrant,
+                         [this, note](const auto& message, const auto&) {
+                           note([&] {
+                             if (granted_ && !message.granted()) ++grants_lost_;
+                             granted_ = message.granted();
+                           });
+                         }),
+       grant_reader_);
+  keep(observer_->reader(topics::kHeartbeat,
+                         [this, note](const auto& message, const Observer::RawSample& sample) {
+                           note([&] {
+                             lives_[message.component_name()] = sample.writer;
+                             heard_[message.component_name()] = Clock::now();
+                           });
+                         }),
+       heartbeat_reader_);
+  keep(observer_->writer(topics::kJoy), joy_);
+  keep(observer_->writer(topics::kSupervisorRequest), request_);
+  return status;
+}
+
+void AttackedRobot::run() {
+  auto next_joy = Clock::now();
+  while (!ends_) {
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& [component, at] : heard_) launcher_.heard(component, at);
+      launcher_.poll();
+      for (auto& event : launcher_.events()) events_.push_back(std::move(event));
+    }
+    if (Clock::now() >= next_joy) {
+      next_joy = Clock::now() + kJoyPeriod;
+      send_joy();
+    }
+    std::this_thread::sleep_for(kRound);
+  }
+}
+
+void AttackedRobot::send_joy() {
+  sensor_msgs::msg::Joy message;
+  {
+    const std::lock_guard lock(mutex_);
+    message.axes({0.0F, forward_, 0.0F, turn_});
+    message.buttons({0, 0, 0, 0, held_ ? 1 : 0});
+  }
+  joy_->write(message);
+}
+
+void AttackedRobot::hold(double v, double w) {
+  const std::lock_guard lock(mutex_);
+  held_ = true;
+  forward_ = deflection(v / kFullLinear);
+  turn_ = deflection(w / kFullAngular);
+}
+
+void AttackedRobot::release() {
+  const std::lock_guard lock(mutex_);
+  held_ = false;
+}
+
+bool AttackedRobot::ask(std::uint8_t command, milliseconds patience) {
+  const Instant until = Clock::now() + patience;
+  SupervisorRequest request;
+  request.client(kOperator);
+  request.command(command);
+  while (Clock::now() < until) {
+    request.id(static_cast<std::uint64_t>(Clock::now().time_since_epoch().count() / 1000));
+    request_->write(request);
+    const auto answered = [&] { return status_ && status_->last_request() == request.id(); };
+    if (wait_for(answered, milliseconds(300))) {
+      const std::lock_guard lock(mutex_);
+      if (status_->last_request_done()) return true;
+    }
+  }
+  return false;
+}
+
+bool AttackedRobot::all_well() const {
+  return status_ && Clock::now() - status_at_ < std::chrono::seconds(1) && status_->granted() &&
+         std::all_of(status_->components().begin(), status_->components().end(),
+                     [](const auto& component) {
+                       return component.health() == SupervisorStatus_Constants::HEALTH_OK ||
+                              component.health() == SupervisorStatus_Constants::HEALTH_DEGRADED;
+                     });
+}
+
+bool AttackedRobot::stands() const {
+  if (motions_.empty()) return false;
+  for (auto motion = motions_.rbegin(); motion != motions_.rend(); ++motion) {
+    if (std::abs(motion->v) > kStanding || std::abs(motion->w) > 3.0 * kStanding) return false;
+    if (motions_.back().at - motion->at > milliseconds(100)) return true;
+  }
+  return false;
+}
+
+std::optional<runtime::Guid> AttackedRobot::life_of(const std::string& component) const {
+  const auto found = lives_.find(component);
+  return found == lives_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void AttackedRobot::forget() {
+  const std::lock_guard lock(mutex_);
+  wheels_.clear();
+  motions_.clear();
+}
+
+pid_t AttackedRobot::process(const std::string& component) {
+  const std::lock_guard lock(mutex_);
+  const auto* found = launcher_.find(component);
+  return found == nullptr ? 0 : found->pid;
+}
+
+std::string AttackedRobot::complaints() {
+  const std::lock_guard lock(mutex_);
+  std::string text = status_ ? status_->reason() : "no word from the supervisor";
+  if (status_) {
+    for (const auto& component : status_->components()) {
+      if (component.health() != SupervisorStatus_Constants::HEALTH_OK)
+        text += "; " + component.name() + ": " + component.reason();
+    }
+  }
+  for (const auto& event : events_) text += "\n  " + event;
+  return text;
+}
+
+std::vector<std::string> AttackedRobot::components(const std::string& criticality) const {
+  std::vector<std::string> names;
+  for (const auto& component : deployment_.manifest.components) {
+    if (to_string(component.criticality) == criticality) names.push_back(component.name);
+  }
+  return names;
+}
+
+}  // namespace usher::operations

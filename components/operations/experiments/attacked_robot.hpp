@@ -1,0 +1,123 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "operations/command_line/installation.hpp"
+#include "operations/launcher/launcher.hpp"
+#include "runtime/dds/observer.hpp"
+
+namespace usher::operations {
+
+/// MARVIN as real processes, with the base's real driver and guard in front of an emulated base
+/// (deploy/marvin-emulated.yaml), driven by an operator's gamepad; and a judge who sees what
+/// reaches the wheels. For experiments that break it.
+class AttackedRobot {
+ public:
+  using Clock = std::chrono::steady_clock;
+  using Instant = Clock::time_point;
+
+  /// A command as it reached the wheels.
+  struct Wheels {
+    Instant at;
+    double v = 0.0, w = 0.0;
+    bool zero() const { return v == 0.0 && w == 0.0; }
+  };
+  struct Motion {
+    Instant at;
+    double x = 0.0, y = 0.0, v = 0.0, w = 0.0;
+    std::uint32_t contacts = 0;
+  };
+
+  static Result<std::unique_ptr<AttackedRobot>> launch(const Installation& installation,
+                                                       const std::string& run_directory,
+                                                       std::uint32_t domain);
+  ~AttackedRobot();
+
+  /// What the operator's hand does from now on: holds the button and the sticks, or lets go.
+  void hold(double v, double w);
+  void release();
+  /// Asks the supervisor until it agrees.
+  bool ask(std::uint8_t command, std::chrono::milliseconds patience);
+
+  /// Waits for a condition that is asked every millisecond or two.
+  template <class Condition>
+  bool wait_for(Condition condition, std::chrono::milliseconds limit) {
+    const Instant until = Clock::now() + limit;
+    std::unique_lock lock(mutex_);
+    while (!condition()) {
+      if (Clock::now() >= until) return false;
+      changed_.wait_for(lock, std::chrono::milliseconds(2));
+    }
+    return true;
+  }
+
+  // To be asked inside of wait_for(), or between locked() ... calls.
+  bool all_well() const;  ///< every component is ok, the robot may drive
+  bool drives(double v) const { return !motions_.empty() && motions_.back().v > v; }
+  bool stands() const;  ///< for a tenth of a second
+  const std::vector<Wheels>& wheels() const { return wheels_; }
+  const std::vector<Motion>& motions() const { return motions_; }
+  const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }
+  Instant status_at() const { return status_at_; }
+  std::optional<runtime::Guid> life_of(const std::string& component) const;
+  std::uint64_t grants_lost() const { return grants_lost_; }
+  std::unique_lock<std::mutex> locked() { return std::unique_lock(mutex_); }
+  /// Forgets what the judge noted so far.
+  void forget();
+
+  /// Process of a component; 0 when it does not run.
+  pid_t process(const std::string& component);
+  runtime::Observer& observer() { return *observer_; }
+  std::uint32_t domain() const { return domain_; }
+  std::string complaints();
+  std::vector<std::string> components(const std::string& criticality) const;
+
+ private:
+  AttackedRobot(Launcher launcher, Deployment deployment, std::uint32_t domain);
+  Status listen();
+  void run();
+  void send_joy();
+
+  Launcher launcher_;
+  const Deployment deployment_;
+  const std::uint32_t domain_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Wheels> wheels_;
+  std::vector<Motion> motions_;
+  std::optional<usher_msgs::msg::SupervisorStatus> status_;
+  Instant status_at_{};
+  std::map<std::string, runtime::Guid> lives_;
+  std::map<std::string, Instant> heard_;
+  bool granted_ = false;
+  std::uint64_t grants_lost_ = 0;
+  bool held_ = false;
+  float forward_ = 0.0F, turn_ = 0.0F;
+  std::vector<std::string> events_;
+
+  std::unique_ptr<runtime::Observer> observer_;
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::BaseCommand>> wheels_reader_;
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::GroundTruth>> truth_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::SupervisorStatus>> status_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::DriveGrant>> grant_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::Heartbeat>> heartbeat_reader_;
+  std::optional<runtime::Observer::Writer<sensor_msgs::msg::Joy>> joy_;
+  std::optional<runtime::Observer::Writer<usher_msgs::msg::SupervisorRequest>> request_;
+  std::atomic<bool> ends_{false};
+  std::thread hand_;  ///< launches, and moves the sticks
+};
+
+}  // namespace usher::operations

@@ -1,0 +1,287 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/attacked_robot.hpp"
+#include "operations/experiments/experiment.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Bytes;
+using runtime::Observer;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Clock = AttackedRobot::Clock;
+using namespace usher_msgs::msg;
+
+constexpr std::uint64_t kSamples = 1'000'000;
+constexpr double kRogueSpeed = 0.37, kRogueTurn = 0.23;  // nobody else commands these
+constexpr double kReported = 100.0;                      // [ms]
+constexpr const char* kRogue = "intruder";
+
+/// How a foreign participant goes about it.
+struct Way {
+  const char* name;
+  Observer::Foreign quality;
+  bool in_the_name_of_the_writer = false;
+  bool replays = false;  ///< bytes that the right writer has sent
+};
+
+const std::array<Way, 5>& ways() {
+  static const std::array<Way, 5> all{{
+      {"same quality", {}},
+      {"other quality", {.best_effort = true, .latched = true}},
+      {"same name", {}, true},
+      {"higher strength", {.exclusive = true, .strength = 0x7FFFFFFF}},
+      {"replayed bytes", {}, false, true},
+  }};
+  return all;
+}
+
+/// One topic that moves the robot: who may write it, and what the intruder writes there.
+struct Target {
+  std::string topic;  ///< on the wire
+  std::string type;
+  std::string writer;
+  std::function<Bytes(const AttackedRobot&, std::uint64_t number)> forge;
+};
+
+template <class Message>
+Bytes bytes_of(const Message& message) {
+  Bytes cdr;
+  runtime::message_type<Message>().serialize(&message, cdr);
+  return cdr;
+}
+
+template <class Message>
+Target make_target(const topics::Topic<Message>& topic,
+                   std::function<Message(const AttackedRobot&, std::uint64_t)> make) {
+  const std::string_view writers = topic.writers;
+  return {"rt/" + std::string(topic.name), std::string(runtime::message_type<Message>().name),
+          std::string(writers.substr(0, writers.find(' '))),
+          [make](const AttackedRobot& robot, std::uint64_t number) {
+            return bytes_of(make(robot, number));
+          }};
+}
+
+std::vector<Target> targets() {
+  const std::function<geometry_msgs::msg::TwistStamped(const AttackedRobot&, std::uint64_t)> twist =
+      [](const AttackedRobot&, std::uint64_t) {
+        geometry_msgs::msg::TwistStamped message;
+        message.twist().linear().x(kRogueSpeed);
+        message.twist().angular().z(kRogueTurn);
+        return message;
+      };
+  const std::function<DriveCommand(const AttackedRobot&, std::uint64_t)> command =
+      [](const AttackedRobot& robot, std::uint64_t number) {
+        DriveCommand message;
+        message.epoch(robot.status() ? robot.status()->epoch() : 0);  // the true one
+        message.number(1'000'000'000 + number);
+        message.v(kRogueSpeed);
+        message.w(kRogueTurn);
+        return message;
+      };
+  return {make_target(topics::kDriveCommand, command), make_target(topics::kCmdVelManual, twist),
+          make_target(topics::kCmdVelInteraction, twist),
+          make_target(topics::kCmdVelNavigation, twist)};
+}
+
+struct Attack {
+  std::string topic, way;
+  std::uint64_t written = 0;
+  std::uint64_t executed = 0;  ///< commands at the wheels that were the intruder's
+  std::uint64_t moved = 0;     ///< commands at the wheels that were not zero, though nobody held on
+  double reported_ms = 0.0;    ///< from its writer's birth
+  std::string reported_as;
+};
+
+/// What the right writer sends, for replays.
+class Recording {
+ public:
+  static Result<std::unique_ptr<Recording>> make(Observer& observer, const Target& target) {
+    auto self = std::make_unique<Recording>();
+    auto subscription = observer.subscribe(
+        target.topic, target.type, {true, false, 1}, [raw = self.get()](const auto& sample) {
+          const std::lock_guard lock(raw->mutex_);
+          if (raw->samples_.size() < 256)
+            raw->samples_.emplace_back(sample.cdr.begin(), sample.cdr.end());
+        });
+    if (!subscription) return Error{subscription.error()};
+    self->subscription_ = std::move(subscription).value();
+    return self;
+  }
+  std::vector<Bytes> samples() {
+    const std::lock_guard lock(mutex_);
+    return samples_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Bytes> samples_;
+  std::unique_ptr<Observer::Subscription> subscription_;
+};
+
+class Monopoly {
+ public:
+  explicit Monopoly(AttackedRobot& robot) : robot_(robot) {}
+
+  /// It stands, and the operator could drive it: the state in which a foreign sample would move it.
+  Status make_ready() {
+    const auto until = Clock::now() + seconds(60);
+    const auto manual = [&] {
+      return robot_.all_well() &&
+             robot_.status()->state() == SupervisorStatus_Constants::STATE_MANUAL;
+    };
+    while (Clock::now() < until) {
+      if (robot_.wait_for(manual, milliseconds(500))) {
+        return robot_.wait_for([&] { return robot_.stands(); }, seconds(10))
+                   ? Status()
+                   : Status(Error{"the robot does not stand"});
+      }
+      robot_.ask(SupervisorRequest_Constants::COMMAND_CLEAR, milliseconds(1000));
+      robot_.ask(SupervisorRequest_Constants::COMMAND_MANUAL_ON, milliseconds(1000));
+    }
+    return Error{"the robot is not well: " + robot_.complaints()};
+  }
+
+  Result<Attack> run(const Target& target, const Way& way, std::uint64_t samples) {
+    if (auto status = make_ready(); !status) return Error{status.error()};
+    std::vector<Bytes> replay;
+    if (way.replays) {
+      auto recorded = record(target);
+      if (!recorded) return Error{recorded.error()};
+      replay = std::move(recorded).value();
+      if (auto status = make_ready(); !status) return Error{status.error()};
+    }
+    Attack attack{.topic = target.topic.substr(3), .way = way.name};
+    robot_.forget();
+    auto rogue = Observer::create({.name = way.in_the_name_of_the_writer ? target.writer : kRogue,
+                                   .host = "nuc",
+                                   .domain = robot_.domain()});
+    if (!rogue) return Error{rogue.error()};
+    auto writer = (*rogue)->foreign_writer(target.topic, target.type, way.quality);
+    if (!writer) return Error{writer.error()};
+    const auto first = Clock::now();
+    std::optional<AttackedRobot::Instant> named;
+    // What is written before anybody could hear it attacks nobody.
+    robot_.wait_for(
+        [&] {
+          named = named_at(target, way, attack);
+          return named || (*writer)->reader_count() > 0;
+        },
+        milliseconds(500));
+    for (; attack.written < samples; ++attack.written) {
+      const Bytes sample =
+          replay.empty() ? forged(target, attack.written) : replay[attack.written % replay.size()];
+      (*writer)->write(sample);
+      if (named) continue;
+      const auto lock = robot_.locked();
+      named = named_at(target, way, attack);
+    }
+    if (!named) {
+      robot_.wait_for([&] { return (named = named_at(target, way, attack)).has_value(); },
+                      seconds(2));
+    }
+    attack.reported_ms = named ? std::chrono::duration<double, std::milli>(*named - first).count()
+                               : std::numeric_limits<double>::infinity();
+    {
+      const auto lock = robot_.locked();
+      for (const auto& wheels : robot_.wheels()) {
+        attack.moved += wheels.zero() ? 0 : 1;
+        // The wheels' protocol rounds to counts of 3 mm/s.
+        attack.executed += std::abs(wheels.v - kRogueSpeed) < 0.005 ? 1 : 0;
+      }
+    }
+    return attack;
+  }
+
+ private:
+  Bytes forged(const Target& target, std::uint64_t number) {
+    const auto lock = robot_.locked();
+    return target.forge(robot_, number);
+  }
+
+  /// Drives for a moment, so that there is something worth replaying.
+  Result<std::vector<Bytes>> record(const Target& target) {
+    auto recording = Recording::make(robot_.observer(), target);
+    if (!recording) return Error{recording.error()};
+    robot_.hold(kRogueSpeed, kRogueTurn);
+    std::this_thread::sleep_for(milliseconds(1500));
+    auto samples = (*recording)->samples();
+    robot_.release();
+    // A topic on which nobody speaks now has nothing to replay: a forged sample takes its place.
+    if (samples.empty()) samples.push_back(forged(target, 0));
+    return samples;
+  }
+
+  /// When the supervisor named the intruder as an active fault. Call it locked.
+  std::optional<AttackedRobot::Instant> named_at(const Target& target, const Way& way,
+                                                 Attack& attack) const {
+    if (!robot_.status() || robot_.status()->granted()) return std::nullopt;
+    const std::string name = way.in_the_name_of_the_writer ? target.writer : kRogue;
+    for (const auto& fault : robot_.status()->faults()) {
+      const std::string text = fault.component_name() + ": " + fault.cause();
+      if (!fault.active() || !fault.latched() || text.find(name) == std::string::npos) continue;
+      attack.reported_as = text;
+      return robot_.status_at();
+    }
+    return std::nullopt;
+  }
+
+  AttackedRobot& robot_;
+};
+
+}  // namespace
+
+Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
+  auto robot = AttackedRobot::launch(options.installation, options.out + "/run", options.domain);
+  if (!robot) return Error{robot.error()};
+  const auto all = targets();
+  // --seeds N: so many thousand samples in all.
+  const std::uint64_t wanted =
+      options.seeds > 0 ? static_cast<std::uint64_t>(options.seeds) * 1000 : kSamples;
+  const std::uint64_t each = wanted / (all.size() * ways().size());
+  Monopoly monopoly(**robot);
+  Table table({"topic", "intruder", "samples", "executed", "moved", "named after ms", "as"});
+  ResultSheet sheet;
+  double slowest = 0.0, samples = 0.0, executed = 0.0, moved = 0.0;
+  for (const auto& target : all) {
+    for (const auto& way : ways()) {
+      show_progress(target.topic + ", " + way.name + ": " + format("%.0f", samples) + " of " +
+                    std::to_string(wanted) + " samples");
+      const auto attack = monopoly.run(target, way, each);
+      if (!attack) return Error{target.topic + ", " + way.name + ": " + attack.error()};
+      samples += static_cast<double>(attack->written);
+      executed += static_cast<double>(attack->executed);
+      moved += static_cast<double>(attack->moved);
+      slowest = std::max(slowest, attack->reported_ms);
+      table.add({attack->topic, attack->way, std::to_string(attack->written),
+                 std::to_string(attack->executed), std::to_string(attack->moved),
+                 format("%.0f", attack->reported_ms), attack->reported_as});
+    }
+  }
+  show_progress("");
+  sheet.name = "monopoly";
+  sheet.input =
+      "MARVIN as processes, standing in manual mode; a foreign participant writes each topic that "
+      "moves the robot: same quality, other quality, the right writer's name, exclusive ownership "
+      "of the highest strength, replayed bytes";
+  sheet.metrics = {
+      {"samples", samples}, {"executed", executed}, {"moved", moved}, {"named_ms_max", slowest}};
+  sheet.targets = {
+      {"samples", {Bound::kAtLeast, static_cast<double>(each * all.size() * ways().size())}},
+      {"executed", {Bound::kAtMost, 0.0}},
+      {"moved", {Bound::kAtMost, 0.0}},
+      {"named_ms_max", {Bound::kAtMost, kReported}}};
+  std::printf("%s\n", table.text().c_str());
+  if (auto saved = write_file(options.out + "/attacks.md", table.markdown()); !saved)
+    return Error{saved.error()};
+  return sheet;
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,288 @@
+#include <signal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/attacked_robot.hpp"
+#include "operations/experiments/experiment.hpp"
+#include "operations/experiments/line_plot.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Clock = AttackedRobot::Clock;
+using Instant = AttackedRobot::Instant;
+using namespace usher_msgs::msg;
+
+constexpr int kRounds = 5;
+constexpr double kSpeed = 0.5, kTurn = 0.5;       // a circle of 1 m in the foyer
+constexpr auto kReleased = milliseconds(150);     // the button, so that a press is a new one
+constexpr double kStoppingTime = 1.48;            // [s] times the speed: table 8.1 of the thesis
+constexpr double kMedian = 140.0, kMost = 200.0;  // [ms]
+constexpr double kReturn = 1.0;                   // [s]
+constexpr double kStandstill = 1.1;  // share of the stopping distance; the table's own spread
+
+enum class Harm { kKill, kHang };
+
+struct Trial {
+  std::string victim;
+  Harm harm = Harm::kKill;
+  double zero_ms = 0.0;       ///< from the harm to the first zero at the wheels
+  double standstill = 0.0;    ///< way from there to a standstill over the stopping distance; NaN
+  double back_s = 0.0;        ///< from kill -9 to: heard again and the right to drive granted
+  double on_its_way_s = 0.0;  ///< to: moves again as wanted
+  bool contact = false;
+};
+
+double ms(Clock::duration duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+class Attack {
+ public:
+  explicit Attack(AttackedRobot& robot) : robot_(robot) {}
+
+  /// The robot drives its circle under the operator's hand; an error says why it does not.
+  Status get_going() {
+    robot_.release();
+    if (!robot_.wait_for([&] { return robot_.all_well(); }, seconds(60)))
+      return Error{"the robot is not well: " + robot_.complaints()};
+    if (auto status = take_over(); !status) return status;
+    std::this_thread::sleep_for(kReleased);
+    robot_.hold(kSpeed, kTurn);
+    if (!robot_.wait_for([&] { return robot_.drives(0.8 * kSpeed); }, seconds(15)))
+      return Error{"the robot does not drive: " + robot_.complaints()};
+    std::this_thread::sleep_for(milliseconds(500));
+    return {};
+  }
+
+  Result<Trial> run(const std::string& victim, Harm harm, int round) {
+    if (auto status = get_going(); !status) return Error{status.error()};
+    Trial trial{.victim = victim, .harm = harm};
+    // Every phase between two heartbeats is met in turn.
+    std::this_thread::sleep_for(milliseconds((round * 7) % 20));
+    const pid_t process = robot_.process(victim);
+    std::optional<runtime::Guid> life;
+    std::uint32_t contacts = 0;
+    {
+      const auto lock = robot_.locked();
+      life = robot_.life_of(victim);
+      contacts = robot_.motions().back().contacts;
+    }
+    if (process == 0 || !life) return Error{victim + " does not run"};
+    robot_.forget();
+    const Instant harmed = Clock::now();
+    kill(process, harm == Harm::kKill ? SIGKILL : SIGSTOP);
+    Instant zero{};
+    const auto stopped = [&] {
+      for (const auto& wheels : robot_.wheels()) {
+        if (!wheels.zero() || wheels.at < harmed) continue;
+        zero = wheels.at;
+        return true;
+      }
+      return false;
+    };
+    if (!robot_.wait_for(stopped, seconds(2)))
+      return Error{victim + ": no zero at the wheels within 2 s"};
+    trial.zero_ms = ms(zero - harmed);
+    trial.standstill = std::numeric_limits<double>::quiet_NaN();
+    Instant killed = harmed;
+    if (harm == Harm::kHang) {
+      robot_.release();  // so that a return does not end the stop that is measured
+      if (!robot_.wait_for([&] { return robot_.stands(); }, seconds(6)))
+        return Error{victim + ": no standstill within 6 s"};
+      trial.standstill = standstill_share(zero);
+      killed = Clock::now();
+      if (robot_.process(victim) == process) kill(process, SIGKILL);
+    }
+    trial.back_s = wait_for_return(victim, *life, killed);
+    const bool goes_on = robot_.wait_for([&] { return robot_.drives(0.8 * kSpeed); }, seconds(4));
+    if (!goes_on) {
+      // The button was released, or who was restarted does not know that an operator drives.
+      if (auto status = get_going(); !status) return Error{victim + ": " + status.error()};
+    }
+    trial.on_its_way_s = ms(Clock::now() - killed) / 1e3;
+    const auto lock = robot_.locked();
+    trial.contact = robot_.motions().back().contacts > contacts;
+    return trial;
+  }
+
+ private:
+  Status take_over() {
+    const auto manual = [&] {
+      return robot_.status() &&
+             robot_.status()->state() == SupervisorStatus_Constants::STATE_MANUAL;
+    };
+    if (robot_.wait_for(manual, milliseconds(100))) return {};
+    robot_.ask(SupervisorRequest_Constants::COMMAND_MANUAL_ON, seconds(10));
+    if (robot_.wait_for(manual, seconds(5))) return {};
+    return Error{"the supervisor does not let the operator drive: " + robot_.complaints()};
+  }
+
+  double standstill_share(Instant zero) {
+    const auto lock = robot_.locked();
+    double way = 0.0, speed = 0.0;
+    const AttackedRobot::Motion* last = nullptr;
+    for (const auto& motion : robot_.motions()) {
+      if (motion.at < zero) {
+        speed = motion.v;
+        last = &motion;
+        continue;
+      }
+      if (last != nullptr) way += std::hypot(motion.x - last->x, motion.y - last->y);
+      last = &motion;
+    }
+    return way / (kStoppingTime * speed);
+  }
+
+  double wait_for_return(const std::string& victim, const runtime::Guid& life, Instant killed) {
+    const auto back = [&] {
+      const auto now = robot_.life_of(victim);
+      return now && *now != life && robot_.all_well() && robot_.status_at() > killed;
+    };
+    robot_.wait_for(back, seconds(30));
+    return ms(Clock::now() - killed) / 1e3;
+  }
+
+  AttackedRobot& robot_;
+};
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  return values[static_cast<std::size_t>(std::lround(share * last))];
+}
+
+template <class Value>
+std::vector<double> select(const std::vector<Trial>& trials, const Value& value) {
+  std::vector<double> values;
+  for (const Trial& trial : trials) {
+    const double v = value(trial);
+    if (std::isfinite(v)) values.push_back(v);
+  }
+  return values;
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::string trials_csv(const std::vector<Trial>& trials) {
+  std::string csv = "victim,harm,zero_ms,standstill_share,back_s,on_its_way_s,contact\n";
+  for (const Trial& trial : trials) {
+    csv += trial.victim + (trial.harm == Harm::kKill ? ",kill" : ",hang") +
+           format(",%.1f", trial.zero_ms) + format(",%.3f", trial.standstill) +
+           format(",%.3f", trial.back_s) + format(",%.2f", trial.on_its_way_s) +
+           (trial.contact ? ",1\n" : ",0\n");
+  }
+  return csv;
+}
+
+Table by_victim(const std::vector<Trial>& trials, const std::vector<std::string>& victims) {
+  Table table({"component", "harm", "trials", "zero p50 ms", "zero max ms", "way / d(v) max",
+               "back max s"});
+  for (const auto& victim : victims) {
+    for (const Harm harm : {Harm::kKill, Harm::kHang}) {
+      std::vector<Trial> own;
+      for (const Trial& trial : trials) {
+        if (trial.victim == victim && trial.harm == harm) own.push_back(trial);
+      }
+      if (own.empty()) continue;
+      const auto zero = select(own, [](const Trial& t) { return t.zero_ms; });
+      const auto way = select(own, [](const Trial& t) { return t.standstill; });
+      const auto back = select(own, [](const Trial& t) { return t.back_s; });
+      table.add({victim, harm == Harm::kKill ? "kill -9" : "hang", std::to_string(own.size()),
+                 format("%.0f", percentile(zero, 0.5)), format("%.0f", percentile(zero, 1.0)),
+                 way.empty() ? "-" : format("%.2f", percentile(way, 1.0)),
+                 format("%.2f", percentile(back, 1.0))});
+    }
+  }
+  return table;
+}
+
+Status draw(const std::vector<Trial>& trials, const std::string& out) {
+  std::vector<Curve> curves{{"kill -9", 200, 60, 40, {}}, {"hang", 40, 90, 190, {}}};
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    auto values = select(trials, [&](const Trial& t) {
+      return (t.harm == Harm::kKill) == (i == 0) ? t.zero_ms : kNone;
+    });
+    std::sort(values.begin(), values.end());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double count = static_cast<double>(values.size());
+      curves[i].points.emplace_back(values[k], 100.0 * static_cast<double>(k) / count);
+      curves[i].points.emplace_back(values[k], 100.0 * static_cast<double>(k + 1) / count);
+    }
+  }
+  return draw_plot(curves, "From the loss of a critical component to the first zero at the base",
+                   "time [ms]", "trials [%]", out + "/reaction.png");
+}
+
+void judge(const std::vector<Trial>& trials, ResultSheet& sheet) {
+  const auto zero = select(trials, [](const Trial& t) { return t.zero_ms; });
+  const auto way = select(trials, [](const Trial& t) { return t.standstill; });
+  const auto is_chain = [](const Trial& t) {
+    return t.victim == "supervisor" || t.victim == "movement_control" || t.victim == "segway_rmp";
+  };
+  const auto back = select(trials, [](const Trial& t) { return t.back_s; });
+  const auto chain_back = select(trials, [&](const Trial& t) {
+    return is_chain(t) && t.harm == Harm::kKill ? t.back_s : kNone;
+  });
+  const auto contacts = select(trials, [](const Trial& t) { return t.contact ? 1.0 : kNone; });
+  sheet.metrics["trials"] = static_cast<double>(trials.size());
+  sheet.metrics["zero_ms_p50"] = percentile(zero, 0.5);
+  sheet.metrics["zero_ms_max"] = percentile(zero, 1.0);
+  sheet.metrics["standstill_share_max"] = percentile(way, 1.0);
+  sheet.metrics["drive_chain_back_s_max"] = percentile(chain_back, 1.0);
+  sheet.metrics["all_back_s_max"] = percentile(back, 1.0);
+  sheet.metrics["contacts"] = static_cast<double>(contacts.size());
+  sheet.targets = {{"zero_ms_p50", {Bound::kAtMost, kMedian}},
+                   {"zero_ms_max", {Bound::kAtMost, kMost}},
+                   {"standstill_share_max", {Bound::kAtMost, kStandstill}},
+                   {"drive_chain_back_s_max", {Bound::kAtMost, kReturn}},
+                   {"contacts", {Bound::kAtMost, 0.0}}};
+}
+
+}  // namespace
+
+Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options) {
+  auto robot = AttackedRobot::launch(options.installation, options.out + "/run", options.domain);
+  if (!robot) return Error{robot.error()};
+  auto victims = (*robot)->components("stop");
+  if (!options.only.empty())
+    std::erase_if(victims, [&](const auto& name) { return name != options.only; });
+  if (victims.empty()) return Error{"no critical component '" + options.only + "'"};
+  const int rounds = options.seeds > 0 ? options.seeds : kRounds;
+  Attack attack(**robot);
+  std::vector<Trial> trials;
+  for (int round = 0; round < rounds; ++round) {
+    for (const auto& victim : victims) {
+      for (const Harm harm : {Harm::kKill, Harm::kHang}) {
+        show_progress("round " + std::to_string(round + 1) + " of " + std::to_string(rounds) +
+                      ": " + victim + (harm == Harm::kKill ? ", kill -9" : ", hang"));
+        auto trial = attack.run(victim, harm, round);
+        if (!trial) return Error{trial.error()};
+        trials.push_back(*trial);
+      }
+    }
+  }
+  show_progress("");
+  ResultSheet sheet;
+  sheet.name = "reaction";
+  sheet.input = "MARVIN as processes with driver, guard and emulated base, circles at " +
+                format("%.1f", kSpeed) + " m/s; kill -9 and SIGSTOP of each critical component, " +
+                std::to_string(rounds) + " times";
+  judge(trials, sheet);
+  const Table table = by_victim(trials, victims);
+  std::printf("%s\n", table.text().c_str());
+  Status saved = write_file(options.out + "/trials.csv", trials_csv(trials));
+  if (saved) saved = write_file(options.out + "/components.md", table.markdown());
+  if (saved) saved = draw(trials, options.out);
+  if (!saved) return Error{saved.error()};
+  return sheet;
+}
+
+}  // namespace usher::operations
