@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 constexpr auto kScanAge = milliseconds(500);
 /// map -> odom changes slowly: it is valid until the next scan, and a little longer.
 constexpr auto kTransformLife = milliseconds(50);
+constexpr auto kKeeping = milliseconds(5);  // the pose on the disk, in simulation
 constexpr const char* kPoseKey = "amcl.pose";
 constexpr double kOdometryContinues =
     3.0;  // [m] a longer way since the pose was kept is a restarted odometry
@@ -263,19 +264,28 @@ void AmclComponent::publish_cloud() {
 
 void AmclComponent::keep() {
   const auto& estimate = core_.estimate();
-  if (!estimate || estimate->quality.confidence != Confidence::kGood) return;
+  if (keeping_ || !estimate || estimate->quality.confidence != Confidence::kGood) return;
   std::ostringstream text;
   text.precision(17);
   const auto& map = estimate->map_T_base;
   const auto& odom = estimate->odom_T_base;
   text << map.x << ' ' << map.y << ' ' << map.yaw << ' ' << odom.x << ' ' << odom.y << ' '
        << odom.yaw;
-  const std::string kept = text.str();
-  // A robot that cannot write its disk still localizes; it only starts at the site's pose the next
-  // time.
-  if (!host_.keep(kPoseKey, {reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()})) {
-    ++host_.health().counter("pose: not kept");
-  }
+  // Beside the handlers: a busy disk takes longer than the heartbeat may be silent. A robot that
+  // cannot write its disk still localizes; it only starts at the site's pose the next time.
+  keeping_ = true;
+  const auto done = std::make_shared<bool>(false);
+  host_.offload(
+      kKeeping,
+      [&host = host_, kept = text.str(), done] {
+        const auto status =
+            host.keep(kPoseKey, {reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()});
+        *done = static_cast<bool>(status);
+      },
+      [this, done] {
+        keeping_ = false;
+        if (!*done) ++host_.health().counter("pose: not kept");
+      });
 }
 
 }  // namespace usher::amcl

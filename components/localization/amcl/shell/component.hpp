@@ -36,6 +36,7 @@ class AmclComponent final : public runtime::Component {
   double initial_position_sigma_ = 0.5, initial_yaw_sigma_ = 0.25;
   bool started_ = false;
   bool map_known_ = false;
+  bool keeping_ = false;  ///< the last pose is on its way to the disk
   runtime::Time last_scan_{};
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_odometry_;
