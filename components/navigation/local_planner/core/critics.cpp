@@ -14,6 +14,7 @@ constexpr double kForesight = 3.0;  // [s] that moving discs are foreseen
 constexpr double kPolylineStep = 0.1;      // [m] 3 mm off an arc of 0.5 m
 constexpr double kTurnOnSpot = 0.15;       // [m/s] slower than this a turn is one on the spot
 constexpr double kTurnMatters = 0.05;      // [rad/s]
+constexpr double kTightPath = 4.0;         // the plan leads through the middle of a door
 constexpr double kOscillationWay = 0.05;   // [m] after which the other sense is allowed again
 constexpr double kOscillationTurn = 0.35;  // [rad]
 
@@ -238,13 +239,14 @@ CriticScores DynamicWindow::score(const Input& input, std::size_t index, double 
   const double end_x = rollout_.x()[3 * index + 2];
   const double end_y = rollout_.y()[3 * index + 2];
   CriticScores s;
-  s.path = weights.path / 3.0 *
+  s.path = (tight_ ? kTightPath : 1.0) * weights.path / 3.0 *
            (static_cast<double>(point_distances_[3 * index]) +
             static_cast<double>(point_distances_[3 * index + 1]) +
             static_cast<double>(point_distances_[3 * index + 2]));
   s.goal = weights.goal * way_left(goal_lengths_, input, end_x, end_y);
   if (aligned_) {
-    s.alignment = weights.alignment * static_cast<double>(point_distances_[3 * count + index]);
+    s.alignment = (tight_ ? kTightPath : 1.0) * weights.alignment *
+                  static_cast<double>(point_distances_[3 * count + index]);
     s.goal_front = weights.goal_front * way_left(front_lengths_, input,
                                                  static_cast<double>(points_x_[3 * count + index]),
                                                  static_cast<double>(points_y_[3 * count + index]));

@@ -268,6 +268,19 @@ bool DynamicWindow::can_turn(const Input& input, double angle) const {
   return true;
 }
 
+/// The small move that takes a touched corner out of the way of a turn; nothing when none does, or
+/// none bars it (the thesis, fig. 6.3).
+std::optional<Decision> DynamicWindow::free_corner(const Input& input, double angle) {
+  const Touches& t = touches_;
+  const bool in_front = angle > 0.0 ? t.front_left : t.front_right;
+  const bool behind = angle > 0.0 ? t.back_right : t.back_left;
+  if (in_front == behind) return std::nullopt;
+  if (in_front ? t.back_left || t.back_right : t.front_left || t.front_right) return std::nullopt;
+  Decision decision = recover(input, {in_front ? -config_.slowest : config_.slowest, 0.0});
+  if (decision.blocked) return std::nullopt;
+  return decision;
+}
+
 Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   if (std::abs(input.measured.v) > kSlowEnoughToTurn) {
     return halt(input, reason, config_.limits.deceleration);
@@ -276,6 +289,7 @@ Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   // A turn that has begun keeps its sense, the long way round too, until it is nearly there.
   if (turning_ != 0 && std::abs(angle) > 0.5 && angle * turning_ < 0.0)
     angle += turning_ * 2.0 * geometry::kPi;
+  if (auto decision = free_corner(input, angle)) return *decision;
   if (!can_turn(input, angle)) {
     angle += angle > 0.0 ? -2.0 * geometry::kPi : 2.0 * geometry::kPi;
     if (!can_turn(input, angle)) return halt(input, Reason::kBlocked, config_.braking);
@@ -336,6 +350,7 @@ Decision DynamicWindow::follow(const Input& input) {
     fastest = std::min(fastest, room);
   }
   fastest = std::max(fastest, config_.slowest);
+  tight_ = false;
   Decision decision = drive(input, {&narrow_, &roomy_}, fastest);
   if (decision.admissible > 0) return with_obstacle(decision);
   // No arc fits: perhaps one does after a turn to the path, or slowly and with less room.
@@ -345,6 +360,7 @@ Decision DynamicWindow::follow(const Input& input) {
     return with_obstacle(turn_to(input, heading, Reason::kTurning));
   }
   const double slow = std::min({fastest, config_.tight_speed, config_.pace});
+  tight_ = true;
   decision = drive(input, {&whole_, &narrow_}, slow);
   // Who overlaps part of a cell already must be let out by its center.
   if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,6 +85,11 @@ struct DynamicWindowConfig {
   CriticWeights weights;
 };
 
+/// Corners whose whisker is bent.
+struct Touches {
+  bool front_left = false, front_right = false, back_left = false, back_right = false;
+};
+
 enum class Reason : std::uint8_t {
   kFollowing,      ///< drives along the path
   kTight,          ///< drives slowly where only its own outline fits
@@ -139,6 +145,9 @@ class DynamicWindow {
   /// within tolerance.
   Status set_path(std::span<const geometry::Pose2> path);
   void clear_path();
+  /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
+  /// has been taken away: forward from a touch behind, backward from one in front.
+  void set_touches(const Touches& touches) { touches_ = touches; }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
   Status set_pace(double pace);
 
@@ -177,6 +186,7 @@ class DynamicWindow {
 
   // What to do (dynamic_window.cpp).
   Decision at_goal(const Input& input);
+  std::optional<Decision> free_corner(const Input& input, double angle);
   Decision turn_to(const Input& input, double yaw, Reason reason);
   Decision follow(const Input& input);
   Decision brake(const Input& input);
@@ -216,6 +226,8 @@ class DynamicWindow {
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
   Trail trail_;
+  Touches touches_;
+  bool tight_ = false;  // only its own outline fits: the path's line counts for more
 
   double local_goal_arc_ = 0.0;
   bool goal_in_window_ = false;

@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kCostsAge = milliseconds(250);
 constexpr auto kOdomAge = milliseconds(150);
+constexpr auto kWhiskerAge = milliseconds(300);
 constexpr double kLongestPrediction = 0.1;  // [s] from the odometry's stamp to now
 constexpr double kPathShift = 0.005;        // [m] less is not worth placing the path anew
 constexpr double kPathTurn = 0.002;         // [rad]
@@ -126,6 +127,9 @@ LocalPlannerComponent::LocalPlannerComponent(runtime::Host& host)
       [this] { stand(STATE_WAITING, "no local costs"); });
   odom_ = host.input(topics::kOdom, {.max_age = kOdomAge, .on_loss = "commands zero and waits"}, {},
                      [this] { stand(STATE_WAITING, "no odometry"); });
+  whiskers_ = host.input(
+      topics::kWhiskers,
+      {.max_age = kWhiskerAge, .on_loss = "takes nothing for touched", .optional = true});
   command_ = host.output(topics::kCmdVelNavigation);
   status_ = host.output(topics::kFollowStatus);
   view_ = host.output(topics::kLocalPlan);
@@ -214,6 +218,10 @@ Decision LocalPlannerComponent::decision(const grid::Grid<std::uint8_t>& costs,
                                          const geometry::Pose2& pose,
                                          const geometry::Twist2& measured) {
   const double elapsed = std::clamp(runtime::seconds(host_.now() - last_decision_), 0.0, 0.2);
+  const auto* t = whiskers_.fresh();
+  planner_->set_touches(
+      t == nullptr ? Touches{}
+                   : Touches{t->front_left(), t->front_right(), t->back_left(), t->back_right()});
   if (mode_ == MODE_BACK_OFF)
     return planner_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_);
   if (mode_ == MODE_ROTATE)

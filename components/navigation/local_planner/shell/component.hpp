@@ -56,6 +56,7 @@ class LocalPlannerComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::GoalCancel> cancel_;
   runtime::Input<usher_msgs::msg::Costmap> costs_;
   runtime::Input<nav_msgs::msg::Odometry> odom_;
+  runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
   runtime::Output<geometry_msgs::msg::TwistStamped> command_;
   runtime::Output<usher_msgs::msg::FollowStatus> status_;
   runtime::Output<nav_msgs::msg::Path> view_;

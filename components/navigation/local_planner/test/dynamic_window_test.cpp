@@ -254,6 +254,30 @@ TEST(BackingOff, RunsStraightBackWhileThereIsRoom) {
   EXPECT_EQ(decision.command.w, 0.0);
 }
 
+TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
+  // The path leads to the left of a robot that stands.
+  const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};
+  struct Row {
+    Touches touches;
+    double v, w;  ///< signs of the command
+  };
+  const Row rows[] = {
+      {{}, 0.0, 1.0},
+      {{.back_right = true}, 1.0, 0.0},   // the tail would swing into it
+      {{.front_left = true}, -1.0, 0.0},  // the nose would
+      {{.front_right = true}, 0.0, 1.0},  // turns away from it
+      {{.front_left = true, .back_right = true}, 0.0, 1.0},  // no way out: the reflex holds it
+  };
+  for (const Row& row : rows) {
+    DynamicWindow planner = DynamicWindow::make({}).value();
+    ASSERT_TRUE(planner.set_path(path).ok());
+    planner.set_touches(row.touches);
+    const Decision decision = planner.decide(empty_window(), {}, {}, {}, 0.05);
+    EXPECT_EQ(decision.target.v > 0.0 ? 1.0 : decision.target.v < 0.0 ? -1.0 : 0.0, row.v);
+    EXPECT_EQ(decision.target.w > 0.0 ? 1.0 : decision.target.w < 0.0 ? -1.0 : 0.0, row.w);
+  }
+}
+
 TEST(BackingOff, FollowsTheWayThatItCame) {
   // It drove a bend to the left; back along it, its tail swings to the right and its yaw falls.
   DynamicWindow planner = planner_to(3.0);
