@@ -65,7 +65,11 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
     const bool up = from.layer == "core" && !test && !starts_with_any(name, {from.room + "/core/"});
     return up ? "a core does not know its shell" : "";
   }
-  if (starts_with_any(name, {"drivers/base_obedience/core/", "interaction/phrases/core/"})) return {};
+  // Libraries without a shell are no components.
+  if (starts_with_any(name, {"drivers/base_obedience/core/", "interaction/phrases/core/",
+                             "simulation/rendering/core/"})) {
+    return {};
+  }
   if (from.layer == "core" && !test) return "a core knows itself and foundation";
   if (starts_with_any(name, {"wire/", "runtime/api/"}) || is_message(name)) return {};
   if (starts_with_any(name, {"runtime/"})) return "a shell knows the runtime's api only";

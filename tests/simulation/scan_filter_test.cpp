@@ -11,8 +11,8 @@
 namespace usher::world {
 namespace {
 
+using estimation::Pitch;
 using geometry::radians;
-using scan_filter::Pitch;
 using scan_filter::PlanarScan;
 using scan_filter::ScanFilter;
 
@@ -110,7 +110,7 @@ walls:
   ASSERT_TRUE(building.ok());
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     World world({}, *building, {}, {4.0, 3.0, 0.0}, seed);
-    scan_filter::PitchHistory history;
+    estimation::PitchHistory history;
     ScanFilter filter = ScanFilter::make({}).value();
     std::vector<float> ranges;
     PlanarScan out;

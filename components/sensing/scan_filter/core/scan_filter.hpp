@@ -4,11 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "foundation/estimation/pitch_history.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/result/result.hpp"
-#include "sensing/scan_filter/core/pitch_history.hpp"
 
 namespace usher::scan_filter {
+
+using estimation::Pitch;
 
 /// The constants of one sensor's filter; the defaults are MARVIN's LMS100.
 struct ScanFilterConfig {

@@ -34,7 +34,7 @@ class ScanFilterComponent final : public runtime::Component {
   void place_frames();
 
   runtime::Host& host_;
-  PitchHistory pitch_;
+  estimation::PitchHistory pitch_;
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
   std::uint64_t& floor_;

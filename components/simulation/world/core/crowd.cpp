@@ -42,7 +42,11 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
   for (const PersonPlan& plan : plans) {
     Person person{
         .name = plan.name, .scripted = plan.loop.empty(), .position = plan.start, .yaw = plan.yaw};
-    Mind mind{.speed = plan.speed, .loop = plan.loop, .pause = plan.pause};
+    // Not from the stream of the walking, which heights shall not disturb.
+    Random looks(stream_seed(seed, plan.name.c_str()));
+    person.height =
+        plan.height > 0.0 ? plan.height : std::clamp(looks.gaussian(1.72, 0.09), 1.5, 1.98);
+    Mind mind{.at_rest = plan.posture, .speed = plan.speed, .loop = plan.loop, .pause = plan.pause};
     if (!plan.loop.empty()) {
       constexpr int kTries = 20;
       constexpr double kFarEnough = 2.0;  // [m]
@@ -54,6 +58,7 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
     }
     mind.stuck_at = person.position;
     movers_.push_back({person.position, config.radius, config.top});
+    hold(person, mind, movers_.back());
     people_.push_back(std::move(person));
     minds_.push_back(std::move(mind));
   }
@@ -85,8 +90,8 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     choose_goal(person, mind, robot);
     const Point2 wanted = wanted_velocity(person, mind, robot);
     // Who follows and is near enough stands, and has to step out of the robot's way.
-    const bool walks = mind.has_goal && mind.pause_left <= 0.0 &&
-                       (mind.goal - person.position).norm() > 0.05;
+    const bool walks =
+        mind.has_goal && mind.pause_left <= 0.0 && (mind.goal - person.position).norm() > 0.05;
 
     Point2 push = push_of_people(i) + push_of_robot(person, walks, robot);
     constexpr double kWallSight = 0.8;  // [m]
@@ -99,7 +104,26 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     const bool by_a_wall = wall.distance < config_.radius + 0.1;
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
     lose_patience(person, mind);
+    hold(person, mind, movers_[i]);
   }
+}
+
+/// Posture and height of the body; who walks, walks upright.
+void Crowd::hold(Person& person, const Mind& mind, Mover& mover) const {
+  using rendering::Posture;
+  constexpr double kWalks = 0.15;       // [m/s]
+  constexpr double kStepLength = 0.41;  // of one step, times the height
+  const double speed = person.velocity.norm();
+  person.posture = speed > kWalks ? Posture::kWalking : mind.at_rest;
+  person.stride =
+      std::remainder(person.stride + geometry::kPi * speed * kStep / (kStepLength * person.height),
+                     2.0 * geometry::kPi);
+  double top = person.height;
+  if (person.posture == Posture::kSitting) top = 0.45 + 0.52 * person.height;
+  if (person.posture == Posture::kSquatting || person.posture == Posture::kBending) {
+    top = 0.65 * person.height;
+  }
+  mover.top = top;
 }
 
 void Crowd::remember_robot(const RobotView& robot) {

@@ -26,6 +26,9 @@ struct Person {
   Point2 position = Point2::Zero();  ///< [m]
   Point2 velocity = Point2::Zero();  ///< [m/s]
   double yaw = 0.0;                  ///< [rad] where the person looks
+  double height = 1.75;              ///< [m] when standing upright
+  rendering::Posture posture = rendering::Posture::kStanding;
+  double stride = 0.0;  ///< [rad] phase of walking
 };
 
 /// Constants of the people; accelerations are those of a person of unit mass.
@@ -71,6 +74,7 @@ class Crowd {
 
  private:
   struct Mind {
+    rendering::Posture at_rest = rendering::Posture::kStanding;
     double speed = 0.0;  // wanted
     Point2 goal = Point2::Zero();
     bool has_goal = false;
@@ -88,6 +92,7 @@ class Crowd {
   void choose_goal(Person& person, Mind& mind, const RobotView& robot);
   void turn_round(Mind& mind) const;
   void lose_patience(Person& person, Mind& mind);
+  void hold(Person& person, const Mind& mind, Mover& mover) const;
   Point2 wanted_velocity(const Person& person, const Mind& mind, const RobotView& robot) const;
   Point2 push_of_people(std::size_t index) const;
   Point2 push_of_robot(const Person& person, bool walks, const RobotView& robot) const;

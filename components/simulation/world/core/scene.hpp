@@ -17,7 +17,8 @@ using geometry::Pose2;
 
 enum class Material : std::uint8_t { kSolid, kGlass };
 
-/// A rigid upright thing: an outline from `bottom` to `top`. All lengths in metres, in world.
+/// A rigid upright thing: an outline from `bottom` to `top`. All lengths in metres, in world. One
+/// whose top is 0 and whose bottom lies below is a pit in the floor.
 struct Thing {
   std::string name;
   Material material = Material::kSolid;

@@ -52,6 +52,7 @@ World::World(const WorldConfig& config, std::optional<Building> building,
 }
 
 void World::rebuild() {
+  ++scene_version_;
   std::vector<Thing> things = building_ ? construct(*building_) : std::vector<Thing>{};
   things.insert(things.end(), extra_.begin(), extra_.end());
   scene_ = std::make_unique<Scene>(

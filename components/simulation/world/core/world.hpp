@@ -93,6 +93,11 @@ class World {
 
   const GroundTruth& truth() const { return truth_; }
   const Scene& scene() const { return *scene_; }
+  /// Grows when doors or things change.
+  std::uint64_t scene_version() const { return scene_version_; }
+  /// The map that the world was made from; null for a building.
+  const grid::OccupancyGrid* map() const { return map_ ? &*map_ : nullptr; }
+  geometry::Pose3 base_in_world() const;  ///< base_link, leaning
   const WorldConfig& config() const { return config_; }
 
  private:
@@ -101,7 +106,6 @@ class World {
         const Pose2& robot, std::uint64_t seed);
 
   void rebuild();
-  geometry::Pose3 base_in_world() const;
   std::vector<Point2>& footprint_at(const Pose2& pose);
   void watch_people();
   bool thing_long_visible(const std::string& name) const;
@@ -114,6 +118,7 @@ class World {
   std::vector<Thing> extra_;
   std::unique_ptr<Base> base_;
   std::unique_ptr<Scene> scene_;
+  std::uint64_t scene_version_ = 0;
   Crowd crowd_;
   std::vector<Laser> lasers_;
   Sonar sonar_;

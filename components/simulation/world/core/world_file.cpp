@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
+#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -171,16 +172,58 @@ Gap parse_gap(const YAML::Node& node, bool door) {
   return gap;
 }
 
-Thing parse_furniture(const YAML::Node& node) {
-  const Entry entry(node, "furniture", {"name", "box", "disc", "height", "glass"});
-  if (entry.has("box") == entry.has("disc")) {
-    throw ParseError(entry.mark(), "furniture needs either 'box' or 'disc'");
+/// A table top 40 mm thick on four legs.
+std::vector<Thing> table(const std::string& name, const Pose2& pose, double length, double width,
+                         double height) {
+  constexpr double kThick = 0.04, kLeg = 0.05;  // [m]
+  std::vector<Thing> things{box(name, pose, length, width, height - kThick, height)};
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      const Point2 at = pose * Point2(x * (length - kLeg), y * (width - kLeg));
+      things.push_back(box(name + " leg " + std::to_string(things.size()),
+                           {at.x(), at.y(), pose.yaw}, kLeg, kLeg, 0.0, height - kThick));
+    }
   }
-  const auto height = entry.numbers("height", 2);
-  if (!(height[0] >= 0.0 && height[0] < height[1])) {
-    throw ParseError(entry.mark(), "furniture.height must be [bottom, top], 0 <= bottom < top");
+  return things;
+}
+
+/// An office chair of about 0.6 m across and 0.9 m high: foot, column, seat, back.
+std::vector<Thing> chair(const std::string& name, const Pose2& pose) {
+  const Point2 back = pose * Point2(-0.23, 0.0);
+  const Point2 middle = pose.position();
+  return {disc(name, middle, 0.24, 0.42, 0.50), disc(name + " foot", middle, 0.30, 0.03, 0.10),
+          disc(name + " column", middle, 0.04, 0.10, 0.42),
+          box(name + " back", {back.x(), back.y(), pose.yaw}, 0.06, 0.42, 0.50, 0.90)};
+}
+
+std::vector<Thing> parse_furniture(const YAML::Node& node) {
+  const Entry entry(node, "furniture",
+                    {"name", "box", "disc", "table", "chair", "height", "glass"});
+  int kinds = 0;
+  for (const char* kind : {"box", "disc", "table", "chair"}) kinds += entry.has(kind);
+  if (kinds != 1) {
+    throw ParseError(entry.mark(), "furniture needs one of 'box', 'disc', 'table', 'chair'");
   }
   const std::string name = entry.text("name");
+  if (entry.has("chair")) {
+    const auto v = entry.numbers("chair", 3);
+    return chair(name, {v[0], v[1], v[2]});
+  }
+  if (entry.has("table")) {
+    const auto v = entry.numbers("table", 5);
+    if (!(v[3] >= 0.2 && v[4] >= 0.2)) {
+      throw ParseError(entry.mark(),
+                       "furniture.table must be [x, y, yaw, length, width], sides from 0.2 m");
+    }
+    return table(name, {v[0], v[1], v[2]}, v[3], v[4], entry.number("height", 0.3, 1.5));
+  }
+  const auto height = entry.numbers("height", 2);
+  const bool pit = height[0] < 0.0 && height[1] == 0.0;
+  if (!pit && !(height[0] >= 0.0 && height[0] < height[1])) {
+    throw ParseError(entry.mark(),
+                     "furniture.height must be [bottom, top], 0 <= bottom < top, or [-depth, 0] "
+                     "for a pit");
+  }
   Thing thing;
   if (entry.has("box")) {
     const auto v = entry.numbers("box", 5);
@@ -197,11 +240,27 @@ Thing parse_furniture(const YAML::Node& node) {
     thing = disc(name, {v[0], v[1]}, v[2], height[0], height[1]);
   }
   if (entry.has("glass") && entry.flag("glass")) thing.material = Material::kGlass;
-  return thing;
+  return {thing};
+}
+
+rendering::Posture parse_posture(const Entry& entry) {
+  using rendering::Posture;
+  static const std::map<std::string, Posture> kPostures{{"standing", Posture::kStanding},
+                                                        {"sitting", Posture::kSitting},
+                                                        {"squatting", Posture::kSquatting},
+                                                        {"bending", Posture::kBending},
+                                                        {"arms_out", Posture::kArmsOut}};
+  const auto found = kPostures.find(entry.text("posture"));
+  if (found == kPostures.end()) {
+    throw ParseError(entry.mark(),
+                     "person.posture must be standing, sitting, squatting, bending or arms_out");
+  }
+  return found->second;
 }
 
 PersonPlan parse_person(const YAML::Node& node) {
-  const Entry entry(node, "person", {"name", "at", "yaw", "speed", "pause", "loop"});
+  const Entry entry(node, "person",
+                    {"name", "at", "yaw", "speed", "pause", "loop", "height", "posture"});
   PersonPlan plan;
   plan.name = entry.text("name");
   if (entry.has("at") == entry.has("loop")) {
@@ -217,6 +276,8 @@ PersonPlan parse_person(const YAML::Node& node) {
   if (entry.has("yaw")) plan.yaw = entry.number("yaw", -10.0, 10.0);
   if (entry.has("speed")) plan.speed = entry.number("speed", 0.1, 2.5);
   if (entry.has("pause")) plan.pause = entry.number("pause", 0.0, 600.0);
+  if (entry.has("height")) plan.height = entry.number("height", 1.2, 2.1);
+  if (entry.has("posture")) plan.posture = parse_posture(entry);
   return plan;
 }
 
@@ -287,8 +348,10 @@ Building read_building(const YAML::Node& root) {
     });
   }
   each("furniture", [&](const YAML::Node& node) {
-    building.furniture.push_back(parse_furniture(node));
-    insist_on_new_name(names, building.furniture.back(), node);
+    for (Thing& thing : parse_furniture(node)) {
+      insist_on_new_name(names, thing, node);
+      building.furniture.push_back(std::move(thing));
+    }
   });
   return building;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foundation/result/result.hpp"
+#include "simulation/rendering/core/body.hpp"
 #include "simulation/world/core/scene.hpp"
 
 namespace usher::world {
@@ -62,6 +63,9 @@ struct PersonPlan {
   double speed = 1.2;             ///< [m/s] preferred
   double pause = 0.0;             ///< [s] at each end of a leg
   std::vector<Point2> loop;       ///< walked round and round; empty: stands until told where to go
+  double height = 0.0;            ///< [m] {1.2..2.1} 0: drawn from the world's seed
+  /// While it does not walk; a sitting person needs a seat of its own.
+  rendering::Posture posture = rendering::Posture::kStanding;
 };
 
 Result<std::vector<PersonPlan>> load_people(const std::string& path);

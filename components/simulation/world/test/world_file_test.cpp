@@ -87,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"name: x\nwalls:\n  - {name: a, thickness: 0.1, points: [[0, 0], [9, 0]]}\n"
                 "doors:\n  - {name: d, at: [0.2, 0], width: 0.8}",
                 "half of the width"},
-        Refused{"name: x\nfurniture:\n  - {name: a, height: [0, 1]}", "either 'box' or 'disc'"},
+        Refused{"name: x\nfurniture:\n  - {name: a, height: [0, 1]}",
+                "one of 'box', 'disc', 'table', 'chair'"},
         Refused{"name: x\nfurniture:\n  - {name: a, disc: [0, 0, 0], height: [0, 1]}", "radius"},
         Refused{"name: x\nfurniture:\n  - {name: a, disc: [0, 0, 1], height: [1, 0]}", "bottom"},
         Refused{"name: x\nfurniture:\n  - {name: a, disc: [0, 0, 1], height: [0, 1]}\n"

@@ -7,7 +7,7 @@
 
 #include "foundation/result/result.hpp"
 
-namespace usher::scan_filter {
+namespace usher::estimation {
 
 using Stamp = std::chrono::nanoseconds;  ///< since the epoch of the host
 
@@ -52,4 +52,4 @@ class PitchHistory {
   std::size_t count_ = 0;
 };
 
-}  // namespace usher::scan_filter
+}  // namespace usher::estimation

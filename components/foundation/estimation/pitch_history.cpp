@@ -1,9 +1,9 @@
-#include "sensing/scan_filter/core/pitch_history.hpp"
+#include "foundation/estimation/pitch_history.hpp"
 
 #include <cmath>
 #include <string>
 
-namespace usher::scan_filter {
+namespace usher::estimation {
 namespace {
 
 constexpr double kSteepest = 1.5;                       // [rad]
@@ -60,4 +60,4 @@ Result<Pitch> PitchHistory::at(Stamp stamp) const {
                milliseconds(newest.stamp - back(count_ - 1).stamp)};
 }
 
-}  // namespace usher::scan_filter
+}  // namespace usher::estimation

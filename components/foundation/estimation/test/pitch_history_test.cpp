@@ -1,11 +1,11 @@
-#include "sensing/scan_filter/core/pitch_history.hpp"
+#include "foundation/estimation/pitch_history.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace usher::scan_filter {
+namespace usher::estimation {
 namespace {
 
 using std::chrono::milliseconds;
@@ -66,4 +66,4 @@ TEST(PitchHistory, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace usher::scan_filter
+}  // namespace usher::estimation

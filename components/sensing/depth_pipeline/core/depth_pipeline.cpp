@@ -1,0 +1,296 @@
+#include "sensing/depth_pipeline/core/depth_pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "sensing/depth_pipeline/core/kernels.hpp"
+
+namespace usher::depth_pipeline {
+
+namespace {
+
+constexpr float kFree = std::numeric_limits<float>::infinity();
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr double kHalfMillimeter = 5e-4;  // [m] unit of the columns' distances
+constexpr double kWidest = 0.85;          // least forward distance per depth that the scan covers
+constexpr int kColumnArrays = 11;
+constexpr int kBuffers = 8;
+constexpr int kLeastValid = 10;   // a column with fewer than one in so many pixels is unknown
+constexpr double kFallGap = 0.3;  // [m] between columns of one missing piece of floor
+
+enum ColumnArray { kHigh = 0, kLow = 4, kValid = 8, kFallBegin, kFall };
+
+ScanGeometry geometry_for(const Intrinsics& camera) {
+  const double right = (camera.width - 0.5 - camera.cx) / camera.fx / kWidest;
+  const double left = (camera.cx + 0.5) / camera.fx / kWidest;
+  ScanGeometry geometry;
+  geometry.increment = std::atan(1.0 / camera.fx);  // the widest column is one bearing wide
+  geometry.angle_min = -std::atan(right);
+  geometry.count = static_cast<std::size_t>(
+      std::ceil((std::atan(left) + std::atan(right)) / geometry.increment));
+  return geometry;
+}
+
+std::uint16_t millimeters(double meters) {
+  return static_cast<std::uint16_t>(std::lround(meters * 1e3));
+}
+
+}  // namespace
+
+Status check(const PipelineConfig& config) {
+  struct Bound {
+    const char* name;
+    double value, low, high;
+  };
+  for (const Bound& b :
+       {Bound{"min_depth", config.min_depth, 0.05, 2.0},
+        Bound{"max_depth", config.max_depth, 1.0, 16.0},
+        Bound{"max_range", config.max_range, 0.5, 16.0}, Bound{"origin", config.origin, -1.0, 1.0},
+        Bound{"support", static_cast<double>(config.support), 1.0, 8.0},
+        Bound{"support_gap", config.support_gap, 0.0, 5.0},
+        Bound{"low_gap", config.low_gap, 0.0, 5.0},
+        Bound{"drop_length", config.drop_length, 0.05, 2.0},
+        Bound{"drop_width", config.drop_width, 0.0, 2.0},
+        Bound{"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
+              Confidence::kMostFrames},
+        Bound{"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
+        Bound{"least_confidence", config.least_confidence, 0.0, 1.0}}) {
+    if (!(b.value >= b.low && b.value <= b.high)) {
+      return Error{std::string(b.name) + " must be in [" + std::to_string(b.low) + ", " +
+                   std::to_string(b.high) + "], got " + std::to_string(b.value)};
+    }
+  }
+  if (const auto status = check(config.floor); !status) return status;
+  if (const auto status = check(config.refitted); !status)
+    return Error{"refitted " + status.error()};
+  return {};
+}
+
+Result<DepthPipeline> DepthPipeline::make(const Intrinsics& intrinsics,
+                                          const PipelineConfig& config) {
+  if (const auto status = imaging::check(intrinsics); !status) return Error{status.error()};
+  if (const auto status = check(config); !status) return Error{status.error()};
+  return DepthPipeline(intrinsics, config);
+}
+
+DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig& config)
+    : intrinsics_(intrinsics),
+      config_(config),
+      geometry_(geometry_for(intrinsics)),
+      predicted_(intrinsics, config.floor, config.max_depth),
+      refitted_(intrinsics, config.refitted, config.max_depth),
+      confidence_(geometry_.count, config.confidence_frames, config.confidence_threshold,
+                  config.max_range),
+      low_confidence_(geometry_.count, config.confidence_frames, config.confidence_threshold,
+                      config.max_range) {
+  const auto width = static_cast<std::size_t>(intrinsics.width);
+  column_stride_ = (width + 15) / 16 * 16;
+  buffer_stride_ = column_stride_ + 2 * kernels::kPad;
+  processed_.resize(width * static_cast<std::size_t>(intrinsics.height));
+  columns_.resize(kColumnArrays * column_stride_);
+  buffers_.resize(kBuffers * buffer_stride_);
+  for (DepthScan* scan : {&scan_, &low_}) {
+    scan->ranges.resize(geometry_.count);
+    scan->intensities.resize(geometry_.count);
+  }
+  spare_.resize(geometry_.count);
+}
+
+Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPose& pose) {
+  if (image.width != intrinsics_.width || image.height != intrinsics_.height ||
+      image.millimeters.size() != processed_.size()) {
+    return Error{"expected a depth image of " + std::to_string(intrinsics_.width) + " x " +
+                 std::to_string(intrinsics_.height) + ", got " + std::to_string(image.width) +
+                 " x " + std::to_string(image.height) + " with " +
+                 std::to_string(image.millimeters.size()) + " values"};
+  }
+  if (!(pose.height >= 0.05 && pose.height <= 3.0) || !(std::abs(pose.down) <= 1.2) ||
+      !(std::abs(pose.roll) <= 0.5) || !std::isfinite(pose.forward)) {
+    return Error{"no camera stands " + std::to_string(pose.height) + " m high looking " +
+                 std::to_string(pose.down) + " rad down with a roll of " +
+                 std::to_string(pose.roll)};
+  }
+  DepthView view;
+  view.pose = pose;
+  if (config_.refit) {
+    if (const auto fit = fit_floor(image, intrinsics_, pose, config_.fit)) {
+      view.pose = fit->pose;
+      view.refitted = true;
+    }
+  }
+  FloorPrediction& floor = view.refitted ? refitted_ : predicted_;
+  floor.predict(view.pose);
+  sort_pixels(image, floor);
+
+  shift_ = view.pose.forward - config_.origin;
+  clear_bearings();
+  mark_free(view.pose);
+  mark_obstacles(floor);
+  drop_unsupported(scan_.ranges);
+  drop_unsupported(low_.ranges);
+  view.drops = mark_drops();
+  confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
+  low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
+  view.processed = processed_;
+  view.scan = &scan_;
+  view.low = &low_;
+  return view;
+}
+
+void DepthPipeline::sort_pixels(const DepthImage& image, const FloorPrediction& floor) {
+  const auto array = [&](int index) {
+    return columns_.data() + static_cast<std::size_t>(index) * column_stride_;
+  };
+  std::fill(columns_.begin(), columns_.end(), kernels::kNothing);
+  std::fill_n(array(kValid), column_stride_, std::uint16_t{0});
+  kernels::Frame frame{};
+  frame.depth = image.millimeters.data();
+  frame.processed = processed_.data();
+  frame.width = image.width;
+  frame.height = image.height;
+  frame.least = std::max<std::uint16_t>(1, millimeters(config_.min_depth));
+  frame.fall_extent = millimeters(config_.drop_length);
+  frame.missing_is_fall = config_.missing_is_drop;
+  frame.open = config_.opening;
+  frame.floor = &floor;
+  frame.columns = {{array(kHigh), array(kHigh + 1), array(kHigh + 2), array(kHigh + 3)},
+                   {array(kLow), array(kLow + 1), array(kLow + 2), array(kLow + 3)},
+                   array(kValid),
+                   array(kFallBegin),
+                   array(kFall)};
+  for (int i = 0; i < kBuffers; ++i) {
+    frame.buffers[i] =
+        buffers_.data() + static_cast<std::size_t>(i) * buffer_stride_ + kernels::kPad;
+  }
+  switch (config_.simd) {
+#if defined(__x86_64__)
+    case cpu::Simd::kAvx2:
+      return kernels::process_avx2(frame);
+    case cpu::Simd::kSse41:
+      return kernels::process_sse41(frame);
+#endif
+    default:
+      return kernels::process_portable(frame);
+  }
+}
+
+void DepthPipeline::clear_bearings() {
+  std::fill(scan_.ranges.begin(), scan_.ranges.end(), kUnknown);
+  std::fill(low_.ranges.begin(), low_.ranges.end(), kUnknown);
+}
+
+std::size_t DepthPipeline::bearing_of(double forward, double left) const {
+  const double step = (std::atan2(left, forward) - geometry_.angle_min) / geometry_.increment;
+  return static_cast<std::size_t>(
+      std::clamp(step, 0.0, static_cast<double>(geometry_.count) - 1.0));
+}
+
+/// A column whose pixels measured something, but no obstacle, is free.
+void DepthPipeline::mark_free(const CameraPose& pose) {
+  const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
+  const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
+  const double level = std::cos(pose.down);
+  for (int column = 0; column < intrinsics_.width; ++column) {
+    if (valid[column] * kLeastValid < intrinsics_.height) continue;
+    const double left = (intrinsics_.cx - column) / intrinsics_.fx * level;
+    const std::size_t bearing = bearing_of(1.0, left);
+    // Neighbouring columns are less than two bearings apart. What stands high hides what is low
+    // behind it.
+    const std::size_t last = std::min(bearing + 1, geometry_.count - 1);
+    for (std::size_t i = bearing; i <= last; ++i) {
+      scan_.ranges[i] = kFree;
+      if (high[column] == kernels::kNothing) low_.ranges[i] = kFree;
+    }
+  }
+}
+
+/// Marks the bearings that a column covers at a forward distance [m] from the camera's foot;
+/// `side_per_pixel` [m] is the width of a pixel there. Nearer marks stay.
+void DepthPipeline::mark(std::vector<float>& ranges, int column, double forward,
+                         double side_per_pixel) {
+  const double ahead = std::max(0.01, forward + shift_);
+  const double left = (intrinsics_.cx - column) * side_per_pixel;
+  const double distance = std::hypot(ahead, left);
+  const auto range = distance <= config_.max_range ? static_cast<float>(distance) : kFree;
+  const std::size_t from = bearing_of(ahead, left - 0.5 * side_per_pixel);
+  const std::size_t to = bearing_of(ahead, left + 0.5 * side_per_pixel);
+  for (std::size_t i = from; i <= to; ++i) {
+    if (!(ranges[i] <= range)) ranges[i] = range;
+  }
+}
+
+void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
+  const auto array = [&](int index) {
+    return columns_.data() + static_cast<std::size_t>(index) * column_stride_;
+  };
+  const std::uint16_t* high = array(kHigh + 2);
+  const std::uint16_t* high_row = array(kHigh + 3);
+  const std::uint16_t* low = array(kLow + 2);
+  const std::uint16_t* low_row = array(kLow + 3);
+  for (int column = 0; column < intrinsics_.width; ++column) {
+    const auto place = [&](std::vector<float>& ranges, std::uint16_t distance, std::uint16_t row) {
+      const double forward = kHalfMillimeter * distance;
+      const double depth = forward * 32768.0 / std::max<int>(1, floor.scales()[row].forward);
+      mark(ranges, column, forward, depth / intrinsics_.fx);
+    };
+    const bool is_high = high[column] != kernels::kNothing;
+    const bool is_low = low[column] != kernels::kNothing;
+    if (is_high) place(scan_.ranges, high[column], high_row[column]);
+    if (!is_low) continue;
+    place(scan_.ranges, low[column], low_row[column]);
+    const bool alone = !is_high || kHalfMillimeter * (high[column] - low[column]) > config_.low_gap;
+    if (alone) place(low_.ranges, low[column], low_row[column]);
+  }
+}
+
+/// A piece of floor is missing where neighbouring columns say so over a width.
+int DepthPipeline::mark_drops() {
+  const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
+  int count = 0;
+  for (int begin = 0; begin < intrinsics_.width;) {
+    if (fall[begin] == kernels::kNothing) {
+      ++begin;
+      continue;
+    }
+    int end = begin;
+    double width = 0.0;
+    for (; end < intrinsics_.width && fall[end] != kernels::kNothing; ++end) {
+      if (end > begin && std::abs(fall[end] - fall[end - 1]) > kFallGap * 1e3) break;
+      width += 1e-3 * fall[end] / intrinsics_.fx;
+    }
+    if (width >= config_.drop_width) {
+      for (int column = begin; column < end; ++column) {
+        const double forward = 1e-3 * fall[column];
+        mark(scan_.ranges, column, forward, forward / intrinsics_.fx);
+        mark(low_.ranges, column, forward, forward / intrinsics_.fx);
+      }
+      count += end - begin;
+    }
+    begin = end;
+  }
+  return count;
+}
+
+/// An obstacle that no neighbouring bearing knows of is noise.
+void DepthPipeline::drop_unsupported(std::vector<float>& ranges) const {
+  if (config_.support < 2) return;
+  std::copy(ranges.begin(), ranges.end(), spare_.begin());
+  const auto gap = static_cast<float>(config_.support_gap);
+  const auto count = static_cast<std::ptrdiff_t>(ranges.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const float range = spare_[static_cast<std::size_t>(i)];
+    if (!std::isfinite(range)) continue;
+    int run = 1;
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}}) {
+      for (std::ptrdiff_t k = i + step; k >= 0 && k < count && run < config_.support; k += step) {
+        if (!(std::abs(spare_[static_cast<std::size_t>(k)] - range) <= gap)) break;
+        ++run;
+      }
+    }
+    if (run < config_.support) ranges[static_cast<std::size_t>(i)] = kUnknown;
+  }
+}
+
+}  // namespace usher::depth_pipeline

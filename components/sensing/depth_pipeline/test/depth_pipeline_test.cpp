@@ -1,0 +1,303 @@
+#include "sensing/depth_pipeline/core/depth_pipeline.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "sensing/depth_pipeline/test/synthetic.hpp"
+#include "support/data.hpp"
+
+namespace usher::depth_pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr CameraPose kPose{.height = 0.9, .forward = 0.2, .down = 0.0872664626};
+
+PipelineConfig trusting() {
+  PipelineConfig config;
+  config.confidence_frames = 1;
+  return config;
+}
+
+DepthPipeline make(const SyntheticScene& scene, const PipelineConfig& config = trusting()) {
+  return DepthPipeline::make(scene.camera, config).value();
+}
+
+/// Range at a bearing [rad], counter-clockwise.
+float at(const DepthPipeline& pipeline, const std::vector<float>& ranges, double bearing) {
+  const ScanGeometry& g = pipeline.geometry();
+  return ranges[static_cast<std::size_t>((bearing - g.angle_min) / g.increment)];
+}
+
+std::size_t finite(const std::vector<float>& ranges) {
+  return static_cast<std::size_t>(
+      std::count_if(ranges.begin(), ranges.end(), [](float r) { return std::isfinite(r); }));
+}
+
+TEST(DepthPipeline, FindsNoObstacleOnAnEmptyFloorHoweverItLeans) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  scene.noise = 0.0005;
+  scene.dropouts = 0.02;
+  DepthPipeline pipeline = make(scene);
+  const Mount mount;
+  for (int degrees = -20; degrees <= 22; degrees += 3) {
+    const CameraPose pose = camera_pose(mount, -0.0873, degrees * 0.0174533);
+    const auto image = scene.draw(pose, static_cast<std::uint64_t>(degrees + 100));
+    const auto view = pipeline.process(view_of(scene.camera, image), pose);
+    ASSERT_TRUE(view.ok()) << view.error();
+    EXPECT_EQ(finite(view->scan->ranges), 0U) << degrees;
+    EXPECT_EQ(finite(view->low->ranges), 0U) << degrees;
+    EXPECT_EQ(view->drops, 0) << degrees;
+  }
+}
+
+TEST(DepthPipeline, RangesAreHorizontalWhateverThePitch) {
+  SyntheticScene scene;
+  scene.boxes = {{-0.4, 0.2, 1.5, 2.5, 2.8}, {1.0, 1.4, 0.3, 2.2, 2.6}};
+  DepthPipeline pipeline = make(scene);
+  const Mount mount;
+  for (const double pitch : {-0.1, 0.0, 0.1, 0.17}) {
+    const CameraPose pose = camera_pose(mount, -0.0873, pitch);
+    SyntheticScene moved = scene;  // the boxes stay, the camera moves with the body
+    const double ahead = pose.forward - 0.2;
+    for (SyntheticBox& box : moved.boxes) box.z0 -= ahead, box.z1 -= ahead;
+    const auto image = moved.draw(pose);
+    const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
+    for (const double x : {-0.3, 0.0, 0.15}) {
+      const float range = at(pipeline, view.scan->ranges, std::atan2(-x, 2.5));
+      EXPECT_NEAR(range, std::hypot(2.5, x), 0.015) << pitch << " " << x;
+    }
+    const float low = at(pipeline, view.scan->ranges, std::atan2(-1.2, 2.2));
+    EXPECT_NEAR(low, std::hypot(2.2, 1.2), 0.03) << pitch;
+  }
+}
+
+TEST(DepthPipeline, LowScanHasOnlyWhatIsLow) {
+  SyntheticScene scene;
+  scene.boxes = {{-0.8, -0.4, 1.2, 2.5, 2.8}, {0.4, 0.8, 0.3, 2.0, 2.4}};
+  DepthPipeline pipeline = make(scene);
+  const auto image = scene.draw(kPose);
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  const double tall = std::atan2(0.6, 2.5), low = std::atan2(-0.6, 2.0);
+  EXPECT_NEAR(at(pipeline, view.scan->ranges, tall), std::hypot(2.5, 0.6), 0.02);
+  EXPECT_TRUE(std::isnan(at(pipeline, view.low->ranges, tall)));
+  EXPECT_NEAR(at(pipeline, view.low->ranges, low), std::hypot(2.0, 0.6), 0.02);
+  // The far wall is in the scan, and hides from the low one what is low behind it.
+  EXPECT_NEAR(at(pipeline, view.scan->ranges, 0.0), 5.0, 0.02);
+}
+
+TEST(DepthPipeline, WhatTheRobotPassesUnderIsNoObstacle) {
+  SyntheticScene scene;
+  scene.ceiling = 2.1;
+  scene.half_width = scene.end = 30.0;
+  DepthPipeline pipeline = make(scene);
+  CameraPose pose = kPose;
+  pose.down = -0.17;
+  const auto image = scene.draw(pose);
+  const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
+  EXPECT_EQ(finite(view.scan->ranges), 0U);
+  const auto obstacles = std::count_if(view.processed.begin(), view.processed.end(),
+                                       [](std::uint16_t v) { return v != 0; });
+  EXPECT_EQ(obstacles, 0);
+}
+
+TEST(DepthPipeline, MissingFloorIsAnObstacleWhereItEnds) {
+  for (const double pit : {0.17, 1.0, 6.0}) {  // a step, a stairway, nothing measured
+    SyntheticScene scene;
+    scene.half_width = scene.end = 30.0;
+    scene.noise = 0.0005;
+    scene.edge = 2.4;
+    scene.pit = pit;
+    DepthPipeline pipeline = make(scene);
+    const auto image = scene.draw(kPose);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    EXPECT_GT(view.drops, 450) << pit;
+    for (const double bearing : {-0.4, 0.0, 0.4}) {
+      const double range = 2.4 / std::cos(bearing);
+      EXPECT_NEAR(at(pipeline, view.scan->ranges, bearing), range, 0.08) << pit;
+      EXPECT_NEAR(at(pipeline, view.low->ranges, bearing), range, 0.08) << pit;
+    }
+  }
+}
+
+TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  for (int row = 330; row < 342; ++row) {
+    for (int column = 250; column < 270; ++column)
+      image[static_cast<std::size_t>(row * 512 + column)] = 4200;
+  }
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_EQ(view.drops, 0);
+  EXPECT_EQ(finite(view.scan->ranges), 0U);
+}
+
+TEST(DepthPipeline, SinglePixelsAndSingleColumnsAreNoise) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  Random random(5);
+  for (int i = 0; i < 150; ++i) image[random.below(image.size())] = 1200;
+  PipelineConfig closed = trusting();
+  closed.opening = false;  // which would make nine pixels of one
+  DepthPipeline plain = make(scene, closed);
+  const auto view = plain.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_EQ(finite(view.scan->ranges), 0U);
+}
+
+TEST(DepthPipeline, ThinThingsAreFoundWhenTheFloorIsFitted) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  scene.noise = 0.0004;
+  scene.dropouts = 0.02;
+  scene.boxes = {{-1.25, 1.25, 0.010, 1.9, 1.96}};
+  PipelineConfig config = trusting();
+  config.refit = true;
+  DepthPipeline pipeline = make(scene, config);
+  int found = 0, bearings = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    CameraPose wrong = kPose;
+    wrong.down += 0.004;
+    wrong.height -= 0.004;
+    const auto image = scene.draw(kPose, seed);
+    const auto view = pipeline.process(view_of(scene.camera, image), wrong).value();
+    ASSERT_TRUE(view.refitted);
+    for (double bearing = -0.5; bearing <= 0.5; bearing += 0.01, ++bearings) {
+      const float range = at(pipeline, view.low->ranges, bearing);
+      found += std::abs(range - 1.93 / std::cos(bearing)) < 0.08;
+    }
+  }
+  EXPECT_GT(found, 8 * bearings / 10);
+
+  SyntheticScene empty = scene;
+  empty.boxes.clear();
+  std::size_t false_ones = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto image = empty.draw(kPose, seed);
+    false_ones +=
+        finite(pipeline.process(view_of(scene.camera, image), kPose).value().scan->ranges);
+  }
+  EXPECT_EQ(false_ones, 0U);
+}
+
+TEST(DepthPipeline, AllInstructionSetsGiveTheSameBits) {
+  Random random(9);
+  for (const int width : {512, 640, 100}) {
+    SyntheticScene scene = peer_scene();
+    scene.camera.width = width;
+    scene.camera.height = width == 512 ? 424 : 240;
+    scene.camera.fx = scene.camera.fy = 0.7 * width;
+    scene.camera.cx = 0.5 * width;
+    scene.camera.cy = 0.5 * scene.camera.height;
+    auto image = scene.draw(kPeerPose);
+    for (int i = 0; i < 3000; ++i)
+      image[random.below(image.size())] = static_cast<std::uint16_t>(random.next());
+    CameraPose pose = kPeerPose;
+    for (const double roll : {0.0, 0.03}) {
+      for (const bool opening : {true, false}) {
+        pose.roll = roll;
+        PipelineConfig config = trusting();
+        config.opening = opening;
+        config.simd = cpu::Simd::kPortable;
+        DepthPipeline reference = make(scene, config);
+        const auto expected = reference.process(view_of(scene.camera, image), pose).value();
+        for (const auto simd : {cpu::Simd::kSse41, cpu::Simd::kAvx2}) {
+          if (simd > cpu::best_simd()) continue;
+          config.simd = simd;
+          DepthPipeline other = make(scene, config);
+          const auto view = other.process(view_of(scene.camera, image), pose).value();
+          EXPECT_TRUE(std::equal(expected.processed.begin(), expected.processed.end(),
+                                 view.processed.begin()));
+          EXPECT_EQ(expected.drops, view.drops);
+          for (std::size_t i = 0; i < view.scan->ranges.size(); ++i) {
+            const float a = expected.scan->ranges[i], b = view.scan->ranges[i];
+            EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << width << " " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(DepthPipeline, AnyImageGivesPositiveRangesOrNone) {
+  SyntheticScene scene;
+  DepthPipeline pipeline = make(scene, {});
+  Random random(11);
+  std::vector<std::uint16_t> image(512 * 424);
+  for (int round = 0; round < 12; ++round) {
+    for (auto& v : image) v = static_cast<std::uint16_t>(random.next() >> (round % 3));
+    const CameraPose pose{random.uniform(0.05, 3.0), random.uniform(-1, 1),
+                          random.uniform(-1.2, 1.2), random.uniform(-0.5, 0.5)};
+    const auto view = pipeline.process(view_of(scene.camera, image), pose);
+    ASSERT_TRUE(view.ok());
+    for (const DepthScan* scan : {view->scan, view->low}) {
+      for (std::size_t i = 0; i < scan->ranges.size(); ++i) {
+        EXPECT_FALSE(scan->ranges[i] <= 0.0F);
+        EXPECT_GE(scan->intensities[i], 0.0F);
+        EXPECT_LE(scan->intensities[i], 1.0F);
+      }
+    }
+  }
+}
+
+TEST(DepthPipeline, NothingMeasuredIsNothingKnown) {
+  SyntheticScene scene;
+  PipelineConfig config = trusting();
+  config.missing_is_drop = false;
+  DepthPipeline pipeline = make(scene, config);
+  const std::vector<std::uint16_t> image(512 * 424, 0);
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  for (const float range : view.scan->ranges) EXPECT_TRUE(std::isnan(range));
+  for (const std::uint16_t v : view.processed) EXPECT_EQ(v, 0);
+}
+
+TEST(DepthPipeline, RefusesOtherImagesAndImpossiblePoses) {
+  SyntheticScene scene;
+  DepthPipeline pipeline = make(scene);
+  const std::vector<std::uint16_t> image(512 * 424, 1000);
+  EXPECT_THAT(pipeline.process({640, 480, image}, kPose).error(), HasSubstr("512 x 424"));
+  EXPECT_THAT(pipeline.process({512, 424, std::span(image).first(100)}, kPose).error(),
+              HasSubstr("with 100 values"));
+  CameraPose pose = kPose;
+  pose.down = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(pipeline.process({512, 424, image}, pose).ok());
+  pose = kPose;
+  pose.height = -1.0;
+  EXPECT_FALSE(pipeline.process({512, 424, image}, pose).ok());
+  PipelineConfig config;
+  config.max_range = 0.0;
+  EXPECT_THAT(DepthPipeline::make(scene.camera, config).error(), HasSubstr("max_range"));
+}
+
+// Kinect v1 frames of a living room and rendered ones: the camera's pose is not in the data, so the
+// floor is what a fit from a rough guess finds.
+TEST(DepthPipeline, RealFramesGiveScansInsideTheirDepths) {
+  const std::string folder = test_data("depth/slambook2_rgbd/depth_1.pgm");
+  if (folder.empty()) GTEST_SKIP() << "no USHER_TEST_DATA/depth/slambook2_rgbd";
+  const cv::Mat depth = cv::imread(folder, cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(depth.type(), CV_16U);
+  const Intrinsics camera{640, 480, 518.0, 519.0, 325.5, 253.5};
+  PipelineConfig config = trusting();
+  config.missing_is_drop = false;
+  DepthPipeline pipeline = DepthPipeline::make(camera, config).value();
+  const DepthImage image{640, 480, {depth.ptr<std::uint16_t>(), depth.total()}};
+  const auto view = pipeline.process(image, {.height = 1.2, .forward = 0.2, .down = 0.0}).value();
+  double nearest = 1e9;
+  for (const std::uint16_t v : image.millimeters) {
+    if (v >= 400) nearest = std::min(nearest, 1e-3 * v);
+  }
+  EXPECT_GT(finite(view.scan->ranges), 200U);
+  for (const float range : view.scan->ranges) EXPECT_FALSE(range < 0.8 * nearest);
+}
+
+}  // namespace
+}  // namespace usher::depth_pipeline

@@ -1,0 +1,37 @@
+// One Kinect v2 image of a furnished room with five people, and its noise.
+#include "simulation/rendering/core/depth_sensor.hpp"
+#include "support/bench.hpp"
+
+int main(int argc, char** argv) {
+  using namespace usher::rendering;
+  using usher::bench::Bound;
+  Model model;
+  const auto slab = [](double x0, double y0, double x1, double y1, double bottom, double top) {
+    return Prism{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, bottom, top, Material::kMatte};
+  };
+  for (int i = 0; i < 40; ++i) {
+    const double x = 1.5 + 0.7 * (i % 8), y = -2.5 + 1.0 * (i / 8);
+    model.prisms.push_back(slab(x, y, x + 0.4, y + 0.1, 0.7, 0.74));
+    for (const double leg : {0.0, 0.36})
+      model.prisms.push_back(slab(x + leg, y, x + leg + 0.04, y + 0.04, 0.0, 0.7));
+  }
+  model.prisms.push_back(slab(7.0, -5.0, 7.1, 5.0, 0.0, 2.7));
+  Renderer renderer = Renderer::make(model).value();
+  std::vector<Body> people;
+  for (int i = 0; i < 5; ++i) people.push_back({.pose = {2.0 + 0.5 * i, -1.0 + 0.5 * i, 1.0 * i}});
+  DepthSensor v2(kinect_v2(), 1), v1(kinect_v1(), 1);
+  std::vector<std::uint16_t> image;
+  const usher::geometry::Pose3 camera{{0, 0, 0.9},
+                                      usher::geometry::from_roll_pitch_yaw(0, 0.09, 0)};
+  Hits hits;
+
+  usher::bench::Bench bench("rendering", "40 tables, 5 people, Kinect v2 and v1");
+  bench.time("place_people_us", 1e-6, [&] { renderer.place(people); });
+  bench.time("kinect_v2_rays_ms", 1e-3, [&] { renderer.render({}, camera, 9.0, hits); });
+  bench.time("kinect_v2_image_ms", 1e-3, [&] { v2.measure(renderer, camera, 0.0, image); });
+  bench.time("kinect_v1_image_ms", 1e-3, [&] { v1.measure(renderer, camera, 0.0, image); });
+  bench.instructions("kinect_v2_image_instructions",
+                     [&] { v2.measure(renderer, camera, 0.0, image); });
+  bench.target("kinect_v2_image_ms", Bound::kAtMost, 33);
+  return bench.run(argc, argv);
+}

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "simulation/rendering/core/depth_sensor.hpp"
+#include "simulation/world/core/world.hpp"
+
+namespace usher::world {
+
+/// What stands still, for the rays of cameras: discs become polygons, occupied cells blocks.
+rendering::Model model_of(const Scene& scene, const grid::OccupancyGrid* map);
+/// The people as bodies, in the same order.
+void bodies_of(std::span<const Person> people, std::vector<rendering::Body>& bodies);
+
+/// A depth camera on the body; the defaults are MARVIN's Kinect v2.
+struct DepthCameraConfig {
+  rendering::DepthSensorConfig sensor = rendering::kinect_v2();
+  Mount mount{.x = 0.20, .z = 0.665};  ///< yaw 0 or pi; its pitch is what the servo turns from
+  // What the tilt servo really does: angle = servo_gain * servo + servo_offset, positive up.
+  double servo_gain = 1.0;
+  double servo_offset = 0.0;  ///< [rad]
+  double servo_speed = 1.0;   ///< [rad/s]
+};
+
+/// One camera in a world: renders, adds the errors of the device, follows the tilt servo. A sudden
+/// change of the pitch rate spoils images, as on the robot (thesis 4.21a).
+class DepthCamera {
+ public:
+  DepthCamera(const DepthCameraConfig& config, std::uint64_t seed);
+
+  const DepthCameraConfig& config() const { return config_; }
+  /// Where the servo shall go [rad]; clipped to 20 deg, ignored when not finite.
+  void set_tilt(double servo);
+  double tilt() const { return servo_; }  ///< [rad] where the servo stands
+  /// Advances by kStep: servo and body.
+  void step(const BaseTruth& base);
+  geometry::Pose3 pose(const World& world) const;  ///< in world, x along the optical axis
+  double burst() const { return burst_; }          ///< {0..1} of the next image
+
+  /// An image of the world now, in millimetres.
+  void measure(const World& world, rendering::Renderer& renderer,
+               std::vector<std::uint16_t>& millimeters);
+  const rendering::Hits& truth() const { return sensor_.truth(); }
+
+ private:
+  DepthCameraConfig config_;
+  rendering::DepthSensor sensor_;
+  double wanted_ = 0.0;
+  double servo_ = 0.0;
+  std::optional<double> pitch_rate_;
+  double burst_ = 0.0;
+};
+
+/// The renderer of a world, kept up with its doors, things and people.
+class WorldRenderer {
+ public:
+  /// The people and, when it changed, the scene of this moment.
+  Status update(const World& world);
+  rendering::Renderer& renderer() { return *renderer_; }
+
+ private:
+  std::optional<rendering::Renderer> renderer_;
+  std::uint64_t version_ = 0;
+  std::vector<rendering::Body> bodies_;
+};
+
+}  // namespace usher::world

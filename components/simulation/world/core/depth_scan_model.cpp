@@ -1,0 +1,149 @@
+#include "simulation/world/core/depth_scan_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace usher::world {
+
+namespace {
+
+constexpr float kFree = std::numeric_limits<float>::infinity();
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr double kUnderFloor = -0.04;  // [m] where pits are looked for
+constexpr double kLowThing = 0.5;      // [m] a thing of less height is cut near its top
+constexpr double kBurstLoss = 0.5;     // share of bearings that a full burst spoils
+
+Fan fan_for(const DepthScanModelConfig& config) {
+  const rendering::Lens& lens = config.lens;
+  const double right = std::atan((lens.width - 0.5 - lens.cx) / lens.fx / config.widest);
+  const double left = std::atan((lens.cx + 0.5) / lens.fx / config.widest);
+  const double increment = std::atan(1.0 / lens.fx);
+  return {-right, increment, static_cast<int>(std::ceil((left + right) / increment))};
+}
+
+}  // namespace
+
+DepthScanModel::DepthScanModel(const DepthScanModelConfig& config, std::uint64_t seed)
+    : config_(config), random_(stream_seed(seed, "depth scan model")), fan_(fan_for(config)) {
+  const auto count = static_cast<std::size_t>(fan_.count());
+  see_through_.assign(count, 0);
+  high_.resize(count);
+  low_.resize(count);
+}
+
+/// Heights so that every thing is cut by a fan, low things near their top.
+void DepthScanModel::choose_heights(const Scene& scene) {
+  struct Span {
+    double bottom, top;
+  };
+  std::vector<Span> spans;
+  for (const double height : {0.3, 0.6, 1.0, 1.5, 1.9}) spans.push_back({height - 0.1, height});
+  for (const Thing& thing : scene.things()) {
+    if (thing.top <= 0.0 || thing.bottom >= config_.ceiling) continue;
+    const double top = std::min(thing.top, config_.ceiling);
+    const double room = top < kLowThing ? 0.15 * top : 0.4;
+    spans.push_back({std::max(thing.bottom, top - room), top});
+  }
+  std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.top < b.top; });
+  heights_.clear();
+  for (const Span& span : spans) {
+    if (!heights_.empty() && heights_.back() > span.bottom) continue;
+    heights_.push_back(span.top - 0.05 * (span.top - span.bottom) - 1e-4);
+  }
+}
+
+/// Whether a point straight ahead is in the image, by its height.
+bool DepthScanModel::in_view(double forward, double height) const {
+  const double rise = height - camera_height_;
+  const double depth = forward * std::cos(down_) - rise * std::sin(down_);
+  const double below = -forward * std::sin(down_) - rise * std::cos(down_);
+  if (depth < config_.least_depth) return false;
+  const double row = config_.lens.cy + config_.lens.fy * below / depth;
+  return row >= 0.0 && row <= config_.lens.height - 1.0;
+}
+
+void DepthScanModel::cast(const World& world, const Pose2& camera, double height) {
+  const geometry::Pose3 pose{{camera.x, camera.y, height}, geometry::to_space(camera).rotation};
+  caster_.cast(world.scene(), fan_, pose,
+               {.max_range = config_.max_range, .glass_flags = see_through_, .glass_cosine = 2.0},
+               movers_, hits_);
+}
+
+void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthScanResult& result) {
+  if (version_ != world.scene_version()) choose_heights(world.scene());
+  version_ = world.scene_version();
+  movers_.clear();
+  for (const Person& person : world.people()) {
+    const double share = person.posture == rendering::Posture::kStanding ||
+                                 person.posture == rendering::Posture::kWalking
+                             ? 1.0
+                             : 0.75;
+    movers_.push_back({person.position, world.config().crowd.radius * config_.body_radius,
+                       share * person.height});
+  }
+  const geometry::Pose3 pose = camera.pose(world);
+  const Eigen::Vector3d axis = pose.rotation * Eigen::Vector3d::UnitX();
+  camera_height_ = pose.translation.z();
+  down_ = -std::asin(std::clamp(axis.z(), -1.0, 1.0));
+  const Pose2 base = world.base().truth().pose;
+  const bool backward = std::cos(camera.config().mount.yaw) < 0.0;
+  const double yaw = backward ? base.yaw + geometry::kPi : base.yaw;
+  const Pose2 origin = Pose2{base.x, base.y, yaw} * Pose2{config_.origin, 0.0, 0.0};
+  const double ahead = (inverse(origin) * pose.translation.head<2>()).x();  // the camera's place
+
+  std::fill(high_.begin(), high_.end(), kFree);
+  std::fill(low_.begin(), low_.end(), kFree);
+  const auto things = world.scene().things();
+  const auto take = [&](double height, bool pits) {
+    cast(world, origin, height);
+    std::vector<float>& nearest = height > config_.low_height ? high_ : low_;
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const auto range = static_cast<double>(hits_.range[i]);
+      if (hits_.what[i] < 0 || range >= config_.max_range) continue;
+      const double forward = range * static_cast<double>(fan_.cosines()[i]) - ahead;
+      if (pits) {
+        const auto thing = static_cast<std::size_t>(hits_.what[i]);
+        if (thing >= things.size() || things[thing].top > 0.0 || forward > config_.drop_range)
+          continue;
+      } else if (height < config_.floor_margin + config_.floor_angle * forward) {
+        continue;
+      }
+      if (!in_view(forward, std::max(height, 0.0))) continue;
+      nearest[i] = std::min(nearest[i], hits_.range[i]);
+    }
+  };
+  for (const double height : heights_) take(height, false);
+  const auto is_pit = [](const Thing& thing) { return thing.top <= 0.0; };
+  if (std::any_of(things.begin(), things.end(), is_pit)) take(kUnderFloor, true);
+
+  result.angle_min = fan_.angle_min();
+  result.increment = fan_.increment();
+  result.ranges.resize(high_.size());
+  result.low.resize(high_.size());
+  for (std::size_t i = 0; i < high_.size(); ++i) {
+    const bool alone = low_[i] + static_cast<float>(config_.low_gap) < high_[i];
+    result.ranges[i] = std::min(high_[i], low_[i]);
+    result.low[i] = alone || (low_[i] == kFree && high_[i] == kFree) ? low_[i] : kUnknown;
+  }
+  disturb(camera.burst(), result);
+}
+
+void DepthScanModel::disturb(double burst, DepthScanResult& result) {
+  const double lost = config_.lost + kBurstLoss * burst;
+  for (std::size_t i = 0; i < result.ranges.size(); ++i) {
+    const auto range = static_cast<double>(result.ranges[i]);
+    const double noise = random_.gaussian();
+    if (random_.uniform() < lost) {
+      result.ranges[i] = result.low[i] = kUnknown;
+      continue;
+    }
+    if (!std::isfinite(range)) continue;
+    const double sigma = config_.noise + config_.noise_growth * range * range;
+    const auto off = static_cast<float>(sigma * noise);
+    result.ranges[i] += off;
+    if (std::isfinite(result.low[i])) result.low[i] += off;
+  }
+}
+
+}  // namespace usher::world

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "foundation/imaging/depth_image.hpp"
+#include "foundation/result/result.hpp"
+#include "ros2.h"
+#include "runtime/api/time.hpp"
+
+namespace usher::wire {
+
+/// A 16UC1 image in millimetres.
+void to_message(runtime::Time stamp, std::string_view frame, const imaging::DepthImage& image,
+                sensor_msgs::msg::Image& message);
+/// An rgb8 image of `width` columns.
+void to_color_message(runtime::Time stamp, std::string_view frame, int width,
+                      std::span<const std::uint8_t> rgb, sensor_msgs::msg::Image& message);
+
+/// A depth image of the given size: 16UC1 or mono16 in millimetres, or 8UC1 or mono8 where 255 is
+/// `far` m (thesis 4.9). The values are copied to `millimeters`, which the result looks at. Refused
+/// with the reason: another encoding, size or byte order, rows that do not fit.
+Result<imaging::DepthImage> depth_image(const sensor_msgs::msg::Image& message, double far,
+                                        std::vector<std::uint16_t>& millimeters);
+
+sensor_msgs::msg::CameraInfo to_message(runtime::Time stamp, std::string_view frame,
+                                        const imaging::Intrinsics& intrinsics);
+/// Of a rectified image: the distortion must be zero.
+Result<imaging::Intrinsics> from_message(const sensor_msgs::msg::CameraInfo& message);
+
+}  // namespace usher::wire

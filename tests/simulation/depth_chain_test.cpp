@@ -1,0 +1,229 @@
+// The simulated depth cameras with the depth pipeline behind them: rendered pixels, the model that
+// is fitted to them, calibration.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensing/depth_pipeline/core/calibration.hpp"
+#include "sensing/depth_pipeline/core/depth_pipeline.hpp"
+#include "simulation/world/core/depth_scan_model.hpp"
+
+namespace usher::world {
+namespace {
+
+using depth_pipeline::DepthPipeline;
+using geometry::radians;
+
+constexpr const char* kOffice = USHER_SOURCE_DIR "/config/sites/office/world.yaml";
+
+depth_pipeline::Intrinsics intrinsics_of(const rendering::Lens& lens) {
+  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
+}
+
+/// A Kinect in a world, with the pipeline that knows where it is.
+class Chain {
+ public:
+  Chain(World& world, std::uint64_t seed, const depth_pipeline::PipelineConfig& config,
+        const DepthCameraConfig& camera = {})
+      : world_(world),
+        camera_(camera, seed),
+        pipeline_(DepthPipeline::make(intrinsics_of(camera.sensor.lens), config).value()) {
+    camera_.set_tilt(radians(-5.0));
+    for (int i = 0; i < 50; ++i) camera_.step(world.base().truth());
+  }
+
+  void step() {
+    world_.step();
+    camera_.step(world_.base().truth());
+  }
+  depth_pipeline::DepthImage image() {
+    EXPECT_TRUE(renderer_.update(world_).ok());
+    camera_.measure(world_, renderer_.renderer(), millimeters_);
+    const auto& lens = camera_.config().sensor.lens;
+    return {lens.width, lens.height, millimeters_};
+  }
+  depth_pipeline::DepthView see(double pitch) {
+    const auto pose = depth_pipeline::camera_pose({}, camera_.tilt(), pitch);
+    return pipeline_.process(image(), pose).value();
+  }
+  DepthCamera& camera() { return camera_; }
+  const DepthPipeline& pipeline() const { return pipeline_; }
+
+ private:
+  World& world_;
+  DepthCamera camera_;
+  WorldRenderer renderer_;
+  DepthPipeline pipeline_;
+  std::vector<std::uint16_t> millimeters_;
+};
+
+TEST(DepthScanModel, AgreesWithTheRenderedChain) {
+  const auto building = load_building(kOffice).value();
+  const std::vector<PersonPlan> people{{.name = "a", .start = {5.5, 5.0}, .yaw = 3.0},
+                                       {.name = "b", .start = {6.5, 6.2}, .yaw = 1.0}};
+  Random random(2);
+  int same = 0, both = 0, model_only = 0, pixels_only = 0, bearings = 0;
+  double worst_bias = 0.0;
+  const std::vector<Pose2> places{{3.0, 5.0, 0.2},   {12.0, 10.0, 0.0}, {26.0, 4.5, 0.5},
+                                  {27.9, 14.0, 1.6}, {14.0, 14.0, 2.0}, {20.0, 7.0, -0.7}};
+  for (const Pose2& place : places) {
+    World world({}, building, people, place, 7);
+    depth_pipeline::PipelineConfig config;
+    config.confidence_frames = 1;
+    Chain chain(world, 3, config);
+    DepthScanModel model({}, 5);
+    DepthScanResult result;
+    double bias = 0.0;
+    int counted = 0;
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < 5; ++k) chain.step();
+      const auto view = chain.see(world.base().truth().pitch);
+      model.scan(world, chain.camera(), result);
+      ASSERT_EQ(result.ranges.size(), view.scan->ranges.size());
+      EXPECT_NEAR(result.angle_min, chain.pipeline().geometry().angle_min, 1e-9);
+      for (std::size_t b = 30; b + 30 < result.ranges.size(); ++b) {
+        const float modelled = result.ranges[b], rendered = view.scan->ranges[b];
+        if (std::isnan(modelled) || std::isnan(rendered)) continue;
+        ++bearings;
+        const bool a = std::isfinite(modelled), c = std::isfinite(rendered);
+        model_only += a && !c;
+        pixels_only += c && !a;
+        if (!a && !c) ++same;
+        if (!a || !c) continue;
+        ++both;
+        const double off = static_cast<double>(modelled - rendered);
+        same += std::abs(off) < 0.12;
+        if (std::abs(off) < 0.12) bias += off, ++counted;
+      }
+    }
+    if (counted > 0) worst_bias = std::max(worst_bias, std::abs(bias / counted));
+  }
+  EXPECT_GT(both, 2000);
+  EXPECT_GT(same, 93 * bearings / 100) << "of " << bearings << ", only in the model " << model_only
+                                       << ", only in the pixels " << pixels_only;
+  EXPECT_LT(worst_bias, 0.03);
+}
+
+TEST(DepthScanModel, SeesDropsAndLowThingsLikeThePixels) {
+  const auto building = parse_building(R"(name: hall
+walls:
+  - {name: outer, thickness: 0.2, points: [[-6, -6], [12, -6], [12, 6], [-6, 6], [-6, -6]]}
+furniture:
+  - {name: stairs, box: [3.6, 1.2, 0, 1.6, 1.4], height: [-0.6, 0]}
+  - {name: box, box: [2.6, -0.9, 0, 0.5, 0.35], height: [0, 0.3]}
+)",
+                                       "hall.yaml");
+  ASSERT_TRUE(building.ok()) << building.error();
+  World world({}, *building, {}, {0, 0, 0}, 1);
+  depth_pipeline::PipelineConfig config;
+  config.confidence_frames = 1;
+  Chain chain(world, 3, config);
+  for (int i = 0; i < 20; ++i) chain.step();
+  const auto view = chain.see(world.base().truth().pitch);
+  DepthScanModel model({}, 5);
+  DepthScanResult result;
+  model.scan(world, chain.camera(), result);
+  const auto at = [&](const std::vector<float>& ranges, double x, double y) {
+    const double bearing = std::atan2(y, x - 0.2);
+    return ranges[static_cast<std::size_t>((bearing - result.angle_min) / result.increment)];
+  };
+  EXPECT_GT(view.drops, 50);
+  EXPECT_NEAR(at(view.low->ranges, 2.8, 1.0), std::hypot(2.6, 1.0), 0.12);  // the edge
+  EXPECT_NEAR(at(result.low, 2.8, 1.0), std::hypot(2.6, 1.0), 0.12);
+  EXPECT_NEAR(at(view.low->ranges, 2.35, -0.9), std::hypot(2.15, 0.9), 0.06);  // the box
+  EXPECT_NEAR(at(result.low, 2.35, -0.9), std::hypot(2.15, 0.9), 0.06);
+}
+
+TEST(DepthPipelineInTheWorld, FindsNoFloorWhileItDrivesAndLeans) {
+  const auto building = parse_building(R"(name: hall
+walls:
+  - {name: outer, thickness: 0.2, points: [[-20, -20], [40, -20], [40, 20], [-20, 20], [-20, -20]]}
+)",
+                                       "hall.yaml");
+  World world({}, *building, {}, {0, 0, 0}, 4);
+  Chain chain(world, 9, {});
+  int frames = 0, false_bearings = 0, calm = 0, false_while_calm = 0;
+  double steepest = 0.0;
+  for (int step = 0; step < 700; ++step) {
+    world.base().command({step < 350 ? 1.4 : 0.0, 0.0});
+    chain.step();
+    if (step % 10 != 0) continue;
+    const double pitch = world.base().readings().pitch;
+    steepest = std::max(steepest, std::abs(pitch));
+    const auto view = chain.see(pitch);
+    ++frames;
+    calm = chain.camera().burst() > 0.0 ? 0 : calm + 1;
+    for (const float range : view.scan->ranges) {
+      false_bearings += std::isfinite(range);
+      false_while_calm += std::isfinite(range) && calm > 3;
+    }
+  }
+  EXPECT_GT(steepest, radians(9.0));
+  EXPECT_EQ(frames, 70);
+  EXPECT_EQ(false_while_calm, 0);
+  EXPECT_LE(false_bearings, 120);  // of 38 000, while bursts of noise spoil the images
+}
+
+struct MountErrors {
+  double height, angle, gain;
+};
+
+TEST(KinectCalibration, FindsTheMountWithin5MillimetresAnd0Point2Degrees) {
+  const auto building = parse_building(R"(name: hall
+walls:
+  - {name: outer, thickness: 0.2, points: [[-8, -8], [12, -8], [12, 8], [-8, 8], [-8, -8]]}
+)",
+                                       "hall.yaml");
+  std::uint64_t seed = 11;
+  for (const MountErrors& errors :
+       {MountErrors{0.02, radians(1.5), 0.95}, MountErrors{-0.03, radians(-2.0), 1.06}}) {
+    World world({}, *building, {}, {0, 0, 0}, ++seed);
+    DepthCameraConfig camera;
+    camera.mount.z += errors.height;
+    camera.servo_gain = errors.gain;
+    camera.servo_offset = errors.angle;
+    Chain chain(world, seed, {}, camera);
+    depth_pipeline::TiltSweep::Config config;
+    config.images = config.settling = 6;
+    depth_pipeline::TiltSweep sweep(intrinsics_of(camera.sensor.lens), config);
+    for (int frame = 0; frame < 1200 && !sweep.done(); ++frame) {
+      chain.camera().set_tilt(sweep.wanted());
+      for (int i = 0; i < 3; ++i) chain.step();
+      sweep.take(chain.image(), chain.camera().tilt(), world.base().readings().pitch);
+    }
+    ASSERT_TRUE(sweep.done());
+    EXPECT_EQ(sweep.complaint(), "");
+    const auto found = depth_pipeline::fit_calibration(sweep.samples());
+    ASSERT_TRUE(found.ok()) << found.error();
+    EXPECT_NEAR(found->mount_z, camera.mount.z, 0.005);
+    for (const double servo : {-0.3, 0.0, 0.3}) {
+      EXPECT_NEAR(found->servo.angle_of(servo), errors.gain * servo + errors.angle, radians(0.2));
+    }
+  }
+}
+
+TEST(KinectCalibration, RefusesARoomWithoutFloor) {
+  const auto building = parse_building(R"(name: closet
+walls:
+  - {name: outer, thickness: 0.2, points: [[-1, -1], [1.1, -1], [1.1, 1], [-1, 1], [-1, -1]]}
+)",
+                                       "closet.yaml");
+  World world({}, *building, {}, {0, 0, 0}, 2);
+  Chain chain(world, 5, {});
+  depth_pipeline::TiltSweep::Config config;
+  config.patience = 15;
+  config.positions = 5;
+  depth_pipeline::TiltSweep sweep(intrinsics_of(rendering::kinect_v2().lens), config);
+  for (int frame = 0; frame < 400 && !sweep.done(); ++frame) {
+    chain.camera().set_tilt(sweep.wanted());
+    for (int i = 0; i < 3; ++i) chain.step();
+    sweep.take(chain.image(), chain.camera().tilt(), world.base().readings().pitch);
+  }
+  EXPECT_TRUE(sweep.done());
+  EXPECT_FALSE(depth_pipeline::fit_calibration(sweep.samples()).ok());
+  EXPECT_NE(sweep.complaint(), "");
+}
+
+}  // namespace
+}  // namespace usher::world
