@@ -56,6 +56,7 @@ Status check(const NavigatorConfig& c) {
         Field{"plan_timeout", c.plan_timeout, 0.5, 60.0},
         Field{"ready_timeout", c.ready_timeout, 0.0, 600.0},
         Field{"pause_timeout", c.pause_timeout, 0.0, 600.0},
+        Field{"hold_timeout", c.hold_timeout, 0.0, 3600.0},
         Field{"time_base", c.time_base, 1.0, 36000.0},
         Field{"time_factor", c.time_factor, 1.0, 1000.0},
         Field{"usual_speed", c.usual_speed, 0.05, 5.0},
@@ -192,6 +193,13 @@ void Navigator::request(GoalRequest goal) {
   fresh_ = true;
 }
 
+bool Navigator::pace(std::uint64_t id, const std::string& client, double max_speed) {
+  if (!open() || id != status_.id || client != status_.client) return false;
+  if (!std::isfinite(max_speed) || max_speed < 0.0) return false;
+  goal_max_speed_ = max_speed;
+  return true;
+}
+
 bool Navigator::cancel(std::uint64_t id) {
   if (!open() || (id != 0 && id != status_.id)) return false;
   finish(GoalState::kCancelled, Failure::kNone, "cancelled");
@@ -307,8 +315,10 @@ bool Navigator::pause_if_unfit(const Situation& s) {
     enter(Phase::kPaused, s.time);
   }
   waiting_for_ = reason;
-  if (s.time - phase_since_ > config_.pause_timeout)
-    finish(GoalState::kFailed, cause, reason + text(" for %g s", config_.pause_timeout));
+  if (cause == Failure::kHeld) started_at_ += std::clamp(s.time - last_step_, 0.0, 1.0);
+  const double patience = cause == Failure::kHeld ? config_.hold_timeout : config_.pause_timeout;
+  if (s.time - phase_since_ > patience)
+    finish(GoalState::kFailed, cause, reason + text(" for %g s", patience));
   return true;
 }
 

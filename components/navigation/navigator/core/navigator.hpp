@@ -46,6 +46,8 @@ struct NavigatorConfig {
   double plan_timeout = 5.0;    ///< [s] without an answer is a failed plan
   double ready_timeout = 30.0;  ///< [s] a goal waits for planners that are not there yet
   double pause_timeout = 60.0;  ///< [s] without localization or inputs before giving up
+  double hold_timeout = 300.0;  ///< [s] not allowed to drive before giving up; whoever stops the
+                                ///< robot has a shorter patience
   double time_base = 180.0;     ///< [s] a goal may take this long, and ...
   double time_factor = 8.0;     ///< ... this many times its longest path at the usual speed
 
@@ -198,6 +200,9 @@ class Navigator {
   /// (kBadGoal, kUnknownLocation) is answered in the status, or aside while another one runs, which
   /// then goes on.
   void request(GoalRequest goal);
+  /// Another pace for the goal of this id and client while it runs [m/s]; 0 = the planner's own
+  /// limit. Returns whether there was one; a pace that is negative or not finite is none.
+  bool pace(std::uint64_t id, const std::string& client, double max_speed);
   /// Ends the goal of this id, or whatever runs for 0. Returns whether there was one.
   bool cancel(std::uint64_t id);
   /// Answers other than to the newest plan request are ignored.

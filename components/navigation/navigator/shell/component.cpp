@@ -41,6 +41,8 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
   number("recovery_patience", "s", 0.1, 120, c.recovery_patience,
          "Still blocked after the new path: recover.");
   number("stall_time", "s", 1, 120, c.stall_time, "Without getting nearer it counts as blocked.");
+  number("hold_timeout", "s", 1, 3600, c.hold_timeout,
+         "How long a robot that may not drive is waited for.");
   number("pause_timeout", "s", 1, 600, c.pause_timeout,
          "Without localization or inputs before giving up.");
   number("plan_timeout", "s", 0.5, 60, c.plan_timeout, "Without an answer is a failed plan.");
@@ -96,6 +98,10 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
                          core_.cancel(cancel.id());
                          step();
                        });
+  pace_ =
+      host.input(topics::kNavigatePace, {.optional = true}, [this](const auto& pace, const auto&) {
+        core_.pace(pace.id(), pace.client(), pace.max_speed());
+      });
   reply_ = host.input(topics::kPlanReply, {},
                       [this](const auto& reply, const auto&) { take_reply(reply); });
   follow_ = host.input(topics::kFollowStatus,
@@ -170,6 +176,7 @@ std::string NavigatorComponent::hold() const {
     return supervisor->reason().empty() ? "nobody may drive" : supervisor->reason();
   if (supervisor->state() != supervisor_state::STATE_NAVIGATION_ACTIVE)
     return "the supervisor has not started the navigation";
+  if (!supervisor->enable_movement()) return "the robot has been stopped";
   return {};
 }
 

@@ -44,6 +44,7 @@ class NavigatorComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::NavigateGoal> goal_;
   runtime::Input<geometry_msgs::msg::PoseStamped> goal_pose_;
   runtime::Input<usher_msgs::msg::GoalCancel> cancel_;
+  runtime::Input<usher_msgs::msg::NavigatePace> pace_;
   runtime::Input<usher_msgs::msg::PlanReply> reply_;
   runtime::Input<usher_msgs::msg::FollowStatus> follow_;
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;

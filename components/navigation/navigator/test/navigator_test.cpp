@@ -207,6 +207,22 @@ TEST(Navigator, TellsClientsWithTheSameIdApart) {
   EXPECT_EQ(rig.asides[0].client, "test");
 }
 
+TEST(Navigator, TakesAnotherPaceFromTheGoalsOwnClient) {
+  Rig rig;
+  rig.navigator.request({7, "guide", "lab", {}, 1.0});
+  rig.run(1.0);
+  EXPECT_EQ(rig.navigator.motion().max_speed, 1.0);
+  EXPECT_FALSE(rig.navigator.pace(7, "operator", 0.5));
+  EXPECT_FALSE(rig.navigator.pace(8, "guide", 0.5));
+  EXPECT_FALSE(rig.navigator.pace(7, "guide", std::nan("")));
+  EXPECT_FALSE(rig.navigator.pace(7, "guide", -0.1));
+  rig.run(0.2);
+  EXPECT_EQ(rig.navigator.motion().max_speed, 1.0);
+  EXPECT_TRUE(rig.navigator.pace(7, "guide", 0.5));
+  rig.run(0.2);
+  EXPECT_EQ(rig.navigator.motion().max_speed, 0.5);
+}
+
 TEST(Navigator, CancelsByIdOrWhateverRuns) {
   const struct {
     std::uint64_t id;

@@ -108,7 +108,7 @@ TEST(NavigatorInTrouble, FailsInTheEndWithTheReason) {
       {"stale", [](Rig&) {}, [](Rig& r) { r.s.stale = "odom"; }, Failure::kInputsStale,
        "no fresh odom for 60 s", 60.0, 63.0},
       {"held", [](Rig&) {}, [](Rig& r) { r.s.hold = "movement is switched off"; }, Failure::kHeld,
-       "movement is switched off for 60 s", 60.0, 63.0},
+       "movement is switched off for 300 s", 300.0, 303.0},
       {"a planner dies", [](Rig&) {}, [](Rig& r) { r.s.missing = "local_planner"; },
        Failure::kInputsStale, "no fresh local_planner for 60 s", 60.0, 63.0},
       {"to and fro for ever", [](Rig&) {},
