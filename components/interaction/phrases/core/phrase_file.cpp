@@ -108,6 +108,13 @@ Result<PhraseBook> PhraseBook::load(const std::string& folder, const std::vector
   return book;
 }
 
+PhraseBook PhraseBook::of_keys(std::span<const std::string_view> keys) {
+  PhraseBook book;
+  book.languages_.push_back({"en", "English"});
+  book.phrases_.emplace_back(keys.begin(), keys.end());
+  return book;
+}
+
 std::size_t PhraseBook::find(std::string_view tag) const {
   const auto found = std::find_if(languages_.begin(), languages_.end(),
                                   [&](const Language& language) { return language.tag == tag; });

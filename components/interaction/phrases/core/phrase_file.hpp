@@ -25,6 +25,9 @@ class PhraseBook {
                                  const std::string& section,
                                  std::span<const std::string_view> keys);
 
+  /// One language, "en", that says the keys themselves: for a component without a folder of texts.
+  static PhraseBook of_keys(std::span<const std::string_view> keys);
+
   const std::vector<Language>& languages() const { return languages_; }
   /// Place of a language in languages(); 0, the default, for one that is not known.
   std::size_t find(std::string_view tag) const;

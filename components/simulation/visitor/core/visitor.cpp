@@ -4,37 +4,120 @@
 
 namespace usher::visitor {
 
+namespace {
+
+constexpr int kMostTries = 2;  ///< after an error
+
+bool due(double at, double since) { return at >= 0.0 && since >= at; }
+
+}  // namespace
+
 void Visitor::see(const Screen& screen, double now) {
   const bool another = screen.id != screen_.id;
+  const bool more_hits = typed_ && screen.options != screen_.options;
   screen_ = screen;
+  if (more_hits) answered_ = false;
   if (!another) return;
   seen_at_ = now;
-  answered_ = false;
-  if (screen.state == "guide_active") follows_ = true;
-  if (screen.state == "guide_success") arrived_ = true;
-  if (screen.state == "end" || screen.state == "guide_error") follows_ = false;
+  answered_ = typed_ = false;
+  if (screen.state == character_.gives_up_in) gave_up_ = true;
+  if (screen.state == "guide_active" && !departed_at_) departed_at_ = now;
+  if (screen.state == "guide_paused") stopped_at_ = now;
+  if (screen.state == "guide_success") ++arrivals_;
+  if (screen.state == "guide_error") ++errors_;
+  if (screen.state == "guide_success" || screen.state == "guide_error") departed_at_.reset();
+  if (screen.state == "end" || screen.state == "inactive") ended_ = screen.state == "end";
 }
 
-std::optional<std::string> Visitor::answer(double now) {
-  if (answered_ || now < seen_at_ + reading_time_) return std::nullopt;
-  const auto chosen = choice();
-  if (chosen) answered_ = true;
-  return chosen;
+const std::string& Visitor::wanted() const {
+  return arrivals_ > 0 && !character_.returns_to.empty() ? character_.returns_to
+                                                         : character_.destination;
 }
 
 bool Visitor::offers(std::string_view option) const {
   return std::find(screen_.options.begin(), screen_.options.end(), option) != screen_.options.end();
 }
 
-std::optional<std::string> Visitor::choice() const {
-  if (arrived_)
-    return offers("no") ? std::optional<std::string>("no")
-                        : std::nullopt;  // nothing else, thank you
-  if (offers(destination_)) return destination_;
-  for (const char* option : {"start", "continue", "yes", "more"}) {
-    if (offers(option)) return option;
+std::optional<Choice> Visitor::press(std::string_view option) const {
+  if (!offers(option)) return std::nullopt;
+  return Choice{std::string(option), {}};
+}
+
+std::optional<Choice> Visitor::answer(double now) {
+  if (gave_up_) return std::nullopt;
+  if (screen_.time_left >= 0.0 && offers("stay")) return press("stay");
+  const bool way = screen_.state == "guide_active" || screen_.state == "guide_paused";
+  if (!way && (answered_ || now < seen_at_ + character_.reading_time)) return std::nullopt;
+  auto chosen = choice(now);
+  if (chosen) answered_ = true;
+  return chosen;
+}
+
+std::optional<Choice> Visitor::choose_place() {
+  if (offers(wanted())) return press(wanted());
+  if (!screen_.text_option.empty()) {
+    if (typed_) return std::nullopt;
+    typed_ = true;
+    return Choice{screen_.text_option, wanted().substr(0, 4)};
+  }
+  if (character_.types && offers("search")) return press("search");
+  return offers("more") ? press("more") : press("search");
+}
+
+std::optional<Choice> Visitor::on_the_way(double now) {
+  const double since = departed_at_ ? now - *departed_at_ : 0.0;
+  if (screen_.state == "guide_paused") {
+    if (stopped_at_ && now - *stopped_at_ < character_.stops_for) return std::nullopt;
+    return answered_ ? std::nullopt : press("continue");
+  }
+  if (answered_) return std::nullopt;
+  if (due(character_.cancels_at, since)) return press("cancel");
+  if (!stopped_ && due(character_.stops_at, since)) {
+    stopped_ = true;
+    return press("stop");
   }
   return std::nullopt;
+}
+
+std::optional<Choice> Visitor::choice(double now) {
+  const std::string& state = screen_.state;
+  const std::string language = "language:" + character_.language;
+  if (state == "inactive") return ended_ ? std::nullopt : press(language);
+  if (state == "introduction") {
+    return screen_.language == character_.language ? std::nullopt : press(language);
+  }
+  if (state == "location_ask") {
+    if (character_.looks_at_map && arrivals_ == 0) return press("yes");
+    return press("guide_me");
+  }
+  if (state == "location_show") {
+    if (character_.asks_where && !asked_where_) {
+      asked_where_ = true;
+      return press("where_is");
+    }
+    return asked_where_ && offers("guide_me") ? press("guide_me") : press("done");
+  }
+  if (state == "location_options" || state == "guide_options") return choose_place();
+  if (state == "guide_ask") return press("yes");
+  if (state == "guide_start") return press("start");
+  if (state == "guide_active" || state == "guide_paused") return on_the_way(now);
+  if (state == "guide_error") return press(errors_ < kMostTries ? "yes" : "no");
+  if (state == "end_ask") {
+    const bool again = arrivals_ == 1 && !character_.returns_to.empty();
+    return press(again ? "yes" : "no");
+  }
+  return std::nullopt;
+}
+
+Walk Visitor::walk(double now) const {
+  if (!departed_at_) return Walk::kStand;
+  const double since = now - *departed_at_;
+  if (due(character_.walks_away_at, since)) return Walk::kAway;
+  if (due(character_.ties_lace_at, since) &&
+      since < character_.ties_lace_at + character_.ties_lace_for) {
+    return Walk::kStand;
+  }
+  return due(character_.dawdles_at, since) ? Walk::kDawdle : Walk::kFollow;
 }
 
 }  // namespace usher::visitor

@@ -12,35 +12,70 @@ namespace usher::visitor {
 struct Screen {
   std::uint64_t id = 0;
   std::string state;                 ///< of the dialogue
+  std::string language;              ///< of its texts
   std::vector<std::string> options;  ///< ids of its buttons
+  std::string text_option;           ///< id of the line to type into; empty: none
+  double time_left = -1.0;           ///< [s] until the question is given up; negative: not soon
 };
 
-/// A visitor who wants to go to one place: reads each screen for a while, then answers it once.
+/// How a visitor behaves. Times in seconds, those on the way from the departure on.
+struct Character {
+  std::string destination = "lounge";
+  std::string language = "en";
+  double reading_time = 1.5;  ///< of each screen
+  bool looks_at_map = false;  ///< wants to see our location first
+  bool asks_where = false;    ///< and where the destination is
+  bool types = false;         ///< searches by name instead of turning pages
+  std::string returns_to;     ///< a second place after the first; empty: none
+  double stops_at = -1.0;     ///< stops the robot; negative: never
+  double stops_for = 5.0;
+  double cancels_at = -1.0;
+  double dawdles_at = -1.0;    ///< walks slowly from then on
+  double ties_lace_at = -1.0;  ///< stands
+  double ties_lace_for = 12.0;
+  double walks_away_at = -1.0;
+  std::string gives_up_in;  ///< answers nothing more from this state of the dialogue on
+};
+
+struct Choice {
+  std::string option;
+  std::string text;  ///< typed, for a line
+};
+
+enum class Walk : std::uint8_t { kStand, kFollow, kDawdle, kAway };
+
+/// A visitor who wants to go to a place: reads each screen for a while, then answers it once.
+/// Times of calls are seconds on any clock that does not go back.
 class Visitor {
  public:
-  Visitor(std::string destination, double reading_time)
-      : destination_(std::move(destination)), reading_time_(reading_time) {}
+  explicit Visitor(Character character) : character_(std::move(character)) {}
 
   void see(const Screen& screen, double now);
-  /// The option to choose now, if any. [s] of any clock that does not go back.
-  std::optional<std::string> answer(double now);
+  /// What to choose now, if anything.
+  std::optional<Choice> answer(double now);
   std::uint64_t screen_id() const { return screen_.id; }
 
-  /// Walks behind the robot: from "I am ready" until the end.
-  bool follows() const { return follows_; }
-  bool arrived() const { return arrived_; }
+  /// Stands until the first departure, then follows until the end, unless its character is another.
+  Walk walk(double now) const;
+  bool arrived() const { return arrivals_ > 0; }
 
  private:
-  std::optional<std::string> choice() const;
+  std::optional<Choice> choice(double now);
+  std::optional<Choice> choose_place();
+  std::optional<Choice> on_the_way(double now);
   bool offers(std::string_view option) const;
+  std::optional<Choice> press(std::string_view option) const;
+  const std::string& wanted() const;
 
-  std::string destination_;
-  double reading_time_;
+  Character character_;
   Screen screen_;
   double seen_at_ = 0.0;
   bool answered_ = true;
-  bool follows_ = false;
-  bool arrived_ = false;
+  bool typed_ = false;
+  bool gave_up_ = false;
+  std::optional<double> departed_at_, stopped_at_;
+  bool asked_where_ = false, stopped_ = false, ended_ = false;
+  int arrivals_ = 0, errors_ = 0;
 };
 
 }  // namespace usher::visitor

@@ -3,6 +3,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "simulation/visitor/core/visitor.hpp"
+#include "wire/repeater.hpp"
 
 namespace usher::visitor {
 
@@ -12,16 +13,20 @@ class VisitorComponent final : public runtime::Component {
   explicit VisitorComponent(runtime::Host& host);
 
  private:
+  static Character read_character(runtime::Parameters& parameters);
+  void take(const usher_msgs::msg::DialogueScreen& screen);
   void step();
 
   runtime::Host& host_;
   Visitor core_;
   std::string person_;
   double speed_;
-  std::uint64_t answers_ = 0;
+  std::vector<double> leaves_to_;  ///< x, y [m] in map
+  std::uint8_t input_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
-  runtime::Output<usher_msgs::msg::DialogueAnswer> answer_;
+  wire::Repeater<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_sim_msgs::msg::PersonGoal> walk_;
+  Walk walks_ = Walk::kStand;
   runtime::Timer timer_;
 };
 

@@ -5,38 +5,127 @@
 namespace usher::visitor {
 namespace {
 
-TEST(Visitor, ReadsBeforeAnsweringAndAnswersOnce) {
-  Visitor visitor("kitchen", 2.0);
-  visitor.see({1, "guide_options", {"lab", "kitchen", "cancel"}}, 10.0);
-  EXPECT_FALSE(visitor.answer(11.9));
-  EXPECT_EQ(visitor.answer(12.0), "kitchen");
-  EXPECT_FALSE(visitor.answer(13.0));
+Character kitchen() { return {.destination = "kitchen", .reading_time = 0.0}; }
+Screen screen(std::uint64_t id, const char* state, std::vector<std::string> options) {
+  return {.id = id, .state = state, .language = "en", .options = std::move(options)};
+}
+std::string chosen(Visitor& visitor, double now) {
+  const auto choice = visitor.answer(now);
+  return choice ? choice->option + choice->text : "";
 }
 
-TEST(Visitor, TurnsPagesUntilTheDestinationIsOffered) {
-  Visitor visitor("kitchen", 0.0);
-  visitor.see({1, "guide_options", {"lab", "more", "cancel"}}, 0.0);
-  EXPECT_EQ(visitor.answer(0.0), "more");
-  visitor.see({2, "guide_options", {"kitchen", "cancel"}}, 1.0);
-  EXPECT_EQ(visitor.answer(1.0), "kitchen");
+TEST(Visitor, ReadsBeforeAnsweringAndAnswersOnce) {
+  Character slow = kitchen();
+  slow.reading_time = 2.0;
+  Visitor visitor(slow);
+  visitor.see(screen(1, "guide_options", {"lab", "kitchen", "cancel"}), 10.0);
+  EXPECT_EQ(chosen(visitor, 11.9), "");
+  EXPECT_EQ(chosen(visitor, 12.0), "kitchen");
+  EXPECT_EQ(chosen(visitor, 13.0), "");
+}
+
+TEST(Visitor, ChoosesTheLanguageFirst) {
+  Character french = kitchen();
+  french.language = "fr";
+  Visitor visitor(french);
+  visitor.see(screen(1, "introduction", {"language:en", "language:fr"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "language:fr");
+  Visitor english(kitchen());
+  english.see(screen(1, "introduction", {"language:en", "language:fr"}), 0.0);
+  EXPECT_EQ(chosen(english, 0.0), "") << "it is that already";
+}
+
+TEST(Visitor, TurnsPagesOrTypesUntilTheDestinationIsOffered) {
+  Visitor visitor(kitchen());
+  visitor.see(screen(1, "guide_options", {"lab", "more", "search", "cancel"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "more");
+  visitor.see(screen(2, "guide_options", {"kitchen", "cancel"}), 1.0);
+  EXPECT_EQ(chosen(visitor, 1.0), "kitchen");
+
+  Character typist = kitchen();
+  typist.types = true;
+  Visitor types(typist);
+  types.see(screen(1, "guide_options", {"lab", "search"}), 0.0);
+  EXPECT_EQ(chosen(types, 0.0), "search");
+  Screen line = screen(2, "guide_options", {"query", "lab"});
+  line.text_option = "query";
+  types.see(line, 1.0);
+  EXPECT_EQ(chosen(types, 1.0), "querykitc");
+  line.options = {"query", "kitchen"};
+  types.see(line, 2.0);
+  EXPECT_EQ(chosen(types, 2.0), "kitchen");
 }
 
 TEST(Visitor, NeverStopsOrCancelsByItself) {
-  Visitor visitor("kitchen", 0.0);
-  visitor.see({1, "guide_active", {"stop", "cancel"}}, 0.0);
-  EXPECT_FALSE(visitor.answer(100.0));
-  EXPECT_TRUE(visitor.follows());
+  Visitor visitor(kitchen());
+  visitor.see(screen(1, "guide_active", {"stop", "cancel"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 100.0), "");
+  EXPECT_EQ(visitor.walk(100.0), Walk::kFollow);
 }
 
-TEST(Visitor, ThanksAfterTheArrival) {
-  Visitor visitor("kitchen", 0.0);
-  visitor.see({1, "guide_active", {"stop"}}, 0.0);
-  visitor.see({2, "guide_success", {}}, 1.0);
-  EXPECT_TRUE(visitor.arrived());
-  visitor.see({3, "end_ask", {"yes", "no"}}, 2.0);
-  EXPECT_EQ(visitor.answer(2.0), "no");
-  visitor.see({4, "end", {}}, 3.0);
-  EXPECT_FALSE(visitor.follows());
+TEST(Visitor, StopsAndGoesOn) {
+  Character careful = kitchen();
+  careful.stops_at = 5.0;
+  Visitor visitor(careful);
+  visitor.see(screen(1, "guide_active", {"stop", "cancel"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 4.0), "");
+  EXPECT_EQ(chosen(visitor, 5.0), "stop");
+  visitor.see(screen(2, "guide_paused", {"continue", "cancel"}), 6.0);
+  EXPECT_EQ(chosen(visitor, 10.0), "");
+  EXPECT_EQ(chosen(visitor, 11.0), "continue");
+  visitor.see(screen(3, "guide_active", {"stop", "cancel"}), 12.0);
+  EXPECT_EQ(chosen(visitor, 20.0), "") << "once";
+}
+
+TEST(Visitor, ThanksAfterTheArrivalOrGoesBack) {
+  Character returner = kitchen();
+  returner.returns_to = "foyer";
+  for (const auto& character : {kitchen(), returner}) {
+    Visitor visitor(character);
+    visitor.see(screen(1, "guide_active", {"stop"}), 0.0);
+    visitor.see(screen(2, "guide_success", {}), 1.0);
+    EXPECT_TRUE(visitor.arrived());
+    visitor.see(screen(3, "end_ask", {"yes", "no"}), 2.0);
+    EXPECT_EQ(chosen(visitor, 2.0), character.returns_to.empty() ? "no" : "yes");
+  }
+}
+
+TEST(Visitor, AsksForTimeWhenItRunsOut) {
+  Character slow = kitchen();
+  slow.reading_time = 50.0;
+  Visitor visitor(slow);
+  Screen late = screen(1, "guide_ask", {"yes", "no", "stay"});
+  visitor.see(late, 0.0);
+  EXPECT_EQ(chosen(visitor, 40.0), "");
+  late.time_left = 18.0;
+  visitor.see(late, 42.0);
+  EXPECT_EQ(chosen(visitor, 42.0), "stay");
+}
+
+TEST(Visitor, WalksAsItsCharacterIs) {
+  Character character = kitchen();
+  character.ties_lace_at = 5.0;
+  character.ties_lace_for = 2.0;
+  character.dawdles_at = 10.0;
+  character.walks_away_at = 20.0;
+  Visitor visitor(character);
+  EXPECT_EQ(visitor.walk(0.0), Walk::kStand);
+  visitor.see(screen(1, "guide_active", {"stop"}), 0.0);
+  EXPECT_EQ(visitor.walk(1.0), Walk::kFollow);
+  EXPECT_EQ(visitor.walk(6.0), Walk::kStand);
+  EXPECT_EQ(visitor.walk(8.0), Walk::kFollow);
+  EXPECT_EQ(visitor.walk(11.0), Walk::kDawdle);
+  EXPECT_EQ(visitor.walk(21.0), Walk::kAway);
+}
+
+TEST(Visitor, GivesUpWhereItsCharacterDoes) {
+  Character leaver = kitchen();
+  leaver.gives_up_in = "guide_ask";
+  Visitor visitor(leaver);
+  visitor.see(screen(1, "guide_ask", {"yes", "no"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 10.0), "");
+  visitor.see(screen(2, "end", {"again"}), 60.0);
+  EXPECT_EQ(chosen(visitor, 70.0), "");
 }
 
 }  // namespace

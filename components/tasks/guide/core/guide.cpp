@@ -5,430 +5,445 @@
 #include <cmath>
 #include <set>
 
+#include "tasks/guide/core/buttons.hpp"
+
 namespace usher::guide {
 
 namespace {
 
-// Ids of buttons.
-constexpr const char* kStart = "start";
-constexpr const char* kStop = "stop";
-constexpr const char* kContinue = "continue";
-constexpr const char* kCancel = "cancel";
-constexpr const char* kMore = "more";
-constexpr const char* kYes = "yes";
-constexpr const char* kNo = "no";
+constexpr std::size_t kMostClients = 32;
+constexpr std::size_t kMostTyped = 80;  ///< [byte]
+constexpr std::size_t kMostRemembered = 8;
+
+/// Where a guide goes on that was restarted in `state`.
+State resumed(std::optional<State> state) {
+  if (!state) return State::kInitialise;
+  switch (*state) {
+    case State::kInitialise:
+    case State::kInactive:
+    case State::kIntroduction:
+    case State::kEnd:
+      return State::kInitialise;
+    case State::kGuideSuccess:
+      return State::kEndAsk;
+    default:
+      return *state;
+  }
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+bool same(const Screen& a, const Screen& b) {
+  return a.id == b.id && a.state == b.state && a.language == b.language && a.content == b.content &&
+         a.title == b.title && a.text == b.text && a.status == b.status &&
+         a.spoken_id == b.spoken_id && a.listens == b.listens && a.options == b.options &&
+         a.place == b.place && same(a.progress, b.progress) && same(a.eta, b.eta) &&
+         same(a.remaining, b.remaining) && same(a.time_left, b.time_left) &&
+         a.follower == b.follower;
+}
 
 }  // namespace
 
-std::string_view text(State state) {
-  switch (state) {
-    case State::kIdle:
-      return "inactive";
-    case State::kGreeting:
-      return "introduction";
-    case State::kOptions:
-      return "guide_options";
-    case State::kConfirm:
-      return "guide_start";
-    case State::kGuiding:
-      return "guide_active";
-    case State::kPaused:
-      return "guide_paused";
-    case State::kArrived:
-      return "guide_success";
-    case State::kFailed:
-      return "guide_error";
-    case State::kAskMore:
-      return "end_ask";
-    case State::kEnd:
-      return "end";
+Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uint64_t first_id,
+             const Memory& memory, Time now)
+    : parameters_(parameters),
+      phrases_(std::move(phrases)),
+      next_id_(std::max<std::uint64_t>(first_id, 1)),
+      since_(now),
+      visit_since_(now),
+      funnel_(memory.funnel),
+      recent_(memory.recent),
+      follow_(parameters.follow) {
+  assert(parameters.options_on_screen >= 4);
+  state_ = resumed(state_of(memory.state));
+  if (state_ != State::kInitialise) {
+    language_ = phrases_.find(memory.language);
+    visit_ = memory.visit;
+    greeted_ = true;
+    place_.name = memory.place;
+    stopped_ = memory.stopped;
+    if (journey()) {
+      goal_id_ = memory.goal_id;
+      goal_at_ = departed_ = now;
+      acknowledged_ = goal_id_ != 0;
+      if (goal_id_ == 0) move_at_ = now + parameters_.tone;
+      follow_.depart(now);
+      sentence_ = say(Text::kOneMoment);
+      sentence_at_ = now;
+    }
   }
-  return "unknown";
-}
-
-Guide::Guide(const Parameters& parameters, std::uint64_t first_goal_id)
-    : parameters_(parameters), next_goal_id_(std::max<std::uint64_t>(first_goal_id, 1)) {
-  assert(parameters.options_on_screen >= 3);
-  show(State::kIdle);
+  screen_.id = next_id_++;
+  speak_screen();
+  finish(now);
 }
 
 Status Guide::set_locations(std::vector<Location> locations, Time now) {
   std::set<std::string_view> names;
   for (const Location& location : locations) {
-    if (location.name.empty() || location.name == kCancel || location.name == kMore) {
-      return Error{"a location must have a name other than 'cancel' and 'more', got '" +
-                   location.name + "'"};
+    if (location.name.empty() || is_button(location.name)) {
+      return Error{"a location must have a name that is no button's, got '" + location.name + "'"};
     }
     if (!names.insert(location.name).second) {
       return Error{"location names must differ, got '" + location.name + "' twice"};
     }
   }
+  begin();
   if (locations == locations_) return {};
   locations_ = std::move(locations);
-  begin();
   page_ = 0;
-  if (state_ == State::kIdle || state_ == State::kOptions) enter(state_, now);
+  if (const Location* place = find(locations_, place_.name)) place_ = *place;
+  finish(now);
   return {};
 }
 
-std::string Guide::with_place(const std::string& text) const {
-  const std::size_t at = text.find("{place}");
-  if (at == std::string::npos) return text;
-  std::string filled = text;
-  return filled.replace(at, 7, place_.title.empty() ? place_.name : place_.title);
+Human Guide::human() const {
+  if (!surroundings_.visitor) return Human::kUnknown;
+  return there(*surroundings_.visitor) ? Human::kYes : Human::kNo;
 }
 
-bool Guide::ready() const {
-  return surroundings_.supervisor == Supervisor::kAvailable && !locations_.empty();
+/// Near enough to be served; farther away than those who are greeted, so that a step back is no
+/// goodbye.
+bool Guide::there(const VisitorSighting& visitor) const {
+  return visitor.seen && std::hypot(visitor.x, visitor.y) <= 2.0 * parameters_.greet_within;
 }
 
-void Guide::begin() {
-  actions_.screen_changed = false;
-  actions_.requests.clear();
-  actions_.goal.reset();
-  actions_.cancel.reset();
-}
-
-void Guide::enter(State state, Time now) {
-  state_ = state;
-  since_ = now;
-  show(state);
-}
-
-void Guide::show_idle() {
-  const Texts& texts = parameters_.texts;
-  screen_.title = texts.hello;
-  if (ready()) {
-    screen_.text = texts.touch_to_start;
-    screen_.options = {{kStart, texts.start, OptionKind::kYes}};
-  } else if (surroundings_.supervisor == Supervisor::kManual) {
-    screen_.text = texts.operator_drives;
-  } else if (surroundings_.supervisor == Supervisor::kAvailable) {
-    screen_.text = texts.no_places;
-  } else {
-    screen_.text = texts.not_ready;
+bool Guide::question() const {
+  switch (state_) {
+    case State::kLocationAsk:
+    case State::kLocationOptions:
+    case State::kLocationShow:
+    case State::kGuideAsk:
+    case State::kGuideOptions:
+    case State::kGuideStart:
+    case State::kGuidePaused:
+    case State::kGuideError:
+    case State::kEndAsk:
+      return true;
+    default:
+      return false;
   }
 }
 
-void Guide::show_options() {
-  const Texts& texts = parameters_.texts;
-  screen_.title = texts.where_to;
-  screen_.text = texts.choose;
-  const std::size_t room = parameters_.options_on_screen;
-  const bool pages = locations_.size() + 1 > room;  // one button is Cancel
-  const std::size_t a_page = pages ? room - 2 : room - 1;
-  const std::size_t first = std::min(page_ * a_page, locations_.size());
-  const std::size_t last = std::min(first + a_page, locations_.size());
-  for (std::size_t i = first; i < last; ++i) {
-    const Location& location = locations_[i];
-    screen_.options.push_back({location.name,
-                               location.title.empty() ? location.name : location.title,
-                               OptionKind::kOption});
-  }
-  if (pages) screen_.options.push_back({kMore, texts.more, OptionKind::kOption});
-  screen_.options.push_back({kCancel, texts.cancel, OptionKind::kNo});
+Memory Guide::memory() const {
+  Memory memory{std::string(text(state_)),
+                phrases_.languages()[language_].tag,
+                place_.name,
+                goal_id_,
+                stopped_,
+                visit_,
+                funnel_,
+                recent_};
+  return memory;
 }
 
-void Guide::show(State state) {
-  const Texts& texts = parameters_.texts;
-  const Option cancel{kCancel, texts.cancel, OptionKind::kNo};
-  const std::vector<Option> yes_or_no{{kYes, texts.yes, OptionKind::kYes},
-                                      {kNo, texts.no, OptionKind::kNo}};
-  const std::uint64_t id = screen_.id + 1;
-  screen_ = Screen{};
-  screen_.id = id;
-  screen_.state = text(state);
-  switch (state) {
-    case State::kIdle:
-      show_idle();
-      break;
-    case State::kGreeting:
-      screen_.title = texts.hello;
-      break;
-    case State::kOptions:
-      show_options();
-      break;
-    case State::kConfirm:
-      screen_.title = with_place(texts.will_take);
-      screen_.text = texts.tell_when_ready;
-      screen_.options = {{kStart, texts.start, OptionKind::kYes}, cancel};
-      break;
-    case State::kGuiding:
-      screen_.title = with_place(texts.guiding);
-      screen_.text = texts.lets_go;
-      screen_.options = {{kStop, texts.stop, OptionKind::kNo}, cancel};
-      screen_.progress = 0.0;
-      break;
-    case State::kPaused:
-      screen_.title = texts.stopped;
-      screen_.text = texts.tell_when_to_go_on;
-      screen_.options = {{kContinue, texts.go_on, OptionKind::kYes}, cancel};
-      break;
-    case State::kArrived:
-      screen_.title = texts.arrived;
-      screen_.text = with_place(texts.this_is);
-      screen_.progress = 1.0;
-      break;
-    case State::kFailed:
-      screen_.title = texts.sorry;
-      screen_.text = failure_.empty() ? texts.try_again : failure_ + " " + texts.try_again;
-      screen_.options = yes_or_no;
-      break;
-    case State::kAskMore:
-      screen_.title = texts.anything_else;
-      screen_.options = yes_or_no;
-      break;
-    case State::kEnd:
-      screen_.title = texts.see_you;
-      break;
-  }
-  actions_.screen_changed = true;
-}
+void Guide::begin() { actions_ = {}; }
 
-void Guide::give_up_goal() {
-  if (goal_id_ != 0) actions_.cancel = goal_id_;
-  goal_id_ = 0;
-  actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
-  // A stop of this visitor must not hold the robot for the next one.
-  if (state_ == State::kPaused) actions_.requests.push_back({RequestKind::kMovementOn, {}});
-}
-
-void Guide::fail(std::string_view reason, Time now) {
-  give_up_goal();
-  failure_ = reason;
-  if (!failure_.empty() && failure_.back() != '.') failure_ += '.';
-  enter(State::kFailed, now);
-}
-
-const Actions& Guide::answer(const Answer& answer, Time now) {
-  begin();
-  const bool offered =
-      answer.screen_id == screen_.id &&
-      std::any_of(screen_.options.begin(), screen_.options.end(),
-                  [&](const Option& option) { return option.id == answer.option_id; });
-  if (!offered || !choose(answer.option_id, now)) ++ignored_answers_;
+const Actions& Guide::finish(Time now) {
+  screen_ = build(now);
+  if (!same(screen_, published_)) actions_.screen_changed = true;
+  if (actions_.screen_changed) published_ = screen_;
   return actions_;
 }
 
-bool Guide::choose(const std::string& option, Time now) {
-  switch (state_) {
-    case State::kIdle:
-      page_ = 0;
-      enter(State::kOptions, now);
-      return true;
-    case State::kOptions: {
-      if (option == kMore) {
-        const std::size_t a_page = parameters_.options_on_screen - 2;
-        page_ = (page_ + 1) * a_page < locations_.size() ? page_ + 1 : 0;
-        enter(State::kOptions, now);
-        return true;
-      }
-      if (option == kCancel) {
-        enter(State::kAskMore, now);
-        return true;
-      }
-      const auto place =
-          std::find_if(locations_.begin(), locations_.end(),
-                       [&](const Location& location) { return location.name == option; });
-      if (place == locations_.end()) return false;
-      place_ = *place;
-      held_since_.reset();
-      actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
-      enter(State::kConfirm, now);
-      return true;
+void Guide::enter(State state, Cause cause, Time now) {
+  const auto edge = std::find_if(kEdges.begin(), kEdges.end(), [&](const Edge& each) {
+    return each.from == state_ && each.to == state && each.cause == cause;
+  });
+  assert(edge != kEdges.end());
+  ++edges_taken_[static_cast<std::size_t>(edge - kEdges.begin())];
+  state_ = state;
+  since_ = now;
+  warned_ = false;
+  if (state == State::kEnd) end_visit(cause, now);
+  if (!journey()) {
+    screen_.progress = state == State::kGuideSuccess ? 1.0 : -1.0;
+    screen_.eta = screen_.remaining = kNothing;
+  }
+  screen_.id = next_id_++;
+  screen_ = build(now);
+  if (state != State::kInitialise && state != State::kInactive) speak_screen();
+  actions_.remember = true;
+}
+
+void Guide::begin_visit(bool greeted, Time now) {
+  visit_ = {};
+  visit_.id = next_id_++;
+  visit_.greeted = greeted;
+  visit_since_ = now;
+  lost_visitor_ = false;
+  place_ = {};
+  if (greeted) ++funnel_.greeted;
+}
+
+void Guide::end_visit(Cause cause, Time now) {
+  visit_.duration = now - visit_since_;
+  visit_.outcome = visit_.arrived > 0    ? Outcome::kArrived
+                   : visit_.started > 0  ? Outcome::kGivenUp
+                   : cause == Cause::kNo ? Outcome::kEnded
+                                         : Outcome::kLeft;
+  if (visit_.outcome == Outcome::kGivenUp) ++funnel_.given_up;
+  actions_.visit = visit_;
+}
+
+// --- Answers
+
+const Actions& Guide::answer(const Answer& answer, Time now) {
+  begin();
+  const bool numbered = !answer.client.empty() && answer.id != 0;
+  if (numbered) {
+    if (handled_.size() >= kMostClients && handled_.count(answer.client) == 0) handled_.clear();
+    std::uint64_t& newest = handled_[answer.client];
+    if (answer.id <= newest) {
+      actions_.screen_changed = true;  // its client did not hear the reply
+      return finish(now);
     }
-    case State::kConfirm:
-      if (option == kCancel) {
-        give_up_goal();
-        enter(State::kAskMore, now);
-        return true;
-      }
-      actions_.requests.push_back({RequestKind::kNavigationGo, {}});
-      goal_id_ = next_goal_id_++;
-      goal_at_ = now;
-      acknowledged_ = false;
-      unheard_since_.reset();
-      actions_.goal = Goal{goal_id_, place_.name};
-      enter(State::kGuiding, now);
-      return true;
-    case State::kGuiding:
-    case State::kPaused:
-      if (option == kCancel) {
-        give_up_goal();
-        enter(State::kAskMore, now);
-      } else if (option == kStop) {
-        actions_.requests.push_back({RequestKind::kStop, {}});
-        enter(State::kPaused, now);
-      } else {
-        actions_.requests.push_back({RequestKind::kMovementOn, {}});
-        enter(State::kGuiding, now);
-      }
-      return true;
-    case State::kFailed:
-    case State::kAskMore:
-      page_ = 0;
-      if (option == kYes) {
-        enter(State::kOptions, now);
-      } else {
-        enter(state_ == State::kFailed ? State::kAskMore : State::kEnd, now);
-      }
-      return true;
-    case State::kGreeting:
-    case State::kArrived:
+    newest = answer.id;
+  }
+  const bool first = !visit_.engaged();
+  last_result_ = judge(answer, now);
+  last_answer_ = answer;
+  actions_.screen_changed = true;
+  if (last_result_ != AnswerResult::kDone) {
+    ++ignored_answers_;
+    ++visit_.ignored;
+    return finish(now);
+  }
+  ++(answer.input == Input::kTouch   ? visit_.touches
+     : answer.input == Input::kVoice ? visit_.utterances
+                                     : visit_.others);
+  if (first) ++funnel_.engaged;
+  return finish(now);
+}
+
+AnswerResult Guide::judge(const Answer& answer, Time now) {
+  // A stop is never late.
+  const bool stop = answer.option_id == button::kStop && state_ == State::kGuideActive;
+  if (answer.screen_id != screen_.id && !stop) return AnswerResult::kLate;
+  const auto option = std::find_if(screen_.options.begin(), screen_.options.end(),
+                                   [&](const Option& each) { return each.id == answer.option_id; });
+  if (option == screen_.options.end()) return AnswerResult::kNotOffered;
+  if (option->takes_text) {
+    query_ = answer.text.substr(0, kMostTyped);
+    since_ = now;
+    warned_ = false;
+    return AnswerResult::kDone;
+  }
+  const std::string id = option->id;  // the screen may change below
+  return choose_service(id, now) || choose(id, now) ? AnswerResult::kDone
+                                                    : AnswerResult::kNotOffered;
+}
+
+void Guide::choose_language(std::size_t language) { language_ = language; }
+
+bool Guide::choose_service(const std::string& option, Time now) {
+  if (option == button::kRepeat) {
+    speak_screen();
+    if (question()) since_ = now;
+    return true;
+  }
+  if (option == button::kStay) {
+    since_ = now;
+    warned_ = false;
+    return true;
+  }
+  if (option == button::kLanguages) {
+    enter(State::kIntroduction, Cause::kChoice, now);
+    return true;
+  }
+  for (std::size_t i = 0; i < phrases_.languages().size(); ++i) {
+    if (option != button::language(phrases_.languages()[i].tag)) continue;
+    if (state_ == State::kInactive) begin_visit(false, now);
+    greeted_ = true;
+    choose_language(i);
+    enter(State::kIntroduction, Cause::kChoice, now);
+    return true;
+  }
+  return false;
+}
+
+bool Guide::choose(const std::string& option, Time now) {
+  const bool yes = option == button::kYes;
+  const auto to = [&](State state, Cause cause) {
+    page_ = 0;
+    searching_ = false;
+    query_.clear();
+    enter(state, cause, now);
+    return true;
+  };
+  switch (state_) {
+    case State::kLocationAsk:
+      if (option == button::kGuideMe) return to(State::kGuideOptions, Cause::kChoice);
+      place_ = {};
+      return yes ? to(State::kLocationShow, Cause::kYes) : to(State::kGuideAsk, Cause::kNo);
+    case State::kLocationShow:
+      if (option == button::kWhereIs) return to(State::kLocationOptions, Cause::kChoice);
+      if (option == button::kGuideMe) return choose_place(place_.name, now);
+      return to(State::kGuideAsk, Cause::kYes);
+    case State::kLocationOptions:
+      if (option == button::kCancel) return to(State::kGuideAsk, Cause::kNo);
+      return choose_place(option, now);
+    case State::kGuideAsk:
+      if (option == button::kWhereIs) return to(State::kLocationOptions, Cause::kChoice);
+      return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
+    case State::kGuideOptions:
+      if (option == button::kCancel) return to(State::kEndAsk, Cause::kNo);
+      return choose_place(option, now);
+    case State::kGuideError:
+      return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
+    case State::kEndAsk:
+      return yes ? to(State::kLocationAsk, Cause::kYes) : to(State::kEnd, Cause::kNo);
     case State::kEnd:
+      begin_visit(false, now);
+      return to(State::kLocationAsk, Cause::kChoice);
+    case State::kGuideStart:
+    case State::kGuideActive:
+    case State::kGuidePaused:
+      return choose_on_the_way(option, now);
+    case State::kInitialise:
+    case State::kInactive:
+    case State::kIntroduction:
+    case State::kGuideSuccess:
       break;
   }
   return false;
 }
 
-const Actions& Guide::refused(std::string_view reason, Time now) {
-  begin();
-  if (state_ == State::kConfirm || journey()) fail(reason, now);
-  return actions_;
+bool Guide::choose_place(const std::string& option, Time now) {
+  if (option == button::kMore || option == button::kSearch || option == button::kBack) {
+    page_ = option == button::kMore ? page_ + 1 : 0;
+    searching_ = option == button::kSearch;
+    query_.clear();
+    enter(state_, Cause::kChoice, now);
+    return true;
+  }
+  const Location* place = find(locations_, option);
+  if (place == nullptr) return false;
+  place_ = *place;
+  page_ = 0;
+  searching_ = false;
+  if (state_ == State::kLocationOptions) {
+    enter(State::kLocationShow, Cause::kChoice, now);
+    return true;
+  }
+  visit_.place = place_.name;
+  held_since_.reset();
+  goal_id_ = 0;
+  actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
+  enter(State::kGuideStart, Cause::kChoice, now);
+  return true;
 }
+
+bool Guide::choose_on_the_way(const std::string& option, Time now) {
+  if (option == button::kCancel) {
+    leave_journey();
+    enter(State::kEndAsk, Cause::kNo, now);
+  } else if (option == button::kStop) {
+    stop_robot();
+    enter(State::kGuidePaused, Cause::kNo, now);
+  } else if (state_ == State::kGuideStart) {
+    actions_.requests.push_back({RequestKind::kNavigationGo, {}});
+    depart(now);
+  } else {
+    sentence_ = say(Text::kHereWeGo);
+    sentence_at_ = now;
+    move_at_ = now + parameters_.tone;
+    follow_.depart(now);
+    enter(State::kGuideActive, Cause::kYes, now);
+    screen_.tone = Tone::kMoving;
+  }
+  return true;
+}
+
+// --- Time
 
 const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
-  const bool was_ready = ready();
-  const Supervisor before = surroundings_.supervisor;
   surroundings_ = surroundings;
-  if (surroundings.visitor_near == false) greeted_ = false;
-  if (state_ == State::kIdle &&
-      (was_ready != ready() || (!ready() && before != surroundings.supervisor))) {
-    show(State::kIdle);
-  }
-  if (state_ == State::kConfirm || journey()) watch_robot(now);
-  if (journey()) watch_navigation(now);
-  if (state_ == State::kGuiding) refresh_journey(now);
+  watch_encounter(now);
+  if (state_ == State::kGuideStart || journey()) watch_robot(now);
+  if (journey()) move_when_due(now);
+  if (journey() && goal_id_ != 0) watch_navigation(now);
+  if (state_ == State::kGuideActive && goal_id_ != 0) watch_follower(now);
+  if (state_ == State::kGuideActive && goal_id_ != 0) watch_obstacle(now);
+  if (state_ == State::kGuideActive) refresh_journey(now);
   pass_time(now);
-  return actions_;
+  return finish(now);
 }
 
-void Guide::watch_robot(Time now) {
-  const Supervisor supervisor = surroundings_.supervisor;
-  if (supervisor == Supervisor::kFault) {
-    fail("Something is wrong with me; an operator must help", now);
+void Guide::watch_encounter(Time now) {
+  if (!surroundings_.visitor) {
+    near_since_.reset();
+    nobody_since_.reset();
     return;
   }
-  if (supervisor == Supervisor::kManual) {
-    fail("An operator has taken over", now);
-    return;
+  const VisitorSighting& visitor = *surroundings_.visitor;
+  const bool near = visitor.seen && visitor.x > 0.0 &&
+                    std::hypot(visitor.x, visitor.y) <= parameters_.greet_within &&
+                    !(visitor.speed > parameters_.greet_below);
+  if (!near) near_since_.reset();
+  if (near && !near_since_) near_since_ = now;
+  if (there(visitor)) nobody_since_.reset();
+  if (!there(visitor) && !nobody_since_) nobody_since_ = now;
+  if (nobody_since_ && now - *nobody_since_ >= parameters_.left) greeted_ = false;
+  if (state_ == State::kInactive && ready() && !greeted_ && near_since_ &&
+      now - *near_since_ >= parameters_.greet_after) {
+    greeted_ = true;
+    begin_visit(true, now);
+    enter(State::kIntroduction, Cause::kVisitor, now);
   }
-  // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
-  const bool held =
-      supervisor != Supervisor::kNavigation && (supervisor != Supervisor::kAvailable || journey());
-  if (!held) {
-    held_since_.reset();
-  } else if (!held_since_) {
-    held_since_ = now;
-  } else if (now - *held_since_ >= parameters_.recovery) {
-    fail("A part of me does not answer", now);
-  }
-}
-
-void Guide::watch_navigation(Time now) {
-  const auto& navigation = surroundings_.navigation;
-  const bool ours = navigation && navigation->goal_id == goal_id_;
-  if (!ours) {
-    if (acknowledged_ && navigation) {
-      fail("Somebody gave me another goal", now);
-      return;
-    }
-    if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
-    if (now - *unheard_since_ >= parameters_.acknowledge) {
-      fail("My navigation does not answer", now);
-    }
-    return;
-  }
-  acknowledged_ = true;
-  unheard_since_.reset();
-  switch (navigation->state) {
-    case NavigationState::kSucceeded:
-      if (state_ == State::kPaused) actions_.requests.push_back({RequestKind::kMovementOn, {}});
-      actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
-      goal_id_ = 0;
-      enter(State::kArrived, now);
-      break;
-    case NavigationState::kFailed:
-      fail(navigation->reason, now);
-      break;
-    case NavigationState::kCancelled:
-      fail("The way was cancelled", now);
-      break;
-    case NavigationState::kReplaced:
-      fail("Somebody gave me another goal", now);
-      break;
-    case NavigationState::kIdle:
-    case NavigationState::kActive:
-    case NavigationState::kWaiting:
-      break;
-  }
-}
-
-void Guide::refresh_journey(Time now) {
-  const auto& navigation = surroundings_.navigation;
-  const Texts& texts = parameters_.texts;
-  const bool waiting = navigation && navigation->goal_id == goal_id_ &&
-                       navigation->state == NavigationState::kWaiting;
-  const bool held = held_since_ && now - *held_since_ >= parameters_.refresh;
-  const std::string& sentence = held      ? texts.one_moment
-                                : waiting ? texts.in_the_way
-                                          : texts.lets_go;
-  const bool spoken = sentence != screen_.text;
-  if (spoken) screen_.text = sentence;
-  bool moved = false;
-  if (navigation && navigation->goal_id == goal_id_ && now - refreshed_ >= parameters_.refresh) {
-    const double progress =
-        std::isfinite(navigation->progress) ? std::clamp(navigation->progress, 0.0, 1.0) : 0.0;
-    const double eta = navigation->eta;
-    const bool same_eta = eta == screen_.eta || (std::isnan(eta) && std::isnan(screen_.eta));
-    moved = progress != screen_.progress || !same_eta;
-    screen_.progress = progress;
-    screen_.eta = eta;
-    if (moved) refreshed_ = now;
-  }
-  if (spoken || moved) actions_.screen_changed = true;
 }
 
 void Guide::pass_time(Time now) {
   const Time passed = now - since_;
+  const bool gone = nobody_since_ && now - *nobody_since_ >= parameters_.left &&
+                    passed >= parameters_.left && !journey();
+  if (question()) {
+    if (gone || passed >= patience()) {
+      if (state_ == State::kGuideStart || journey()) leave_journey();
+      enter(State::kEnd, gone ? Cause::kLeft : Cause::kTimeout, now);
+    } else if (!warned_ && passed >= patience() - parameters_.warning) {
+      warned_ = true;
+      speak(say(Text::kStillThere));
+    }
+    return;
+  }
   switch (state_) {
-    case State::kIdle:
-      if (ready() && surroundings_.visitor_near == true && !greeted_) {
-        greeted_ = true;
-        enter(State::kGreeting, now);
+    case State::kInitialise:
+      if (ready()) {
+        language_ = 0;
+        enter(State::kInactive, Cause::kReady, now);
       }
       break;
-    case State::kGreeting:
-      page_ = 0;
-      if (passed >= parameters_.greeting) enter(State::kOptions, now);
+    case State::kInactive:
+      if (!ready()) enter(State::kInitialise, Cause::kNotReady, now);
       break;
-    case State::kOptions:
-    case State::kFailed:
-    case State::kAskMore:
-      if (passed >= parameters_.answer) enter(State::kEnd, now);
-      break;
-    case State::kConfirm:
-      if (passed >= parameters_.answer) {
-        give_up_goal();
-        enter(State::kEnd, now);
+    case State::kIntroduction:
+      if (gone) {
+        enter(State::kEnd, Cause::kLeft, now);
+      } else if (passed >= parameters_.introduction) {
+        enter(State::kLocationAsk, Cause::kDelay, now);
       }
       break;
-    case State::kPaused:
-      if (passed >= parameters_.pause) {
-        give_up_goal();
-        enter(State::kEnd, now);
-      }
-      break;
-    case State::kArrived:
-      if (passed >= parameters_.arrived) enter(State::kAskMore, now);
+    case State::kGuideSuccess:
+      if (passed >= parameters_.arrived) enter(State::kEndAsk, Cause::kDelay, now);
       break;
     case State::kEnd:
-      if (passed >= parameters_.goodbye) enter(State::kIdle, now);
+      // Who stays may start again; after a while the robot is free for others.
+      if (passed >= (human() == Human::kYes ? parameters_.answer : parameters_.goodbye)) {
+        language_ = 0;
+        enter(State::kInactive, Cause::kDelay, now);
+      }
       break;
-    case State::kGuiding:
+    default:
       break;
   }
+}
+
+const Actions& Guide::refused(Time now) {
+  begin();
+  const bool before = journey() && !acknowledged_;
+  if (state_ == State::kGuideStart || before) fail(Text::kPartSilent, Cause::kFailure, now);
+  return finish(now);
 }
 
 }  // namespace usher::guide

@@ -1,70 +1,47 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "foundation/geometry/pose2.hpp"
 #include "foundation/result/result.hpp"
+#include "interaction/phrases/core/phrase_file.hpp"
+#include "tasks/guide/core/dialogue.hpp"
+#include "tasks/guide/core/follow_check.hpp"
+#include "tasks/guide/core/places.hpp"
 #include "tasks/guide/core/screen.hpp"
+#include "tasks/guide/core/texts.hpp"
+#include "tasks/guide/core/visit.hpp"
 
 namespace usher::guide {
 
-/// Time on the local monotonic clock.
-using Time = std::chrono::nanoseconds;
-
-/// Where the guide can go.
-struct Location {
-  std::string name;   ///< what the navigator knows
-  std::string title;  ///< what people know
-  bool operator==(const Location&) const = default;
-};
-
-/// The sentences of the thesis, section 7.2. "{place}" stands for the title of the location.
-struct Texts {
-  std::string hello = "Hello, I am MARVIN.";
-  std::string touch_to_start = "Touch Start if you would like me to guide you somewhere.";
-  std::string not_ready = "I am not ready yet. One moment, please.";
-  std::string no_places = "I do not know any places yet.";
-  std::string operator_drives = "An operator is driving me.";
-  std::string where_to = "Where would you like to go?";
-  std::string choose = "Please choose a place.";
-  std::string will_take = "I will take you to {place}.";
-  std::string tell_when_ready = "Tell me when you are ready to go.";
-  std::string guiding = "I am taking you to {place}.";
-  std::string lets_go = "All right, let's go. Tell me if we need to stop.";
-  std::string in_the_way = "Something is in the way. I am waiting until we can go on.";
-  std::string one_moment = "One moment, please. I have to wait for a part of me.";
-  std::string stopped = "I have stopped.";
-  std::string tell_when_to_go_on = "Tell me when we can go on.";
-  std::string arrived = "We have arrived.";
-  std::string this_is = "This is {place}.";
-  std::string sorry = "Sorry, I was unable to guide you.";
-  std::string try_again = "Would you like to try again?";
-  std::string anything_else = "Can I do anything else for you?";
-  std::string see_you = "OK, See you later.";
-  std::string start = "Start";
-  std::string stop = "Stop";
-  std::string go_on = "Continue";
-  std::string cancel = "Cancel";
-  std::string more = "More";
-  std::string yes = "Yes";
-  std::string no = "No";
-};
-
 struct Parameters {
-  Texts texts;
-  Time greeting = std::chrono::seconds(2);     ///< how long a detected visitor is greeted
-  Time answer = std::chrono::seconds(60);      ///< a question waits so long
-  Time pause = std::chrono::seconds(120);      ///< a stop on the way waits so long
-  Time arrived = std::chrono::seconds(4);      ///< then the next question
-  Time goodbye = std::chrono::seconds(4);      ///< then idle again
-  Time acknowledge = std::chrono::seconds(5);  ///< the navigator must take the goal by then
-  Time recovery = std::chrono::seconds(60);    ///< a robot that may not move is waited for
-  Time refresh = std::chrono::seconds(1);      ///< least time between two updates of progress
-  std::size_t options_on_screen = 8;           ///< {>= 3} more places go on further pages
+  Time introduction = std::chrono::seconds(3);  ///< the greeting is shown; a language can be chosen
+  Time answer = std::chrono::seconds(60);       ///< a question waits so long
+  Time warning = std::chrono::seconds(20);      ///< before it is given up; one touch asks for more
+  Time pause = std::chrono::seconds(120);       ///< a stop on the way waits so long
+  Time arrived = std::chrono::seconds(4);       ///< then the next question
+  Time goodbye = std::chrono::seconds(4);       ///< then inactive, when nobody is there
+  Time left = std::chrono::seconds(15);         ///< nobody there for so long: the visitor has gone
+  Time greet_after = std::chrono::milliseconds(1000);  ///< who passes by is not greeted
+  double greet_within = 2.0;                           ///< [m] in front
+  double greet_below = 0.6;                            ///< [m/s] who walks faster passes by
+  Time tone = std::chrono::milliseconds(1000);         ///< from the tone to the first motion
+  Time acknowledge = std::chrono::seconds(5);          ///< the navigator must take the goal by then
+  Time recovery = std::chrono::seconds(60);            ///< a robot that may not move is waited for
+  Time refresh = std::chrono::seconds(1);  ///< least time between two updates of progress
+  Time please = std::chrono::seconds(3);   ///< blocked for so long: asks to make way
+  Time please_again = std::chrono::seconds(8);
+  double speed = 1.15;                ///< [m/s] pace of guiding; limits of the place still hold
+  std::size_t options_on_screen = 8;  ///< {>= 4} more places go on further pages
+  std::size_t recent = 3;             ///< places that were reached lately come first
+  FollowLimits follow;
 };
 
 /// The supervisor's states as far as they concern a guide.
@@ -91,23 +68,33 @@ enum class NavigationState : std::uint8_t {
 struct Navigation {
   std::uint64_t goal_id = 0;
   NavigationState state = NavigationState::kIdle;
-  double progress = 0.0;                                  ///< {0..1}
-  double eta = std::numeric_limits<double>::quiet_NaN();  ///< [s]
-  std::string reason;                                     ///< why it failed or waits
+  double progress = 0.0;        ///< {0..1}
+  double eta = kNothing;        ///< [s]
+  double remaining = kNothing;  ///< [m]
+  bool blocked = false;         ///< something stands in the way now
+  std::uint32_t replans = 0;
+};
+
+/// Whom the people detector sees: before a journey in front, on it behind.
+struct VisitorSighting {
+  bool seen = false;
+  double x = 0.0, y = 0.0;  ///< [m] from the robot; x ahead
+  double speed = kNothing;  ///< [m/s] in the map
 };
 
 /// What is known of the rest of the robot.
 struct Surroundings {
   Supervisor supervisor = Supervisor::kUnknown;
-  std::optional<Navigation> navigation;  ///< nothing: the navigator is silent
-  std::optional<bool> visitor_near;      ///< nothing: nobody looks
+  std::optional<Navigation> navigation;    ///< nothing: the navigator is silent
+  std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
+  std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
 };
 
 enum class RequestKind : std::uint8_t {
   kNavigationStart,  ///< a goal is chosen; carries its name
   kNavigationGo,     ///< the visitor is ready
   kNavigationEnd,
-  kStop,        ///< the visitor wants to stop for a moment
+  kStop,        ///< the visitor wants to stop for a moment, or is waited for
   kMovementOn,  ///< and to go on
 };
 
@@ -129,91 +116,167 @@ struct Actions {
   std::vector<Request> requests;  ///< in this order
   std::optional<Goal> goal;
   std::optional<std::uint64_t> cancel;  ///< id of the goal to give up
+  std::optional<double> pace;           ///< [m/s] for the goal that runs
+  bool remember = false;                ///< memory() is worth keeping
+  std::optional<Visit> visit;           ///< one is over
 };
 
-enum class State : std::uint8_t {
-  kIdle,      ///< nobody is served
-  kGreeting,  ///< a visitor came near
-  kOptions,   ///< which place?
-  kConfirm,   ///< ready to go?
-  kGuiding,
-  kPaused,  ///< the visitor asked to stop
-  kArrived,
-  kFailed,   ///< another try?
-  kAskMore,  ///< anything else?
-  kEnd,      ///< goodbye
-};
-
-std::string_view text(State state);
-
-/// A guide of a few states: asks where to go, takes the visitor there, asks what else.
+/// Leads a visit through the states of fig. 7.1 of the thesis: greets, shows where we are, asks
+/// where to go, takes the visitor there, waits for him, asks what else. dialogue.hpp has all edges.
 ///
-///   idle -> [greeting] -> options -> confirm -> guiding <-> paused
-///   guiding -> arrived -> ask more -> options | end -> idle
-///   confirm, guiding, paused -> failed -> options | ask more
-///   any question without an answer -> end
-///
-/// Every accepted answer leads to a screen with a new id, so that a repeated or late answer has no
-/// effect. Nothing blocks: whatever the rest of the robot does, each state has a way and a time
-/// out.
+/// Every accepted answer that changes the question leads to a screen with a new id, so that a
+/// repeated or late answer has no effect. Nothing blocks: whatever the rest of the robot does, each
+/// state has a way and a time out; the last seconds of a question are shown and can be extended.
 class Guide {
  public:
-  /// `first_goal_id` must be above all ids that this guide used before a restart.
-  Guide(const Parameters& parameters, std::uint64_t first_goal_id);
+  /// `first_id` must be above all ids of goals, screens and visits that this guide used before a
+  /// restart; `memory` is what it kept.
+  Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uint64_t first_id,
+        const Memory& memory, Time now);
 
   /// The places to offer. Refused, and nothing changed, when a name is empty, occurs twice or is
-  /// the id of a button ("cancel", "more").
+  /// the id of another button.
   Status set_locations(std::vector<Location> locations, Time now);
 
-  /// An answer arrived.
+  /// An answer arrived. One that its client repeats changes nothing.
   const Actions& answer(const Answer& answer, Time now);
 
-  /// Time passed, or something else of the robot changed.
+  /// Time passed, or something else of the robot changed. At 5 Hz or faster.
   const Actions& step(const Surroundings& surroundings, Time now);
 
   /// The supervisor refused a request of this guide.
-  const Actions& refused(std::string_view reason, Time now);
+  const Actions& refused(Time now);
 
+  const Parameters& parameters() const { return parameters_; }
   State state() const { return state_; }
   const Screen& screen() const { return screen_; }
+  Human human() const;
+  const Surroundings& surroundings() const { return surroundings_; }
+  /// Nobody is served: the robot may turn slowly to look for people.
+  bool seeks() const { return state_ == State::kInactive && human() != Human::kYes; }
+  const Visit& visit() const { return visit_; }
+  const Funnel& funnel() const { return funnel_; }
+  Memory memory() const;
   std::uint64_t ignored_answers() const { return ignored_answers_; }
+  /// Table 6.2: whose answer came last, which one, what became of it.
+  const Answer& last_answer() const { return last_answer_; }
+  AnswerResult last_result() const { return last_result_; }
+  /// How often each edge of kEdges was taken.
+  const std::array<std::uint64_t, kEdges.size()>& edges_taken() const { return edges_taken_; }
 
  private:
   void begin();
-  void enter(State state, Time now);
-  void show(State state);
-  void show_idle();
-  void show_options();
-  void fail(std::string_view reason, Time now);
-  void give_up_goal();
-  bool ready() const;
-  bool journey() const { return state_ == State::kGuiding || state_ == State::kPaused; }
-  std::string with_place(const std::string& text) const;
+  const Actions& finish(Time now);
+  void enter(State state, Cause cause, Time now);
+  void begin_visit(bool greeted, Time now);
+  void end_visit(Cause cause, Time now);
+  void leave_journey();
+
+  // Screens.
+  Screen build(Time now) const;
+  void build_places(Screen& screen) const;
+  void build_journey(Screen& screen) const;
+  void build_map(Screen& screen) const;
+  void build_languages(Screen& screen) const;
+  std::string status() const;
+  void add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const;
+  std::string say(Text text) const;
+  std::string say_place(Text text) const;
+  std::string way_words(double meters) const;
+  std::string time_words(double seconds) const;
+  Text idle_text() const;
+  void speak(const std::string& sentence, Tone tone = Tone::kNone);
+  void speak_screen();
+  std::vector<const Location*> offered() const;
+
+  // Answers.
+  AnswerResult judge(const Answer& answer, Time now);
   bool choose(const std::string& option, Time now);
+  bool choose_service(const std::string& option, Time now);
+  bool choose_place(const std::string& option, Time now);
+  bool choose_on_the_way(const std::string& option, Time now);
+  void choose_language(std::size_t language);
+
+  // The way.
+  bool ready() const { return surroundings_.supervisor == Supervisor::kAvailable && known(); }
+  bool known() const { return !locations_.empty(); }
+  bool journey() const { return state_ == State::kGuideActive || state_ == State::kGuidePaused; }
+  bool question() const;
+  Time patience() const {
+    return state_ == State::kGuidePaused ? parameters_.pause : parameters_.answer;
+  }
+  void depart(Time now);
+  void move_when_due(Time now);
+  void stop_robot();
+  void fail(Text reason, Cause cause, Time now);
   void watch_robot(Time now);
   void watch_navigation(Time now);
+  void watch_follower(Time now);
+  void watch_obstacle(Time now);
+  void watch_encounter(Time now);
   void refresh_journey(Time now);
+  void say_on_the_way(Text text, Tone tone, Time now);
+  bool there(const VisitorSighting& visitor) const;
   void pass_time(Time now);
 
   Parameters parameters_;
-  std::uint64_t next_goal_id_;
+  phrases::PhraseBook phrases_;
   std::vector<Location> locations_;
-  State state_ = State::kIdle;
-  Time since_{};  ///< when this state was entered
+  std::uint64_t next_id_;
+  State state_ = State::kInitialise;
+  Time since_{};  ///< when this state was entered or its time was extended
+  std::size_t language_ = 0;
   Screen screen_;
+  Screen published_;
   Surroundings surroundings_;
-  bool greeted_ = false;  ///< the visitor who is near was served already
+  Actions actions_;
+
+  // This question.
   std::size_t page_ = 0;
-  Location place_;                     ///< where to
-  std::uint64_t goal_id_ = 0;          ///< 0: none was given
-  Time goal_at_{};                     ///< when it was given
-  bool acknowledged_ = false;          ///< the navigator named it
+  bool searching_ = false;
+  std::string query_;
+  bool warned_ = false;
+
+  // This visit.
+  Visit visit_;
+  Time visit_since_{};
+  Funnel funnel_;
+  std::vector<std::string> recent_;
+  bool greeted_ = false;  ///< the visitor who is there was greeted already
+  bool lost_visitor_ = false;
+  std::optional<Time> near_since_, nobody_since_;
+
+  // This journey.
+  Location place_;
+  std::uint64_t goal_id_ = 0;  ///< 0: none was given
+  Time goal_at_{};             ///< when it was given, or last given again
+  Time departed_{};
+  bool acknowledged_ = false;  ///< the navigator named it
+  int given_again_ = 0;
+  std::optional<Time> move_at_;        ///< after the tone
+  bool stopped_ = false;               ///< this guide has asked the supervisor to stop
   std::optional<Time> unheard_since_;  ///< the navigator's silence
   std::optional<Time> held_since_;     ///< the supervisor lets nothing move
-  std::string failure_;
+  Time asked_again_{};
+  std::optional<Time> blocked_since_;
+  Time pleaded_{};
+  std::uint32_t replans_at_plea_ = 0;
+  bool pleads_ = false;
+  FollowCheck follow_;
+  std::uint32_t calls_heard_ = 0;
+  std::string sentence_;  ///< the newest on the way
+  Time sentence_at_{};
+  bool told_eta_ = false, told_almost_ = false;
+  double first_eta_ = kNothing, first_way_ = kNothing;
+  Time first_eta_at_{};
+  Text failure_ = Text::kNoWay;
   Time refreshed_{};
-  Actions actions_;
+
+  std::map<std::string, std::uint64_t> handled_;  ///< newest answer of each client
+  Answer last_answer_;
+  AnswerResult last_result_ = AnswerResult::kNone;
   std::uint64_t ignored_answers_ = 0;
+  std::array<std::uint64_t, kEdges.size()> edges_taken_{};
 };
 
 }  // namespace usher::guide

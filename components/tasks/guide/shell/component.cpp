@@ -1,5 +1,8 @@
 #include "tasks/guide/shell/component.hpp"
 
+#include <filesystem>
+#include <sstream>
+
 #include "wire/conversions.hpp"
 
 namespace usher::guide {
@@ -13,6 +16,10 @@ namespace state = usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr auto kNavigationAge = milliseconds(2000);
+constexpr auto kFollowAge = milliseconds(1000);
+constexpr auto kLocalizationAge = milliseconds(2000);
+constexpr auto kVisitorAge = milliseconds(500);
+constexpr const char* kMemory = "dialogue";
 
 Supervisor supervisor_from(std::uint8_t value) {
   switch (value) {
@@ -57,26 +64,72 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   Parameters p;
   const auto time = [&](const char* name, Time& value, const char* text) {
     value = runtime::from_seconds(
-        parameters.number(name, "s", {0.5, 3600}, runtime::seconds(value), text));
+        parameters.number(name, "s", {0.1, 3600}, runtime::seconds(value), text));
   };
+  const auto number = [&](const char* name, const char* unit, runtime::Range range, double& value,
+                          const char* text) {
+    value = parameters.number(name, unit, range, value, text);
+  };
+  time("introduction_time", p.introduction, "How long the greeting is shown.");
   time("answer_timeout", p.answer, "How long a question waits for an answer.");
+  time("warning_time", p.warning,
+       "So long before a time-out it is announced, with a button for more time; at least 20 s by "
+       "WCAG 2.2.1.");
   time("pause_timeout", p.pause, "How long a stop on the way waits.");
-  time("acknowledge_timeout", p.acknowledge, "The navigator must take a goal by then.");
-  time("recovery_timeout", p.recovery, "How long a robot that may not move is waited for.");
   time("arrived_time", p.arrived, "How long the arrival is shown.");
   time("goodbye_time", p.goodbye, "How long the goodbye is shown.");
+  time("left_time", p.left, "Nobody there for so long: the visitor has gone.");
+  time("greet_after", p.greet_after, "How long somebody must be near before being greeted.");
+  number("greet_within", "m", {0.5, 5}, p.greet_within, "How near somebody is greeted.");
+  number("greet_below", "m/s", {0.1, 3}, p.greet_below, "Who walks faster passes by.");
+  time("tone_time", p.tone, "From the tone to the first motion; ISO 13482 asks for a warning.");
+  time("acknowledge_timeout", p.acknowledge, "The navigator must take a goal by then.");
+  time("recovery_timeout", p.recovery, "How long a robot that may not move is waited for.");
+  time("please_after", p.please, "Blocked for so long it asks to make way.");
+  number("guide_speed", "m/s", {0.2, 1.4}, p.speed,
+         "Pace of guiding; the limits of the place still hold.");
+  number("follow_near", "m", {0.5, 6}, p.follow.near, "Up to this gap at the full pace.");
+  number("follow_far", "m", {1, 6}, p.follow.far, "At this gap the robot waits.");
+  number("follow_resume", "m", {0.5, 6}, p.follow.resume, "At this gap it goes on.");
+  time("follow_unseen", p.follow.unseen, "Nobody behind for so long: it waits.");
+  time("follow_grace", p.follow.grace, "After a departure, while the visitor steps behind.");
+  time("follow_call", p.follow.call, "Waiting for so long it calls, and again.");
+  time("follow_give_up", p.follow.give_up, "Waiting for so long it gives up.");
   return p;
+}
+
+Guide GuideComponent::make(runtime::Host& host) {
+  auto& parameters = host.parameters();
+  const Parameters p = read_parameters(parameters);
+  const std::filesystem::path file = parameters.file(
+      "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
+  std::istringstream list(parameters.text("languages", "en mi de fr",
+                                          "Languages to choose from, the first is the default."));
+  std::vector<std::string> tags;
+  for (std::string tag; list >> tag;) tags.push_back(tag);
+  auto phrases = file.empty()
+                     ? Result<phrases::PhraseBook>(phrases::PhraseBook::of_keys(kTextKeys))
+                     : phrases::PhraseBook::load(file.parent_path(), tags, "guide", kTextKeys);
+  if (!phrases) host.fault("texts: " + phrases.error());
+  if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
+    host.fault("follow_near and follow_resume must be below follow_far");
+  Memory memory;
+  if (const auto kept = host.kept(kMemory)) {
+    auto read = memory_from_text({reinterpret_cast<const char*>(kept->data()), kept->size()});
+    if (read) memory = std::move(read).value();
+  }
+  // Ids above all that were used before a restart.
+  const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
+  return Guide(p, std::move(phrases).value(), first_id, memory, host.now().time_since_epoch());
 }
 
 GuideComponent::GuideComponent(runtime::Host& host)
     : host_(host),
-      core_(read_parameters(host.parameters()),
-            static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000)),
-      max_speed_(static_cast<float>(
-          host.parameters().number("guide_speed", "m/s", {0.2, 1.4}, 1.15,
-                                   "Pace of guiding; the limits of the place still hold."))),
+      core_(make(host)),
+      max_speed_(static_cast<float>(core_.parameters().speed)),
       ignored_answers_(host.health().counter("answers: ignored")),
       rejected_locations_(host.health().counter("locations: rejected")),
+      forgotten_(host.health().counter("memory: not kept")),
       requests_(host, topics::kSupervisorRequest),
       goals_(host, topics::kNavigateGoal) {
   supervisor_ = host.input(
@@ -92,50 +145,97 @@ GuideComponent::GuideComponent(runtime::Host& host)
         step();
       },
       [this] { step(); });
+  follow_ =
+      host.input(topics::kFollowStatus,
+                 {.max_age = kFollowAge, .on_loss = "asks nobody to make way", .optional = true});
   locations_ = host.input(topics::kLocations, {},
                           [this](const auto& message, const auto&) { take_locations(message); });
+  localization_ =
+      host.input(topics::kLocalizationStatus, {.max_age = kLocalizationAge,
+                                               .on_loss = "says that it does not know where it is",
+                                               .optional = true});
+  pose_ = host.input(topics::kAmclPose, {.optional = true});
+  visitor_ = host.input(topics::kVisitor,
+                        {.max_age = kVisitorAge,
+                         .on_loss = "greets nobody, waits for nobody: the visitor is unknown",
+                         .optional = true});
   answers_ = host.input(topics::kDialogueAnswer, {.optional = true},
-                        [this](const auto& answer, const auto&) {
-                          act(core_.answer({answer.screen_id(), answer.option_id()}, now()));
-                          ignored_answers_ = core_.ignored_answers();
-                        });
+                        [this](const auto& answer, const auto&) { take_answer(answer); });
   screen_ = host.output(topics::kDialogueScreen);
+  status_ = host.output(topics::kGuideStatus);
+  visits_ = host.output(topics::kGuideVisit);
+  pace_ = host.output(topics::kNavigatePace);
   cancel_ = host.output(topics::kNavigateCancel);
-  timer_ = host.timer("step", milliseconds(100), [this](auto) {
-    step();
-    const bool heard = supervisor_.fresh() != nullptr && navigation_.fresh() != nullptr;
-    host_.health().set(heard ? HealthState::kOk : HealthState::kDegraded,
-                       heard                            ? ""
-                       : supervisor_.fresh() == nullptr ? "no supervisor"
-                                                        : "no navigator");
-  });
+  timer_ = host.timer("step", milliseconds(100), [this](auto) { tick(); });
   publish_screen();
+  publish_status();
+}
+
+void GuideComponent::tick() {
+  step();
+  if (++ticks_ % 10 == 0) publish_status();
+  const bool heard = supervisor_.fresh() != nullptr && navigation_.fresh() != nullptr;
+  host_.health().set(heard ? HealthState::kOk : HealthState::kDegraded,
+                     heard                            ? ""
+                     : supervisor_.fresh() == nullptr ? "no supervisor"
+                                                      : "no navigator");
 }
 
 Surroundings GuideComponent::surroundings() const {
   Surroundings s;
   if (const auto* status = supervisor_.fresh()) s.supervisor = supervisor_from(status->state());
   if (const auto* status = navigation_.fresh()) {
-    s.navigation = Navigation{
-        status->id(), static_cast<NavigationState>(std::min<std::uint8_t>(status->state(), 6)),
-        status->progress(), status->eta(), status->reason()};
+    const auto* follow = follow_.fresh();
+    const bool blocked = follow != nullptr &&
+                         follow->state() == usher_msgs::msg::GoalStatus_Constants::STATE_WAITING &&
+                         follow->blocked_for() > 0.0F;
+    s.navigation =
+        Navigation{status->id(),
+                   static_cast<NavigationState>(std::min<std::uint8_t>(status->state(), 6)),
+                   status->progress(),
+                   status->eta(),
+                   status->remaining(),
+                   blocked,
+                   status->replans()};
+  }
+  namespace seen = usher_msgs::msg::Visitor_Constants;
+  const auto* visitor = visitor_.fresh();
+  if (visitor != nullptr && visitor->presence() != seen::PRESENCE_UNKNOWN) {
+    s.visitor = VisitorSighting{visitor->presence() == seen::PRESENCE_SEEN, visitor->x(),
+                                visitor->y(), visitor->speed()};
+  }
+  const auto* localization = localization_.fresh();
+  const auto* pose = pose_.latest();
+  if (localization != nullptr && pose != nullptr &&
+      localization->state() != usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST) {
+    if (const auto planar = wire::to_planar(pose->pose().pose())) s.pose = *planar;
   }
   return s;
 }
 
 void GuideComponent::take_locations(const usher_msgs::msg::Locations& message) {
   std::vector<Location> locations;
-  for (const auto& location : message.locations())
-    locations.push_back({location.name(), location.title()});
+  for (const auto& location : message.locations()) {
+    const auto& at = location.pose().position();
+    locations.push_back({location.name(), location.title(), {at.x(), at.y()}});
+  }
   if (!core_.set_locations(std::move(locations), now())) ++rejected_locations_;
   step();
 }
 
 void GuideComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
   if (requests_.answered(status.last_request()) && !status.last_request_done()) {
-    act(core_.refused(status.last_request_reason(), now()));
+    act(core_.refused(now()));
   }
   step();
+}
+
+void GuideComponent::take_answer(const usher_msgs::msg::DialogueAnswer& answer) {
+  const auto input = static_cast<Input>(std::min<std::uint8_t>(answer.input(), 2));
+  act(core_.answer(
+      {answer.screen_id(), answer.option_id(), answer.text(), input, answer.client(), answer.id()},
+      now()));
+  ignored_answers_ = core_.ignored_answers();
 }
 
 void GuideComponent::act(const Actions& actions) {
@@ -161,7 +261,61 @@ void GuideComponent::act(const Actions& actions) {
     cancel.client(host_.name());
     cancel_.publish(cancel);
   }
+  if (actions.pace && ticks_ % 2 == 0) {
+    usher_msgs::msg::NavigatePace pace;
+    pace.id(core_.memory().goal_id);
+    pace.client(host_.name());
+    pace.max_speed(static_cast<float>(*actions.pace));
+    pace_.publish(pace);
+  }
+  if (actions.remember) remember();
+  if (actions.visit) {
+    visits_.publish(to_message(*actions.visit));
+    publish_status();
+  }
   if (actions.screen_changed) publish_screen();
+}
+
+void GuideComponent::remember() {
+  const std::string text = to_text(core_.memory());
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  if (!host_.keep(kMemory, {bytes, text.size()})) ++forgotten_;
+}
+
+usher_msgs::msg::GuideVisit GuideComponent::to_message(const Visit& visit) const {
+  usher_msgs::msg::GuideVisit message;
+  message.header(wire::header(host_.now(), ""));
+  message.id(visit.id);
+  message.outcome(static_cast<std::uint8_t>(visit.outcome));
+  message.language(core_.screen().language);
+  message.place(visit.place);
+  message.greeted(visit.greeted);
+  message.engaged(visit.engaged());
+  message.started(visit.started);
+  message.arrived(visit.arrived);
+  message.touches(visit.touches);
+  message.utterances(visit.utterances);
+  message.ignored(visit.ignored);
+  message.duration(static_cast<float>(runtime::seconds(visit.duration)));
+  message.travel_time(static_cast<float>(runtime::seconds(visit.travel_time)));
+  message.eta_error(static_cast<float>(visit.eta_error));
+  message.waits(visit.waits);
+  message.largest_gap(static_cast<float>(visit.largest_gap));
+  return message;
+}
+
+void GuideComponent::publish_status() {
+  usher_msgs::msg::GuideStatus message;
+  message.header(wire::header(host_.now(), ""));
+  message.seeks(core_.seeks());
+  const Funnel& funnel = core_.funnel();
+  message.greeted(funnel.greeted);
+  message.engaged(funnel.engaged);
+  message.started(funnel.started);
+  message.arrived(funnel.arrived);
+  message.given_up(funnel.given_up);
+  message.visit(to_message(core_.visit()));
+  status_.publish(message);
 }
 
 void GuideComponent::publish_screen() {
@@ -170,16 +324,41 @@ void GuideComponent::publish_screen() {
   message.header(wire::header(host_.now(), ""));
   message.id(screen.id);
   message.state(screen.state);
+  message.language(screen.language);
+  message.content(static_cast<std::uint8_t>(screen.content));
   message.title(screen.title);
   message.text(screen.text);
+  message.status(screen.status);
+  message.spoken(screen.spoken);
+  message.spoken_id(screen.spoken_id);
+  message.tone(static_cast<std::uint8_t>(screen.tone));
+  message.listens(screen.listens);
   for (const auto& option : screen.options) {
     auto& entry = message.options().emplace_back();
     entry.id(option.id);
     entry.label(option.label);
     entry.kind(static_cast<std::uint8_t>(option.kind));
+    entry.panel(static_cast<std::uint8_t>(option.panel));
+    entry.takes_text(option.takes_text);
   }
+  message.place(screen.place);
   message.progress(static_cast<float>(screen.progress));
   message.eta(static_cast<float>(screen.eta));
+  message.remaining(static_cast<float>(screen.remaining));
+  message.time_left(static_cast<float>(screen.time_left));
+  message.follower(static_cast<std::uint8_t>(screen.follower));
+  if (const auto* supervisor = supervisor_.fresh()) message.robot_state(supervisor->state());
+  if (const auto* navigation = navigation_.fresh()) message.navigation_status(navigation->state());
+  message.human_detected(static_cast<std::uint8_t>(core_.human()));
+  if (const auto& pose = core_.surroundings().pose) {
+    message.located(true);
+    message.x(pose->x);
+    message.y(pose->y);
+    message.yaw(pose->yaw);
+  }
+  message.answer_client(core_.last_answer().client);
+  message.answer_id(core_.last_answer().id);
+  message.answer_result(static_cast<std::uint8_t>(core_.last_result()));
   screen_.publish(message);
 }
 

@@ -14,25 +14,41 @@ class GuideComponent final : public runtime::Component {
 
  private:
   static Parameters read_parameters(runtime::Parameters& parameters);
+  static Guide make(runtime::Host& host);
   Time now() const { return host_.now().time_since_epoch(); }
   Surroundings surroundings() const;
   void take_locations(const usher_msgs::msg::Locations& message);
   void take_supervisor(const usher_msgs::msg::SupervisorStatus& status);
+  void take_answer(const usher_msgs::msg::DialogueAnswer& answer);
+  void tick();
   void step() { act(core_.step(surroundings(), now())); }
   void act(const Actions& actions);
+  void remember();
   void publish_screen();
+  void publish_status();
+  usher_msgs::msg::GuideVisit to_message(const Visit& visit) const;
 
   runtime::Host& host_;
   Guide core_;
   float max_speed_;
   std::uint64_t& ignored_answers_;
   std::uint64_t& rejected_locations_;
+  std::uint64_t& forgotten_;
+  std::uint64_t ticks_ = 0;
+  std::optional<std::uint64_t> goal_;  ///< the one that runs
 
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
+  runtime::Input<usher_msgs::msg::FollowStatus> follow_;
   runtime::Input<usher_msgs::msg::Locations> locations_;
+  runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
+  runtime::Input<geometry_msgs::msg::PoseWithCovarianceStamped> pose_;
+  runtime::Input<usher_msgs::msg::Visitor> visitor_;
   runtime::Input<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_msgs::msg::DialogueScreen> screen_;
+  runtime::Output<usher_msgs::msg::GuideStatus> status_;
+  runtime::Output<usher_msgs::msg::GuideVisit> visits_;
+  runtime::Output<usher_msgs::msg::NavigatePace> pace_;
   wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;
   wire::Repeater<usher_msgs::msg::NavigateGoal> goals_;
   runtime::Output<usher_msgs::msg::GoalCancel> cancel_;

@@ -1,0 +1,265 @@
+// The way: what the guide does from "Start" until the place is reached or given up.
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/guide/core/guide.hpp"
+
+namespace usher::guide {
+
+namespace {
+
+constexpr int kMostGivenAgain = 3;  ///< times that a goal is repeated to a navigator that forgot it
+constexpr Time kAskAgainAfter = std::chrono::seconds(2);
+constexpr Time kAskAgainEvery = std::chrono::seconds(5);
+constexpr Time kSentence = std::chrono::seconds(4);  ///< a sentence stays at least so long
+constexpr Time kEtaSettles = std::chrono::seconds(3);
+constexpr double kAlmost = 10.0;  ///< [m]
+constexpr std::size_t kMostRemembered = 8;
+
+}  // namespace
+
+void Guide::say_on_the_way(Text text, Tone tone, Time now) {
+  sentence_ = say(text);
+  sentence_at_ = now;
+  speak(sentence_, tone);
+}
+
+void Guide::depart(Time now) {
+  goal_id_ = 0;
+  acknowledged_ = false;
+  given_again_ = 0;
+  unheard_since_.reset();
+  blocked_since_.reset();
+  pleads_ = told_eta_ = told_almost_ = false;
+  pleaded_ = refreshed_ = {};
+  first_eta_ = first_way_ = kNothing;
+  departed_ = asked_again_ = now;
+  move_at_ = now + parameters_.tone;
+  follow_.depart(now);
+  calls_heard_ = follow_.calls();
+  sentence_ = say(Text::kLetsGo);
+  sentence_at_ = now;
+  screen_.progress = 0.0;
+  if (visit_.started++ == 0) ++funnel_.started;
+  enter(State::kGuideActive, Cause::kYes, now);
+  screen_.tone = Tone::kMoving;
+}
+
+void Guide::move_when_due(Time now) {
+  if (!move_at_ || now < *move_at_) return;
+  move_at_.reset();
+  if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
+  stopped_ = false;
+  if (goal_id_ == 0) {
+    goal_id_ = next_id_++;
+    goal_at_ = now;
+    actions_.goal = Goal{goal_id_, place_.name};
+  }
+  actions_.remember = true;
+}
+
+void Guide::stop_robot() {
+  move_at_.reset();
+  if (!stopped_) actions_.requests.push_back({RequestKind::kStop, {}});
+  stopped_ = true;
+  actions_.remember = true;
+}
+
+/// Gives up the goal, if there is one. A stop of this visitor must not hold the robot for the next.
+void Guide::leave_journey() {
+  if (goal_id_ != 0) actions_.cancel = goal_id_;
+  goal_id_ = 0;
+  move_at_.reset();
+  actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
+  if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
+  stopped_ = false;
+}
+
+void Guide::fail(Text reason, Cause cause, Time now) {
+  if (state_ != State::kGuideStart) visit_.travel_time += now - departed_;
+  leave_journey();
+  failure_ = reason;
+  enter(State::kGuideError, cause, now);
+}
+
+void Guide::watch_robot(Time now) {
+  const Supervisor supervisor = surroundings_.supervisor;
+  if (supervisor == Supervisor::kFault) return fail(Text::kFault, Cause::kFailure, now);
+  if (supervisor == Supervisor::kManual) {
+    return fail(Text::kOperatorTookOver, Cause::kFailure, now);
+  }
+  // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
+  const bool held =
+      supervisor != Supervisor::kNavigation && (supervisor != Supervisor::kAvailable || journey());
+  if (!held) {
+    held_since_.reset();
+    return;
+  }
+  if (!held_since_) held_since_ = now;
+  const Time lasted = now - *held_since_;
+  if (lasted >= parameters_.recovery) return fail(Text::kPartSilent, Cause::kFailure, now);
+  // One that was restarted knows nothing of this journey.
+  if (journey() && supervisor == Supervisor::kAvailable && lasted >= kAskAgainAfter &&
+      now - asked_again_ >= kAskAgainEvery) {
+    asked_again_ = now;
+    actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
+    actions_.requests.push_back({RequestKind::kNavigationGo, {}});
+  }
+}
+
+void Guide::watch_navigation(Time now) {
+  const auto& navigation = surroundings_.navigation;
+  const bool ours = navigation && navigation->goal_id == goal_id_;
+  if (!ours) {
+    const bool forgot = navigation && navigation->goal_id == 0;
+    if (acknowledged_ && forgot && given_again_ < kMostGivenAgain) {
+      ++given_again_;
+      acknowledged_ = false;
+      unheard_since_.reset();
+      goal_at_ = now;
+      actions_.goal = Goal{goal_id_, place_.name};
+      return;
+    }
+    if (acknowledged_ && navigation) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
+    if (now - *unheard_since_ >= parameters_.acknowledge) {
+      fail(Text::kPartSilent, Cause::kFailure, now);
+    }
+    return;
+  }
+  acknowledged_ = true;
+  unheard_since_.reset();
+  switch (navigation->state) {
+    case NavigationState::kSucceeded:
+      goal_id_ = 0;
+      leave_journey();
+      visit_.travel_time += now - departed_;
+      if (visit_.arrived++ == 0) ++funnel_.arrived;
+      if (first_eta_ > 0.0) {
+        const double took = std::chrono::duration<double>(now - first_eta_at_).count();
+        visit_.eta_error = took / first_eta_ - 1.0;
+      }
+      std::erase(recent_, place_.name);
+      recent_.insert(recent_.begin(), place_.name);
+      if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
+      enter(State::kGuideSuccess, Cause::kArrived, now);
+      break;
+    case NavigationState::kFailed:
+    case NavigationState::kCancelled:
+      fail(Text::kNoWay, Cause::kFailure, now);
+      break;
+    case NavigationState::kReplaced:
+      fail(Text::kOtherGoal, Cause::kFailure, now);
+      break;
+    case NavigationState::kIdle:
+    case NavigationState::kActive:
+    case NavigationState::kWaiting:
+      break;
+  }
+}
+
+void Guide::watch_follower(Time now) {
+  std::optional<FollowerSighting> sighting;
+  if (const auto& visitor = surroundings_.visitor) {
+    sighting = FollowerSighting{visitor->seen, std::hypot(visitor->x, visitor->y)};
+  }
+  const Follower before = follow_.state();
+  follow_.update(sighting, now);
+  if (follow_.lost()) {
+    lost_visitor_ = true;
+    visit_.travel_time += now - departed_;
+    leave_journey();
+    enter(State::kEnd, Cause::kLeft, now);
+    return;
+  }
+  if (follow_.state() != Follower::kUnknown) actions_.pace = follow_.pace(parameters_.speed);
+  if (follow_.waits()) {
+    if (!stopped_ || move_at_) {
+      stop_robot();
+      ++visit_.waits;
+      say_on_the_way(Text::kWaitingForYou, Tone::kCall, now);
+    } else if (follow_.calls() != calls_heard_) {
+      say_on_the_way(Text::kWhereAreYou, Tone::kCall, now);
+    }
+    calls_heard_ = follow_.calls();
+    return;
+  }
+  if (sighting && sighting->seen && !(follow_.gap() <= visit_.largest_gap)) {
+    visit_.largest_gap = follow_.gap();
+  }
+  if (stopped_ && !move_at_) {
+    say_on_the_way(Text::kHereWeGo, Tone::kMoving, now);
+    move_at_ = now + parameters_.tone;
+  } else if (follow_.state() == Follower::kLagging && before == Follower::kFollowing &&
+             now - sentence_at_ >= kSentence) {
+    sentence_ = say(Text::kSlower);
+    sentence_at_ = now;
+  }
+}
+
+/// Somebody or something stands in the way: asks to be let through. The navigator looks for another
+/// way by itself.
+void Guide::watch_obstacle(Time now) {
+  const auto& navigation = surroundings_.navigation;
+  const bool blocked =
+      navigation && navigation->goal_id == goal_id_ && navigation->blocked && !stopped_;
+  if (pleads_ && navigation && navigation->replans != replans_at_plea_) {
+    pleads_ = false;
+    say_on_the_way(Text::kAnotherWay, Tone::kNone, now);
+    pleaded_ = now;
+  }
+  if (!blocked) {
+    blocked_since_.reset();
+    pleads_ = false;
+    return;
+  }
+  if (!blocked_since_) blocked_since_ = now;
+  if (now - *blocked_since_ < parameters_.please) return;
+  if (pleaded_ != Time{} && now - pleaded_ < parameters_.please_again) return;
+  pleaded_ = now;
+  pleads_ = true;
+  replans_at_plea_ = navigation->replans;
+  say_on_the_way(Text::kExcuseMe, Tone::kPlease, now);
+}
+
+void Guide::refresh_journey(Time now) {
+  const bool held = held_since_ && now - *held_since_ >= parameters_.refresh;
+  if (held && sentence_ != say(Text::kOneMoment))
+    say_on_the_way(Text::kOneMoment, Tone::kNone, now);
+  const auto& navigation = surroundings_.navigation;
+  if (!navigation || goal_id_ == 0 || navigation->goal_id != goal_id_) return;
+  if (now - refreshed_ < parameters_.refresh) return;
+  refreshed_ = now;
+  screen_.progress =
+      std::isfinite(navigation->progress) ? std::clamp(navigation->progress, 0.0, 1.0) : 0.0;
+  const auto known = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  screen_.eta = known(navigation->eta) ? navigation->eta : kNothing;
+  screen_.remaining = known(navigation->remaining) ? navigation->remaining : kNothing;
+  if (std::isnan(screen_.eta) || std::isnan(screen_.remaining)) return;
+  if (std::isnan(first_eta_) && screen_.remaining > 0.0) {
+    first_eta_ = screen_.eta;
+    first_way_ = screen_.remaining;
+    first_eta_at_ = now;
+  }
+  const bool busy =
+      held || follow_.waits() || pleads_ || move_at_ || now - sentence_at_ < kSentence;
+  if (busy) return;
+  const bool tells_eta = !told_eta_ && now - departed_ >= kEtaSettles;
+  const bool tells_almost =
+      !told_almost_ && screen_.remaining < kAlmost && first_way_ > 2.0 * kAlmost;
+  if (tells_almost) {
+    told_eta_ = told_almost_ = true;
+    say_on_the_way(Text::kAlmostThere, Tone::kNone, now);
+    return;
+  }
+  sentence_ = phrases::filled(say(Text::kWayLeft), {{"way", way_words(screen_.remaining)},
+                                                    {"time", time_words(screen_.eta)}});
+  if (told_almost_) sentence_ = say(Text::kAlmostThere);
+  if (tells_eta) {
+    told_eta_ = true;
+    sentence_at_ = now;
+    speak(sentence_);
+  }
+}
+
+}  // namespace usher::guide

@@ -1,0 +1,249 @@
+// What each state shows.
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/guide/core/buttons.hpp"
+#include "tasks/guide/core/guide.hpp"
+
+namespace usher::guide {
+
+std::string Guide::say(Text text) const {
+  return phrases_.phrase(language_, static_cast<std::size_t>(text));
+}
+
+std::string Guide::say_place(Text text) const {
+  return phrases::filled(say(text), {{"place", place_.label()}});
+}
+
+std::string Guide::way_words(double meters) const {
+  const double step = meters > 20.0 ? 5.0 : 1.0;  // nobody wants to hear "37 metres"
+  const auto rounded = static_cast<long>(std::round(std::min(meters, 1e6) / step) * step);
+  return phrases::filled(say(Text::kMeters), {{"n", std::to_string(rounded)}});
+}
+
+std::string Guide::time_words(double seconds) const {
+  if (seconds < 45.0) return say(Text::kLessThanAMinute);
+  if (seconds < 90.0) return say(Text::kOneMinute);
+  const auto minutes = static_cast<long>(std::round(std::min(seconds, 1e6) / 60.0));
+  return phrases::filled(say(Text::kMinutes), {{"n", std::to_string(minutes)}});
+}
+
+void Guide::speak(const std::string& sentence, Tone tone) {
+  screen_.spoken = sentence;
+  screen_.tone = tone;
+  screen_.spoken_id = next_id_++;
+}
+
+void Guide::speak_screen() {
+  const bool announces = state_ == State::kGuideActive && !screen_.text.empty();
+  std::string sentence = announces ? screen_.text : screen_.title;
+  if (!announces && !screen_.text.empty()) sentence += " " + screen_.text;
+  speak(sentence);
+}
+
+Text Guide::idle_text() const {
+  if (surroundings_.supervisor == Supervisor::kManual) return Text::kOperatorDrives;
+  if (surroundings_.supervisor == Supervisor::kAvailable) return Text::kNoPlaces;
+  return Text::kNotReady;
+}
+
+std::string Guide::status() const {
+  switch (state_) {
+    case State::kInitialise:
+      return say(Text::kConnecting);
+    case State::kInactive:
+    case State::kEnd:
+      return say(Text::kWaitingForHuman);
+    case State::kGuideActive:
+      return say(stopped_ || move_at_ ? Text::kStanding : Text::kDriving);
+    case State::kGuidePaused:
+      return say(Text::kStanding);
+    case State::kIntroduction:
+    case State::kGuideSuccess:
+      return {};
+    default:
+      return say(Text::kListening);
+  }
+}
+
+void Guide::add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const {
+  screen.options.push_back({id, say(label), kind, panel, false});
+}
+
+void Guide::build_languages(Screen& screen) const {
+  for (const auto& language : phrases_.languages()) {
+    screen.options.push_back({button::language(language.tag), language.name, OptionKind::kOption,
+                              Panel::kPrimary, false});
+  }
+}
+
+std::vector<const Location*> Guide::offered() const {
+  std::vector<const Location*> list;
+  for (const std::string& name : recent_) {
+    if (list.size() == parameters_.recent) break;
+    if (const Location* location = find(locations_, name)) list.push_back(location);
+  }
+  for (const Location& location : locations_) {
+    if (std::find(list.begin(), list.end(), &location) == list.end()) list.push_back(&location);
+  }
+  return list;
+}
+
+void Guide::build_places(Screen& screen) const {
+  const bool guides = state_ == State::kGuideOptions;
+  screen.title = say(guides ? Text::kWhereTo : Text::kWhichPlace);
+  const std::size_t room = parameters_.options_on_screen;
+  const auto offer = [&](const Location& location) {
+    screen.options.push_back(
+        {location.name, location.label(), OptionKind::kOption, Panel::kPrimary, false});
+  };
+  if (searching_) {
+    screen.content = Content::kSearch;
+    screen.options.push_back(
+        {button::kQuery, say(Text::kTypeName), OptionKind::kOption, Panel::kPrimary, true});
+    const auto hits = search(locations_, query_, std::min<std::size_t>(room, 3));
+    for (const Location* hit : hits) offer(*hit);
+    screen.text = say(hits.empty() ? Text::kNoHits : Text::kTypeName);
+    add(screen, button::kBack, Text::kBack, OptionKind::kOption, Panel::kSecondary);
+  } else {
+    const auto list = offered();
+    const bool pages = list.size() > room;
+    const std::size_t a_page = pages ? room - 1 : room;  // one button is "more"
+    const std::size_t count = std::max<std::size_t>(1, (list.size() + a_page - 1) / a_page);
+    const std::size_t first = (page_ % count) * a_page;
+    for (std::size_t i = first; i < std::min(first + a_page, list.size()); ++i) offer(*list[i]);
+    if (pages) add(screen, button::kMore, Text::kMore, OptionKind::kOption, Panel::kPrimary);
+    add(screen, button::kSearch, Text::kSearch, OptionKind::kOption, Panel::kSecondary);
+  }
+  add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
+}
+
+void Guide::build_map(Screen& screen) const {
+  screen.content = Content::kMap;
+  screen.place = place_.name;
+  screen.title = place_.name.empty() ? say(Text::kLocationShow) : say_place(Text::kPlaceShow);
+  const Location* here =
+      surroundings_.pose ? nearest(locations_, surroundings_.pose->position()) : nullptr;
+  screen.text = here == nullptr ? say(Text::kNotLocated)
+                                : phrases::filled(say(Text::kNear), {{"place", here->label()}});
+  add(screen, button::kWhereIs, Text::kWhereIs, OptionKind::kOption, Panel::kSecondary);
+  if (!place_.name.empty()) {
+    add(screen, button::kGuideMe, Text::kGuideMe, OptionKind::kOption, Panel::kSecondary);
+  }
+  add(screen, button::kDone, Text::kDone, OptionKind::kYes, Panel::kSecondary);
+}
+
+void Guide::build_journey(Screen& screen) const {
+  screen.content = Content::kJourney;
+  screen.progress = screen_.progress;
+  screen.eta = screen_.eta;
+  screen.remaining = screen_.remaining;
+  screen.follower = follow_.state();
+  const bool paused = state_ == State::kGuidePaused;
+  screen.title = paused ? say(Text::kStopped) : say_place(Text::kGuiding);
+  screen.text = paused ? say(Text::kTellWhenToGoOn) : sentence_;
+  if (paused) {
+    add(screen, button::kContinue, Text::kGoOn, OptionKind::kYes, Panel::kPrimary);
+  } else {
+    add(screen, button::kStop, Text::kStop, OptionKind::kNo, Panel::kPrimary);
+  }
+  add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
+}
+
+Screen Guide::build(Time now) const {
+  Screen screen;
+  screen.id = screen_.id;
+  screen.spoken = screen_.spoken;
+  screen.spoken_id = screen_.spoken_id;
+  screen.tone = screen_.tone;
+  screen.state = text(state_);
+  screen.language = phrases_.languages()[language_].tag;
+  screen.status = status();
+  screen.listens = question();
+  const auto yes_or_no = [&] {
+    add(screen, button::kYes, Text::kYes, OptionKind::kYes, Panel::kPrimary);
+    add(screen, button::kNo, Text::kNo, OptionKind::kNo, Panel::kPrimary);
+  };
+  const auto secondary = [&](const char* id, Text label) {
+    add(screen, id, label, OptionKind::kOption, Panel::kSecondary);
+  };
+  switch (state_) {
+    case State::kInitialise:
+      screen.title = say(Text::kHello);
+      screen.text = say(idle_text());
+      break;
+    case State::kInactive:
+    case State::kIntroduction:
+      screen.title = say(Text::kHello);
+      screen.text = say(Text::kChooseLanguage);
+      build_languages(screen);
+      break;
+    case State::kLocationAsk:
+      screen.title = say(Text::kLocationAsk);
+      yes_or_no();
+      secondary(button::kGuideMe, Text::kGuideMe);
+      break;
+    case State::kLocationShow:
+      build_map(screen);
+      break;
+    case State::kLocationOptions:
+    case State::kGuideOptions:
+      build_places(screen);
+      break;
+    case State::kGuideAsk:
+      screen.title = say(Text::kGuideAsk);
+      yes_or_no();
+      secondary(button::kWhereIs, Text::kWhereIs);
+      break;
+    case State::kGuideStart:
+      screen.place = place_.name;
+      screen.title = say_place(Text::kWillTake);
+      screen.text = say(Text::kTellWhenReady);
+      add(screen, button::kStart, Text::kStart, OptionKind::kYes, Panel::kPrimary);
+      add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
+      break;
+    case State::kGuideActive:
+    case State::kGuidePaused:
+      screen.place = place_.name;
+      build_journey(screen);
+      break;
+    case State::kGuideError:
+      screen.place = place_.name;
+      screen.title = say(Text::kSorry);
+      screen.text = say(failure_) + " " + say(Text::kTryAgain);
+      yes_or_no();
+      break;
+    case State::kGuideSuccess:
+      screen.place = place_.name;
+      screen.title = say(Text::kArrived);
+      screen.text = say_place(Text::kThisIs);
+      screen.progress = 1.0;
+      break;
+    case State::kEndAsk:
+      screen.title = say(Text::kAnythingElse);
+      yes_or_no();
+      break;
+    case State::kEnd:
+      screen.title = say(Text::kSeeYou);
+      if (lost_visitor_) screen.text = say(Text::kLostYou);
+      secondary(button::kAgain, Text::kAgain);
+      break;
+  }
+  if (state_ == State::kLocationAsk || state_ == State::kGuideAsk) {
+    if (phrases_.languages().size() > 1) {
+      add(screen, button::kLanguages, Text::kLanguages, OptionKind::kOption, Panel::kService);
+    }
+  }
+  if (question() || state_ == State::kGuideActive) {
+    add(screen, button::kRepeat, Text::kRepeat, OptionKind::kOption, Panel::kService);
+  }
+  if (question() && warned_) {
+    const double left = std::chrono::duration<double>(patience() - (now - since_)).count();
+    screen.time_left = std::max(0.0, std::ceil(left));
+    screen.text = say(Text::kStillThere);
+    add(screen, button::kStay, Text::kStay, OptionKind::kYes, Panel::kService);
+  }
+  return screen;
+}
+
+}  // namespace usher::guide

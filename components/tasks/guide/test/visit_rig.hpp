@@ -1,0 +1,124 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tasks/guide/core/guide.hpp"
+
+namespace usher::guide {
+
+using std::chrono::milliseconds;
+
+inline std::vector<Location> rooms() {
+  return {{"am218", "AM218", {1, 0}}, {"co239", "CO239", {5, 0}}, {"foyer", "Foyer", {9, 0}}};
+}
+
+inline phrases::PhraseBook book(const std::vector<std::string>& tags = {"en", "mi", "de", "fr"}) {
+  auto book =
+      phrases::PhraseBook::load(USHER_SOURCE_DIR "/config/dialogue", tags, "guide", kTextKeys);
+  EXPECT_TRUE(book.ok()) << (book.ok() ? "" : book.error());
+  return std::move(book).value();
+}
+
+/// The guide in a robot that is well, with every action written down.
+class Rig {
+ public:
+  explicit Rig(const Parameters& parameters = {}, const Memory& memory = {},
+               std::uint64_t first_id = 100)
+      : guide(parameters, book(), first_id, memory, {}) {
+    EXPECT_TRUE(guide.set_locations(rooms(), {}).ok());
+    around.supervisor = Supervisor::kAvailable;
+    around.navigation = Navigation{};
+    around.pose = geometry::Pose2{4.8, 0.5, 0.0};
+    wait(100);
+  }
+
+  Guide guide;
+  Surroundings around;
+  int now_ms = 0;
+  std::string done;  ///< actions since the last taken()
+  std::uint64_t goal = 0;
+  std::vector<std::string> said;
+  std::vector<guide::Visit> visits;
+  double pace = -1.0;
+
+  Time now() const { return milliseconds(now_ms); }
+  void wait(int ms) {
+    const int end = now_ms + ms;
+    do {
+      now_ms = std::min(now_ms + 100, end);
+      note(guide.step(around, now()));
+    } while (now_ms < end);
+  }
+  void press(const std::string& option) {
+    note(guide.answer({guide.screen().id, option, "", Input::kTouch}, now()));
+  }
+  void type(const std::string& text) {
+    note(guide.answer({guide.screen().id, "query", text, Input::kTouch}, now()));
+  }
+  /// The navigator says this of the guide's goal.
+  void navigate(NavigationState state) {
+    if (!around.navigation) around.navigation = Navigation{};
+    around.navigation->goal_id = goal;
+    around.navigation->state = state;
+    wait(100);
+  }
+  void see(double x, double speed = 0.0) { around.visitor = VisitorSighting{true, x, 0.0, speed}; }
+  void see_nobody() { around.visitor = VisitorSighting{}; }
+
+  // Shortcuts into the dialogue; each asserts nothing.
+  void begin() { press("language:en"); }
+  void to_location_ask() { begin(), wait(3000); }
+  void to_options() { to_location_ask(), press("guide_me"); }
+  void to_start() { to_options(), press("am218"); }
+  void to_active() {
+    to_start(), press("start");
+    around.supervisor = Supervisor::kNavigation;
+    wait(1000);
+    navigate(NavigationState::kActive);
+    done.clear();
+  }
+
+  void note(const Actions& actions) {
+    for (const Request& request : actions.requests) {
+      const char* const names[] = {"start", "go", "end", "stop", "on"};
+      add(names[static_cast<int>(request.kind)] +
+          (request.goal.empty() ? std::string() : ":" + request.goal));
+    }
+    if (actions.goal) {
+      goal = actions.goal->id;
+      add("goal:" + actions.goal->location);
+    }
+    if (actions.cancel) {
+      EXPECT_EQ(*actions.cancel, goal);
+      add("cancel");
+    }
+    if (actions.pace) pace = *actions.pace;
+    if (actions.visit) visits.push_back(*actions.visit);
+    const Screen& screen = guide.screen();
+    if (screen.spoken_id != spoken_id_) {
+      spoken_id_ = screen.spoken_id;
+      said.push_back(screen.spoken);
+    }
+  }
+  std::string taken() { return std::exchange(done, {}); }
+  std::string state() const { return std::string(text(guide.state())); }
+  bool offers(const std::string& id) const {
+    const auto& options = guide.screen().options;
+    return std::any_of(options.begin(), options.end(),
+                       [&](const Option& option) { return option.id == id; });
+  }
+
+ private:
+  void add(const std::string& action) {
+    if (!done.empty()) done += ' ';
+    done += action;
+  }
+  std::uint64_t spoken_id_ = 0;
+};
+
+}  // namespace usher::guide
