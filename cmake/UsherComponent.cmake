@@ -51,11 +51,12 @@ function(usher_benchmark NAME)
   target_include_directories(usher-bench-${NAME} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 endfunction()
 
-# usher_component(NAME CLASS HEADER CORE ... SHELL ... [CORE_DEPENDS ...] [SHELL_DEPENDS ...])
+# usher_component(NAME CLASS HEADER CORE ... SHELL ... [CORE_DEPENDS ...] [SHELL_DEPENDS ...]
+#                 [PROGRAM main.cpp ...] [PROGRAM_DEPENDS ...])
 # From the folder it is called in: usher_<name>_core, usher_<name>_shell, the program usher-<name> with a generated
-# main (the core may be left out where another component of the folder has it), its contract as a file, installation of both, and an entry in the table of all components (usher_components).
+# main (or PROGRAM with its PROGRAM_DEPENDS, where a device wants the main thread; the core may be left out where another component of the folder has it), its contract as a file, installation of both, and an entry in the table of all components (usher_components).
 function(usher_component NAME)
-  cmake_parse_arguments(ARG "" "CLASS;HEADER" "CORE;SHELL;CORE_DEPENDS;SHELL_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "CLASS;HEADER" "CORE;SHELL;CORE_DEPENDS;SHELL_DEPENDS;PROGRAM;PROGRAM_DEPENDS" ${ARGN})
   if(ARG_CORE)
     usher_library(usher_${NAME}_core SOURCES ${ARG_CORE} DEPENDS ${ARG_CORE_DEPENDS})
     set(CORE usher_${NAME}_core)
@@ -69,9 +70,13 @@ function(usher_component NAME)
   set(COMPONENT_NAME ${NAME})
   set(COMPONENT_CLASS ${ARG_CLASS})
   set(COMPONENT_HEADER ${ARG_HEADER})
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/component_main.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/main_${NAME}.cpp @ONLY)
-  add_executable(usher-${NAME} ${CMAKE_CURRENT_BINARY_DIR}/main_${NAME}.cpp)
-  target_link_libraries(usher-${NAME} PRIVATE usher_${NAME}_shell usher_runtime_dds usher_warnings)
+  set(MAIN ${ARG_PROGRAM})
+  if(NOT MAIN)
+    set(MAIN ${CMAKE_CURRENT_BINARY_DIR}/main_${NAME}.cpp)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/component_main.cpp.in ${MAIN} @ONLY)
+  endif()
+  add_executable(usher-${NAME} ${MAIN})
+  target_link_libraries(usher-${NAME} PRIVATE usher_${NAME}_shell usher_runtime_dds ${ARG_PROGRAM_DEPENDS} usher_warnings)
 
   set(CONTRACT ${CMAKE_BINARY_DIR}/share/usher/contracts/${NAME}.yaml)
   add_custom_command(

@@ -94,8 +94,7 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 /// folder must leave this list.
 const std::set<std::string> kRoles{
     "kinect",   "depth_pipeline",  "people_detector", "waypoint_follower",
-    "operator", "segway_emulator", "meeting",         "tablet",
-    "speech"};
+    "operator", "segway_emulator", "meeting",         "speech"};
 
 TEST(Catalogue, WritersAreComponentsOrKnownRoles) {
   std::set<std::string> types;

@@ -72,6 +72,8 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
   }
   if (from.layer == "core" && !test) return "a core knows itself and foundation";
   if (starts_with_any(name, {"wire/", "runtime/api/"}) || is_message(name)) return {};
+  // A component with a main program of its own: a device that wants the main thread.
+  if (from.layer == "program" && name == "runtime/dds/component_main.hpp") return {};
   if (starts_with_any(name, {"runtime/"})) return "a shell knows the runtime's api only";
   return test ? "what needs another component is tested below tests/"
               : "a component does not know another one";

@@ -136,6 +136,8 @@ int demo(const DemoArguments& arguments) {
   std::vector<Override> overrides;
   if (!arguments.destination.empty())
     overrides.push_back({kVisitor, "destination", arguments.destination});
+  overrides.push_back({"tablet", "pictures",
+                       std::filesystem::absolute(arguments.out + "/screens").lexically_normal()});
   auto deployment = load_deployment(manifest, installation, overrides);
   if (!deployment) return fail(deployment.error());
   for (auto& file : deployment->files) file.seed = arguments.seed;
@@ -211,7 +213,7 @@ int demo(const DemoArguments& arguments) {
   if (!saved) return fail(saved.error());
   std::cout << (sheet.pass() ? "the visitor got there"
                              : "the visitor did not get there as promised")
-            << "; picture, table and result.json are in " << arguments.out << "\n";
+            << "; picture, table, result.json and the tablet's screens are in " << arguments.out << "\n";
   return sheet.pass() ? 0 : 1;
 }
 

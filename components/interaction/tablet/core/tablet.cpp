@@ -1,0 +1,165 @@
+#include "interaction/tablet/core/tablet.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace usher::tablet {
+
+namespace {
+
+constexpr const char* kDialogueStop = "stop";
+constexpr const char* kDialogueContinue = "continue";
+constexpr const char* kStay = "stay";
+
+/// Cuts at a letter's beginning.
+std::string shortened(std::string text, std::size_t most) {
+  if (text.size() <= most) return text;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
+  text.resize(most);
+  return text;
+}
+
+}  // namespace
+
+std::string way_text(double remaining, double eta) {
+  std::string text;
+  if (std::isfinite(remaining) && remaining >= 0.0) {
+    text = std::to_string(std::lround(std::min(remaining, 1e6))) + " m";
+  }
+  if (std::isfinite(eta) && eta >= 0.0) {
+    const auto seconds = std::min(eta, 1e6);
+    if (!text.empty()) text += " · ";
+    text += seconds < 55.0 ? std::to_string(5 * std::lround(std::ceil(seconds / 5.0))) + " s"
+                           : std::to_string(std::lround(seconds / 60.0)) + " min";
+  }
+  return text;
+}
+
+std::string Tablet::say(Text text) const {
+  return phrases_.phrase(phrases_.find(screen_.language), static_cast<std::size_t>(text));
+}
+
+bool Tablet::offers(std::string_view id) const {
+  return std::any_of(screen_.options.begin(), screen_.options.end(),
+                     [&](const Screen::Option& option) { return option.id == id; });
+}
+
+Touched Tablet::take(const Screen& screen, Time /*now*/) {
+  const bool another = screen.id != screen_.id;
+  screen_ = screen;
+  if (another) {
+    pending_.reset();
+    typed_.clear();
+  }
+  const bool drives = screen.state == "guide_active", paused = screen.state == "guide_paused";
+  if (hold_ == Hold::kDialogue && paused) hold_ = Hold::kDialogueTookOver;
+  const bool goes_on = (hold_ == Hold::kDialogueTookOver && !paused) ||
+                       (hold_ == Hold::kDialogue && !drives && !paused);
+  if (!goes_on) return {};
+  hold_ = Hold::kNone;
+  return {.move = true};
+}
+
+Touched Tablet::stop() {
+  Touched touched{.stop = true};
+  hold_ = Hold::kOwn;
+  if (shows_dialogue() && offers(kDialogueStop)) {
+    hold_ = Hold::kDialogue;
+    touched.answer = Answer{screen_.id, kDialogueStop, {}};
+  }
+  return touched;
+}
+
+Touched Tablet::touch(const std::string& id, Time now) {
+  if (id == kStop || id == kDialogueStop) return stop();  // again and again, if need be
+  if (id == kStart) {
+    Touched touched{.move = holds()};
+    hold_ = Hold::kNone;
+    if (shows_dialogue() && offers(kDialogueContinue))
+      touched.answer = Answer{screen_.id, kDialogueContinue, {}};
+    return touched;
+  }
+  if (!shows_dialogue() || !offers(id)) return {};
+  if (pending_ && now - pending_->since < kPatience) return {};
+  pending_ = Pending{id, now};
+  Touched touched{.answer = Answer{screen_.id, id, {}}};
+  if (id == kDialogueContinue && holds()) {
+    touched.move = true;
+    hold_ = Hold::kNone;
+  }
+  return touched;
+}
+
+Touched Tablet::type(const std::string& text, Time /*now*/) {
+  const auto line = std::find_if(screen_.options.begin(), screen_.options.end(),
+                                 [](const Screen::Option& option) { return option.takes_text; });
+  if (!shows_dialogue() || line == screen_.options.end()) return {};
+  typed_ = shortened(text, kMostTyped);
+  return {.answer = Answer{screen_.id, line->id, typed_}};
+}
+
+void Tablet::add_options(View& view) const {
+  const bool hurries = view.time_left >= 0.0;
+  for (const auto& option : screen_.options) {
+    if (option.takes_text) {
+      view.query_id = option.id;
+      view.query_label = option.label;
+      continue;
+    }
+    Button button{option.id, option.label,
+                  static_cast<Kind>(std::min<std::uint8_t>(option.kind, 2))};
+    if (option.panel == static_cast<std::uint8_t>(Panel::kService)) {
+      if (option.id != kStay) button.kind = Kind::kService;
+      // A question that is about to be given up has one small button: more time.
+      if (!hurries || option.id == kStay) view.service.push_back(std::move(button));
+    } else if (option.panel == static_cast<std::uint8_t>(Panel::kSecondary)) {
+      view.secondary.push_back(std::move(button));
+    } else {
+      view.primary.push_back(std::move(button));
+    }
+  }
+}
+
+View Tablet::view(Time now) const {
+  View view;
+  view.language = screen_.language.empty() ? phrases_.languages().front().tag : screen_.language;
+  view.stop_label = say(Text::kStop);
+  view.start_label = say(Text::kStart);
+  view.here_label = say(Text::kYouAreHere);
+  view.typed = typed_;
+  if (pose_) {
+    view.located = true;
+    view.robot = *pose_;
+  }
+  if (!shows_dialogue()) {
+    view.page = robot_heard_ ? Page::kStarting : Page::kAway;
+    view.state = robot_heard_ ? "starting" : "away";
+    view.title = say(robot_heard_ ? Text::kStarting : Text::kAway);
+    view.text = robot_heard_ ? "" : say(holds() ? Text::kStopUnsure : Text::kAwayText);
+  } else {
+    constexpr std::array kPages{Page::kButtons, Page::kMap, Page::kJourney, Page::kSearch};
+    view.page = kPages[std::min<std::size_t>(screen_.content, kPages.size() - 1)];
+    view.screen_id = screen_.id;
+    view.state = screen_.state;
+    view.title = screen_.title;
+    view.text = screen_.text;
+    view.status = screen_.status;
+    view.place = screen_.place;
+    view.progress = screen_.progress;
+    view.way_text = way_text(screen_.remaining, screen_.eta);
+    if (screen_.time_left >= 0.0) view.time_left = screen_.time_left;
+    add_options(view);
+    if (pending_ && now - pending_->since < kPatience) {
+      view.pending = true;
+      view.pending_id = pending_->id;
+    }
+  }
+  const bool dialogue_starts = shows_dialogue() && offers(kDialogueContinue);
+  const bool dialogue_stops = shows_dialogue() && offers(kDialogueStop);
+  view.start_offered = holds() && !dialogue_starts;
+  view.stop_offered = !holds() && !dialogue_stops && !dialogue_starts;
+  if (hold_ == Hold::kOwn && shows_dialogue()) view.text = say(Text::kHeld);
+  return view;
+}
+
+}  // namespace usher::tablet

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/geometry/pose2.hpp"
+#include "interaction/phrases/core/phrase_file.hpp"
+#include "interaction/tablet/core/view.hpp"
+
+namespace usher::tablet {
+
+using Time = std::chrono::nanoseconds;
+
+/// The tablet's own texts, for what the robot cannot say; section `tablet` of config/dialogue.
+enum class Text : std::size_t {
+  kAway,
+  kAwayText,
+  kStarting,
+  kStop,
+  kStart,
+  kHeld,
+  kStopUnsure,
+  kYouAreHere,
+  kNothingFound,
+};
+inline constexpr std::array<std::string_view, 9> kTextKeys{
+    "away", "away_text",   "starting",     "stop",         "start",
+    "held", "stop_unsure", "you_are_here", "nothing_found"};
+
+enum class Panel : std::uint8_t { kPrimary = 0, kSecondary = 1, kService = 2 };
+
+/// What the dialogue says, as it comes.
+struct Screen {
+  struct Option {
+    std::string id, label;
+    std::uint8_t kind = 0;   ///< as Kind
+    std::uint8_t panel = 0;  ///< as Panel
+    bool takes_text = false;
+  };
+  std::uint64_t id = 0;
+  std::string state, language;
+  std::uint8_t content = 0;  ///< 0 buttons, 1 map, 2 journey, 3 search
+  std::string title, text, status;
+  std::vector<Option> options;
+  std::string place;
+  double progress = -1.0;
+  double eta = std::numeric_limits<double>::quiet_NaN();        ///< [s]
+  double remaining = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+  double time_left = std::numeric_limits<double>::quiet_NaN();  ///< [s]
+};
+
+struct Answer {
+  std::uint64_t screen_id = 0;
+  std::string option_id;
+  std::string text;
+  bool operator==(const Answer&) const = default;
+};
+
+/// What a touch asks of the others.
+struct Touched {
+  std::optional<Answer> answer;
+  bool stop = false;  ///< the supervisor shall stop the robot, whatever the dialogue does
+  bool move = false;  ///< and let it move again
+};
+
+/// The logic of the tablet: what to show, what a touch means, whose stop holds.
+///
+/// A stop goes to the dialogue and, so that it works when the dialogue does not, straight to the
+/// supervisor. The tablet lifts its own stop when the visitor touches Start, or when the dialogue,
+/// having taken the stop over, goes on.
+class Tablet {
+ public:
+  explicit Tablet(phrases::PhraseBook phrases) : phrases_(std::move(phrases)) {}
+
+  /// How long a touched button stays so without a reply.
+  static constexpr Time kPatience = std::chrono::seconds(2);
+  static constexpr std::size_t kMostTyped = 40;  ///< [byte]
+
+  /// Whether robot (supervisor) and dialogue (guide) are heard.
+  void hear(bool robot, bool dialogue) {
+    robot_heard_ = robot;
+    dialogue_heard_ = dialogue;
+  }
+  void locate(const std::optional<geometry::Pose2>& pose) { pose_ = pose; }
+  /// A screen arrived; whether the tablet's own stop ends with it.
+  Touched take(const Screen& screen, Time now);
+  /// The dialogue has replied to this tablet's newest answer.
+  void replied() { pending_.reset(); }
+
+  /// A button was touched; ids that are not on the view do nothing, nor does a second touch before
+  /// the reply.
+  Touched touch(const std::string& id, Time now);
+  /// The line to type into has this text now.
+  Touched type(const std::string& text, Time now);
+
+  /// This tablet holds the robot; to be kept over a restart.
+  bool holds() const { return hold_ != Hold::kNone; }
+  /// A tablet that was restarted while it held the robot.
+  void hold_again() { hold_ = Hold::kOwn; }
+
+  View view(Time now) const;
+
+  static constexpr const char* kStop = "tablet:stop";
+  static constexpr const char* kStart = "tablet:start";
+
+ private:
+  enum class Hold : std::uint8_t { kNone, kOwn, kDialogue, kDialogueTookOver };
+  struct Pending {
+    std::string id;
+    Time since{};
+  };
+  std::string say(Text text) const;
+  bool offers(std::string_view id) const;
+  bool shows_dialogue() const { return robot_heard_ && dialogue_heard_ && screen_.id != 0; }
+  Touched stop();
+  void add_options(View& view) const;
+
+  phrases::PhraseBook phrases_;
+  Screen screen_;
+  bool robot_heard_ = false, dialogue_heard_ = false;
+  std::optional<geometry::Pose2> pose_;
+  std::optional<Pending> pending_;
+  std::string typed_;
+  Hold hold_ = Hold::kNone;
+};
+
+/// "34 m · 2 min" of what is known; empty when nothing is.
+std::string way_text(double remaining, double eta);
+
+}  // namespace usher::tablet

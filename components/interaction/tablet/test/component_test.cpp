@@ -1,0 +1,139 @@
+#include "interaction/tablet/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::tablet {
+namespace {
+
+using std::chrono::milliseconds;
+namespace command = usher_msgs::msg::SupervisorRequest_Constants;
+
+class Component : public testing::Test {
+ protected:
+  void hear(bool guide = true) {
+    usher_msgs::msg::SupervisorStatus supervisor;
+    supervisor.header(wire::header(host_.now(), ""));
+    supervisor.last_request(request_seen_);
+    host_.publish(topics::kSupervisorStatus, supervisor, "supervisor");
+    usher_msgs::msg::GuideStatus status;
+    status.header(wire::header(host_.now(), ""));
+    if (guide) host_.publish(topics::kGuideStatus, status, "guide");
+    host_.run_for(milliseconds(110));
+  }
+  usher_msgs::msg::DialogueScreen screen(std::uint64_t id, const std::string& state,
+                                         const std::vector<std::string>& options) {
+    usher_msgs::msg::DialogueScreen message;
+    message.id(id);
+    message.state(state);
+    message.language("en");
+    message.title("Title");
+    for (const auto& option : options) {
+      auto& entry = message.options().emplace_back();
+      entry.id(option);
+      entry.label(option);
+    }
+    return message;
+  }
+  void show(const usher_msgs::msg::DialogueScreen& message) {
+    host_.publish(topics::kDialogueScreen, message, "guide");
+    host_.run_for(milliseconds(110));
+  }
+
+  NullWindow window_;
+  runtime::TestHost host_{{"tablet",
+                           [this](runtime::Host& host) {
+                             return std::unique_ptr<runtime::Component>(
+                                 std::make_unique<TabletComponent>(host, window_));
+                           }},
+                          "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml"};
+  std::uint64_t request_seen_ = 0;
+};
+
+TEST_F(Component, ShowsTheDialogueAndSaysWhenTheRobotIsAway) {
+  host_.run_for(milliseconds(200));
+  EXPECT_EQ(window_.view.page, Page::kAway);
+  hear();
+  show(screen(5, "guide_ask", {"yes", "no"}));
+  EXPECT_EQ(window_.view.page, Page::kButtons);
+  EXPECT_EQ(window_.view.primary.size(), 2U);
+  host_.run_for(milliseconds(1600));
+  EXPECT_EQ(window_.view.page, Page::kAway);
+  EXPECT_EQ(host_.heartbeat().reason(), "the robot is out of reach");
+  hear();
+  EXPECT_EQ(window_.view.page, Page::kButtons) << "comes back by itself";
+}
+
+TEST_F(Component, RepeatsAnAnswerUntilTheScreenNamesIt) {
+  hear();
+  show(screen(5, "guide_ask", {"yes", "no"}));
+  window_.touches.push_back({false, "yes"});
+  host_.run_for(milliseconds(450));
+  const auto answers = host_.written(topics::kDialogueAnswer);
+  ASSERT_GE(answers.size(), 2U);
+  EXPECT_EQ(answers[0].option_id(), "yes");
+  EXPECT_EQ(answers[0].screen_id(), 5U);
+  EXPECT_EQ(answers[0].input(), usher_msgs::msg::DialogueAnswer_Constants::INPUT_TOUCH);
+  EXPECT_EQ(answers[0].id(), answers[1].id());
+  EXPECT_TRUE(window_.view.pending);
+  auto reply = screen(6, "guide_options", {"lab"});
+  reply.answer_client("tablet");
+  reply.answer_id(answers[0].id());
+  show(reply);
+  host_.clear();
+  host_.run_for(milliseconds(600));
+  EXPECT_TRUE(host_.written(topics::kDialogueAnswer).empty());
+  EXPECT_FALSE(window_.view.pending);
+}
+
+TEST_F(Component, StopsAtTheSupervisorWithin25MillisecondsAndLiftsItWhenTheDialogueGoesOn) {
+  hear();
+  show(screen(5, "guide_active", {"stop", "cancel"}));
+  window_.touches.push_back({false, "stop"});
+  host_.run_for(milliseconds(25));
+  ASSERT_TRUE(host_.last(topics::kSupervisorRequest));
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
+  EXPECT_EQ(host_.last(topics::kDialogueAnswer)->option_id(), "stop");
+  request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  hear();
+  show(screen(6, "guide_paused", {"continue"}));
+  show(screen(7, "guide_active", {"stop"}));
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
+}
+
+TEST_F(Component, StopsEvenWithoutDialogue) {
+  hear(false);
+  EXPECT_EQ(window_.view.page, Page::kStarting);
+  window_.touches.push_back({false, Tablet::kStop});
+  host_.run_for(milliseconds(25));
+  ASSERT_TRUE(host_.last(topics::kSupervisorRequest));
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
+  EXPECT_TRUE(window_.view.start_offered);
+}
+
+TEST_F(Component, ShowsBuildingRouteAndPlaces) {
+  nav_msgs::msg::OccupancyGrid map;
+  map.header().frame_id("map");
+  map.info().resolution(0.05F);
+  map.info().width(4);
+  map.info().height(4);
+  map.info().origin().orientation().w(1.0);
+  map.data().assign(16, 0);
+  host_.publish(topics::kMap, map, "map_server");
+  usher_msgs::msg::Locations locations;
+  locations.locations().resize(1);
+  locations.locations()[0].name("lab");
+  host_.publish(topics::kLocations, locations, "navigator");
+  host_.run_for(milliseconds(110));
+  EXPECT_EQ(window_.plan.width, 4);
+  EXPECT_EQ(window_.places.size(), 1U);
+  map.data().resize(3);
+  host_.publish(topics::kMap, map, "map_server");
+  host_.run_for(milliseconds(1100));
+  EXPECT_EQ(host_.counter("inputs: rejected"), 1U);
+}
+
+}  // namespace
+}  // namespace usher::tablet

@@ -1,0 +1,237 @@
+#include "interaction/tablet/core/tablet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "foundation/random/random.hpp"
+#include "interaction/tablet/core/floor_plan.hpp"
+#include "interaction/tablet/core/theme.hpp"
+
+namespace usher::tablet {
+namespace {
+
+using std::chrono::milliseconds;
+
+Tablet make() {
+  auto book = phrases::PhraseBook::load(USHER_SOURCE_DIR "/config/dialogue",
+                                        {"en", "mi", "de", "fr"}, "tablet", kTextKeys);
+  EXPECT_TRUE(book.ok()) << (book.ok() ? "" : book.error());
+  Tablet tablet(std::move(book).value());
+  tablet.hear(true, true);
+  return tablet;
+}
+
+Screen screen(std::uint64_t id, const char* state, std::vector<std::string> options) {
+  Screen screen;
+  screen.id = id;
+  screen.state = state;
+  screen.language = "en";
+  screen.title = "Title";
+  for (auto& option : options) screen.options.push_back({option, option + "!"});
+  return screen;
+}
+
+TEST(Tablet, SaysInTheVisitorsLanguageThatTheRobotIsAway) {
+  Tablet tablet = make();
+  Screen german = screen(1, "guide_ask", {"yes", "no"});
+  german.language = "de";
+  static_cast<void>(tablet.take(german, {}));
+  tablet.hear(false, false);
+  const View away = tablet.view({});
+  EXPECT_EQ(away.page, Page::kAway);
+  EXPECT_EQ(away.title, "MARVIN ist nicht erreichbar.");
+  EXPECT_TRUE(away.primary.empty());
+  EXPECT_TRUE(away.stop_offered) << "Stop is always there";
+  EXPECT_FALSE(tablet.touch("yes", {}).answer) << "an answer would hit nobody";
+  tablet.hear(true, false);
+  EXPECT_EQ(tablet.view({}).page, Page::kStarting);
+  tablet.hear(true, true);
+  EXPECT_EQ(tablet.view({}).page, Page::kButtons);
+}
+
+TEST(Tablet, SortsButtonsIntoPanels) {
+  Tablet tablet = make();
+  Screen shown = screen(1, "guide_ask", {"yes", "where_is", "repeat", "languages", "stay"});
+  shown.options[0].kind = 1;
+  shown.options[1].panel = 1;
+  for (std::size_t i = 2; i < 5; ++i) shown.options[i].panel = 2;
+  shown.options[4].kind = 1;
+  static_cast<void>(tablet.take(shown, {}));
+  View view = tablet.view({});
+  EXPECT_EQ(view.primary, (std::vector<Button>{{"yes", "yes!", Kind::kYes}}));
+  EXPECT_EQ(view.secondary, (std::vector<Button>{{"where_is", "where_is!", Kind::kOption}}));
+  EXPECT_EQ(view.service.size(), 3U);
+  EXPECT_EQ(view.service[0].kind, Kind::kService);
+  shown.time_left = 12.0;
+  static_cast<void>(tablet.take(shown, {}));
+  view = tablet.view({});
+  EXPECT_EQ(view.service, (std::vector<Button>{{"stay", "stay!", Kind::kYes}}));
+  EXPECT_EQ(view.time_left, 12.0);
+}
+
+TEST(Tablet, AnswersOnceUntilTheReply) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes", "no"}), {}));
+  EXPECT_EQ(tablet.touch("yes", {}).answer, (Answer{7, "yes", ""}));
+  EXPECT_EQ(tablet.view({}).pending_id, "yes");
+  EXPECT_FALSE(tablet.touch("no", milliseconds(100)).answer) << "a second finger";
+  EXPECT_FALSE(tablet.touch("else", {}).answer) << "not on the screen";
+  EXPECT_TRUE(tablet.touch("no", milliseconds(2100)).answer) << "nobody replied";
+  tablet.replied();
+  EXPECT_FALSE(tablet.view(milliseconds(2200)).pending);
+  EXPECT_TRUE(tablet.touch("yes", milliseconds(2200)).answer);
+  static_cast<void>(tablet.take(screen(8, "guide_options", {"lab"}), {}));
+  EXPECT_TRUE(tablet.touch("lab", milliseconds(2300)).answer);
+}
+
+TEST(Tablet, StopGoesToDialogueAndSupervisorAtOnce) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_active", {"stop", "cancel"}), {}));
+  EXPECT_FALSE(tablet.view({}).stop_offered) << "the dialogue offers it, large";
+  static_cast<void>(tablet.touch("cancel", {}));
+  const Touched stop = tablet.touch("stop", {});
+  EXPECT_TRUE(stop.stop);
+  EXPECT_EQ(stop.answer, (Answer{7, "stop", ""})) << "even while another answer is under way";
+  EXPECT_TRUE(tablet.holds());
+}
+
+TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_active", {"stop"}), {}));
+  static_cast<void>(tablet.touch("stop", {}));
+  EXPECT_FALSE(tablet.take(screen(7, "guide_active", {"stop"}), {}).move) << "not taken over yet";
+  EXPECT_FALSE(tablet.take(screen(8, "guide_paused", {"continue"}), {}).move);
+  EXPECT_TRUE(tablet.take(screen(9, "guide_active", {"stop"}), {}).move) << "by voice, perhaps";
+  EXPECT_FALSE(tablet.holds());
+  // It ended in the same moment.
+  static_cast<void>(tablet.touch("stop", {}));
+  EXPECT_TRUE(tablet.take(screen(10, "guide_success", {}), {}).move);
+  // Continue on the screen.
+  static_cast<void>(tablet.take(screen(11, "guide_active", {"stop"}), {}));
+  static_cast<void>(tablet.touch("stop", {}));
+  static_cast<void>(tablet.take(screen(12, "guide_paused", {"continue"}), {}));
+  const Touched go = tablet.touch("continue", {});
+  EXPECT_TRUE(go.move);
+  EXPECT_TRUE(go.answer);
+}
+
+TEST(Tablet, KeepsItsOwnStopUntilStart) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes"}), {}));
+  const Touched stop = tablet.touch(Tablet::kStop, {});
+  EXPECT_TRUE(stop.stop);
+  EXPECT_FALSE(stop.answer);
+  EXPECT_FALSE(tablet.take(screen(8, "guide_options", {"lab"}), {}).move);
+  View view = tablet.view({});
+  EXPECT_TRUE(view.start_offered);
+  EXPECT_FALSE(view.stop_offered);
+  EXPECT_EQ(view.text, "I have been stopped. Touch Start when I may move again.");
+  EXPECT_TRUE(tablet.touch(Tablet::kStart, {}).move);
+  EXPECT_FALSE(tablet.holds());
+  EXPECT_FALSE(tablet.touch(Tablet::kStart, {}).move);
+
+  Tablet restarted = make();
+  restarted.hold_again();
+  EXPECT_TRUE(restarted.view({}).start_offered) << "a restart does not forget it";
+}
+
+TEST(Tablet, StartOrStopIsOneTouchAwayWhateverHappens) {
+  Random random(5);
+  Tablet tablet = make();
+  const std::vector<std::vector<std::string>> sets{
+      {"stop", "cancel"}, {"continue", "cancel"}, {"yes", "no"}, {}};
+  const char* const states[] = {"guide_active", "guide_paused", "guide_ask", "guide_success"};
+  for (int i = 1; i < 5000; ++i) {
+    const auto which = random.below(4);
+    if (random.below(3) > 0) {
+      static_cast<void>(
+          tablet.take(screen(static_cast<std::uint64_t>(i), states[which], sets[which]), {}));
+    }
+    tablet.hear(random.below(5) > 0, random.below(5) > 0);
+    const char* const ids[] = {"stop", "continue", Tablet::kStart, Tablet::kStop, "yes"};
+    if (random.below(2) == 0)
+      static_cast<void>(tablet.touch(ids[random.below(5)], milliseconds(i)));
+    const View view = tablet.view(milliseconds(i));
+    int ways = (view.stop_offered ? 1 : 0) + (view.start_offered ? 1 : 0);
+    for (const Button& button : view.primary)
+      ways += button.id == "stop" || button.id == "continue";
+    ASSERT_GE(ways, 1);
+    ASSERT_LE(ways, 2);
+  }
+}
+
+TEST(Tablet, SendsWhatIsTypedAndCutsItAtALetter) {
+  Tablet tablet = make();
+  Screen search = screen(3, "guide_options", {"query", "lab"});
+  search.content = 3;
+  search.options[0].takes_text = true;
+  static_cast<void>(tablet.take(search, {}));
+  EXPECT_EQ(tablet.type("kit", {}).answer, (Answer{3, "query", "kit"}));
+  EXPECT_EQ(tablet.view({}).page, Page::kSearch);
+  EXPECT_EQ(tablet.view({}).query_id, "query");
+  std::string many;
+  for (int i = 0; i < 30; ++i) many += "ā";
+  EXPECT_EQ(tablet.type(many, {}).answer->text.size(), 40U);
+  EXPECT_EQ(tablet.type("x" + many, {}).answer->text.size(), 39U);
+  static_cast<void>(tablet.take(screen(4, "guide_start", {"start"}), {}));
+  EXPECT_FALSE(tablet.type("kit", {}).answer);
+}
+
+TEST(WayText, SaysWhatIsKnown) {
+  const double nan = std::nan("");
+  EXPECT_EQ(way_text(34.4, 62.0), "34 m · 1 min");
+  EXPECT_EQ(way_text(8.0, 11.0), "8 m · 15 s");
+  EXPECT_EQ(way_text(nan, 11.0), "15 s");
+  EXPECT_EQ(way_text(3.0, nan), "3 m");
+  EXPECT_EQ(way_text(nan, nan), "");
+  EXPECT_EQ(way_text(-1.0, INFINITY), "");
+}
+
+// WCAG 2.2, 1.4.6 (AAA): 7:1 for text, also for the large one here; 1.4.11: 3:1 for controls.
+TEST(Palette, HasTheContrastOfAaa) {
+  EXPECT_NEAR(contrast({0, 0, 0}, {255, 255, 255}), 21.0, 1e-9);
+  EXPECT_NEAR(contrast({0x77, 0x77, 0x77}, {255, 255, 255}), 4.478, 0.001) << "known value";
+  const Palette p;
+  for (const Color& text : {p.title, p.text, p.status})
+    EXPECT_GE(contrast(text, p.background), 7.0);
+  for (const Color& button : {p.yes, p.no, p.option, p.service, p.focus, p.robot}) {
+    EXPECT_GE(contrast(p.ink, button), 7.0) << int{button.red};
+    EXPECT_GE(contrast(button, p.background), 3.0) << int{button.red};
+  }
+  EXPECT_GE(contrast(p.title, p.surface), 7.0) << "keys";
+  EXPECT_GE(contrast(p.wall, p.floor), 3.0);
+  for (const Color& mark : {p.route, p.robot, p.goal}) EXPECT_GE(contrast(mark, p.floor), 3.0);
+  EXPECT_LT(contrast(p.title, p.yes), 7.0) << "why there is dark text on the buttons";
+}
+
+TEST(FloorPlan, IsCutToWhatIsKnownAndNorthIsUp) {
+  grid::OccupancyGrid map({40, 30, 0.5, -2.0, -1.0}, grid::kUnknown);
+  map.at({10, 5}) = 100;
+  map.at({12, 8}) = 0;
+  const FloorPlan plan = draw_floor_plan(map, 1);
+  ASSERT_EQ(plan.width, 5);
+  ASSERT_EQ(plan.height, 6);
+  const auto at = [&](int x, int y) {
+    return plan.pixels[static_cast<std::size_t>(y * plan.width + x)];
+  };
+  EXPECT_EQ(at(1, 4), 0xffe6e8ecU) << "the wall, at the lower left";
+  EXPECT_EQ(at(3, 1), 0xff454952U) << "the floor, at the upper right";
+  const auto pixel = plan.to_pixels({-2.0 + 10 * 0.5, -1.0 + 5 * 0.5}, 2.0);
+  EXPECT_DOUBLE_EQ(pixel.x(), 2.0);
+  EXPECT_DOUBLE_EQ(pixel.y(), 10.0);
+  EXPECT_TRUE(draw_floor_plan(grid::OccupancyGrid({4, 4, 0.1, 0, 0}, grid::kUnknown), 1).empty());
+  EXPECT_TRUE(draw_floor_plan(grid::OccupancyGrid(), 1).empty());
+}
+
+TEST(Simplified, KeepsCornersAndStaysWithinTheTolerance) {
+  std::vector<geometry::Point2> path;
+  for (int i = 0; i <= 100; ++i) path.emplace_back(0.1 * i, 0.0);
+  for (int i = 1; i <= 100; ++i) path.emplace_back(10.0, 0.1 * i);
+  EXPECT_EQ(simplified(path, 0.05).size(), 3U);
+  EXPECT_EQ(simplified({}, 0.05).size(), 0U);
+  EXPECT_EQ(simplified({{1, 1}}, 0.05).size(), 1U);
+}
+
+}  // namespace
+}  // namespace usher::tablet

@@ -1,0 +1,60 @@
+import QtQuick
+import Usher.Tablet
+
+// A button of the thesis, section 7.2.1: at least 45 x 22 mm, its color by what it means.
+FocusScope {
+    id: button
+
+    required property double u
+    property string buttonId
+    property string label
+    property int kind: 0
+    property bool pending: false
+    property double textSize: Theme.buttonTextSize * u
+    // A stop must not wait for the finger to leave.
+    property bool onPress: false
+    readonly property double wanted: Math.max(Theme.buttonWidth * u, caption.implicitWidth + 72 * u)
+    readonly property bool cut: caption.truncated
+    readonly property bool down: area.pressed || pending
+
+    signal clicked()
+
+    objectName: "button:" + buttonId
+    implicitWidth: wanted
+    implicitHeight: Theme.buttonHeight * u
+    activeFocusOnTab: true
+    Accessible.role: Accessible.Button
+    Accessible.name: label
+    Accessible.onPressAction: button.clicked()
+    Keys.onReturnPressed: button.clicked()
+    Keys.onSpacePressed: button.clicked()
+
+    Rectangle {
+        anchors.fill: parent
+        radius: 28 * button.u
+        color: button.down ? Qt.lighter(Theme.button(button.kind), 1.18) : Theme.button(button.kind)
+        border.width: button.activeFocus || button.pending ? 8 * button.u : 0
+        border.color: Theme.focus
+        scale: button.down ? 0.97 : 1
+    }
+    Text {
+        id: caption
+        anchors.centerIn: parent
+        width: parent.width - 24 * button.u
+        horizontalAlignment: Text.AlignHCenter
+        text: button.label
+        color: Theme.ink
+        font.pixelSize: button.textSize
+        font.weight: Font.DemiBold
+        elide: Text.ElideRight
+        Accessible.ignored: true
+    }
+    MouseArea {
+        id: area
+        anchors.fill: parent
+        onPressed: if (button.onPress)
+            button.clicked()
+        onClicked: if (!button.onPress)
+            button.clicked()
+    }
+}

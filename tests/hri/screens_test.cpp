@@ -1,0 +1,316 @@
+// Every screen of the dialogue in every language, drawn as the tablet draws it. The pictures are
+// kept in the build folder (tablet_screens/); a cut text, an overlap or a button that is too small
+// fails.
+#include <gtest/gtest.h>
+
+#include <QDir>
+#include <QGuiApplication>
+#include <QImage>
+#include <QQmlEngine>
+#include <QQuickItem>
+#include <QQuickView>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include "foundation/grid/map_file.hpp"
+#include "interaction/tablet/core/tablet.hpp"
+#include "interaction/tablet/window/floor_plan_item.hpp"
+#include "interaction/tablet/window/screen_model.hpp"
+#include "tasks/guide/core/guide.hpp"
+
+extern void qml_register_types_Usher_Tablet();
+
+namespace usher {
+namespace {
+
+using std::chrono::milliseconds;
+
+const std::string kTexts = USHER_SOURCE_DIR "/config/dialogue";
+const std::vector<std::string> kLanguages{"en", "mi", "de", "fr"};
+
+/// The places of the office, with the longest names that a building might have among them.
+std::vector<guide::Location> office() {
+  return {{"foyer", "Foyer", {4.5, 4.5}},
+          {"reception", "Reception", {10.2, 4.6}},
+          {"electronics_lab", "Electronics lab", {24.5, 15.2}},
+          {"meeting_room", "Meeting room", {16.0, 7.4}},
+          {"kitchen", "Kitchen", {21.5, 6.6}},
+          {"robotics_lab", "Robotics lab", {26.6, 6.8}},
+          {"library", "Library", {7.0, 12.6}},
+          {"office_201", "Office 201", {14.2, 12.8}},
+          {"seminar_room", "Seminar room", {19.6, 20.6}},
+          {"lounge", "Lounge", {30.4, 21.4}}};
+}
+
+tablet::Screen to_tablet(const guide::Screen& screen) {
+  tablet::Screen out;
+  out.id = screen.id;
+  out.state = screen.state;
+  out.language = screen.language;
+  out.content = static_cast<std::uint8_t>(screen.content);
+  out.title = screen.title;
+  out.text = screen.text;
+  out.status = screen.status;
+  for (const auto& option : screen.options) {
+    out.options.push_back({option.id, option.label, static_cast<std::uint8_t>(option.kind),
+                           static_cast<std::uint8_t>(option.panel), option.takes_text});
+  }
+  out.place = screen.place;
+  out.progress = screen.progress;
+  out.eta = screen.eta;
+  out.remaining = screen.remaining;
+  out.time_left = screen.time_left;
+  return out;
+}
+
+/// A visit through every screen; `shown` is called at each.
+class Visit {
+ public:
+  Visit(const std::string& language, std::function<void(const guide::Screen&, const char*)> shown)
+      : shown_(std::move(shown)),
+        guide_({}, *phrases::PhraseBook::load(kTexts, kLanguages, "guide", guide::kTextKeys), 1, {},
+               {}) {
+    EXPECT_TRUE(guide_.set_locations(office(), {}).ok());
+    around_.pose = geometry::Pose2{10.0, 5.0, 0.5};
+    around_.navigation = guide::Navigation{};
+    show("");
+    around_.supervisor = guide::Supervisor::kAvailable;
+    wait(100), show("");
+    press("language:" + language), show("");
+    wait(3000), show("");
+    press("yes"), show("");
+    press("where_is"), show("");
+    press("electronics_lab"), show("-place");
+    press("done"), show("");
+    wait(41000), show("-still_there");
+    press("stay"), press("yes"), show("");
+    press("more"), show("-page_2");
+    press("search"), show("-search");
+    press("back"), press("electronics_lab"), show("");
+    press("start"), show("");
+    around_.supervisor = guide::Supervisor::kNavigation;
+    wait(1000);
+    around_.navigation = guide::Navigation{guide_.memory().goal_id, guide::NavigationState::kActive,
+                                           0.4, 70.0, 43.0};
+    wait(6000), show("-way");
+    around_.navigation->blocked = true;
+    wait(3200), show("-excuse_me");
+    around_.navigation->blocked = false;
+    around_.visitor = guide::VisitorSighting{true, -5.0, 0.0, 0.0};
+    wait(200), show("-waiting_for_you");
+    around_.visitor = guide::VisitorSighting{true, -1.0, 0.0, 0.0};
+    wait(1500);
+    press("stop"), show("");
+    around_.navigation->state = guide::NavigationState::kFailed;
+    wait(100), show("");
+    press("yes"), press("foyer"), press("start");
+    wait(1000);
+    around_.navigation =
+        guide::Navigation{guide_.memory().goal_id, guide::NavigationState::kSucceeded};
+    wait(100), show("");
+    around_.supervisor = guide::Supervisor::kAvailable;
+    wait(4000), show("");
+    press("no"), show("");
+  }
+
+ private:
+  void wait(int ms) {
+    for (const int end = now_ + ms; now_ < end;) guide_.step(around_, milliseconds(now_ += 100));
+  }
+  void press(const std::string& id) {
+    guide_.answer({guide_.screen().id, id, "", guide::Input::kTouch}, milliseconds(now_));
+    EXPECT_EQ(guide_.last_result(), guide::AnswerResult::kDone)
+        << id << " in " << guide_.screen().state;
+  }
+  void show(const char* suffix) { shown_(guide_.screen(), suffix); }
+
+  std::function<void(const guide::Screen&, const char*)> shown_;
+  guide::Guide guide_;
+  guide::Surroundings around_;
+  int now_ = 0;
+};
+
+class Screens : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+    qputenv("QT_QUICK_BACKEND", "software");
+    static int argc = 1;
+    static char name[] = "screens_test";
+    static char* argv[] = {name, nullptr};
+    static_cast<void>(new QGuiApplication(argc, argv));  // lives as long as the process
+    qml_register_types_Usher_Tablet();
+  }
+
+  void SetUp() override {
+    view_ = std::make_unique<QQuickView>();
+    view_->engine()->addImportPath("qrc:/");
+    view_->setResizeMode(QQuickView::SizeRootObjectToView);
+    view_->setInitialProperties({{"model", QVariant::fromValue(&model_)}, {"animate", false}});
+    view_->setSource(QUrl("qrc:/Usher/Tablet/Kiosk.qml"));
+    ASSERT_EQ(view_->status(), QQuickView::Ready)
+        << view_->errors().value(0).toString().toStdString();
+    resize(1080, 720);
+    view_->show();
+    const auto map = grid::load_map(USHER_SOURCE_DIR "/config/sites/office/map.yaml");
+    ASSERT_TRUE(map.ok()) << map.error();
+    model_.show_building(tablet::draw_floor_plan(*map, 10));
+    std::vector<tablet::Place> places;
+    for (const auto& each : office()) places.push_back({each.name, each.title, each.at});
+    model_.show_places(places);
+    model_.show_route({{10, 5}, {10, 10}, {28, 10}, {28, 18}, {24.5, 18}, {24.5, 15.2}});
+  }
+  void resize(int width, int height) {
+    view_->resize(width, height);
+    settle();
+  }
+  void settle() {
+    for (int i = 0; i < 4; ++i) QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+  }
+  void draw(const tablet::View& view) {
+    model_.show(view);
+    settle();
+  }
+  QImage picture() { return view_->grabWindow(); }
+
+  static QRectF scene(const QQuickItem* item) {
+    return item->mapRectToScene(QRectF(0, 0, item->width(), item->height()));
+  }
+  static void collect(QQuickItem* item, std::vector<QQuickItem*>& out) {
+    if (!item->isVisible() || item->opacity() <= 0.0) return;
+    out.push_back(item);
+    for (QQuickItem* child : item->childItems()) collect(child, out);
+  }
+
+  /// Whether all that is visible has room, and nothing lies on anything else.
+  void judge(const std::string& what) {
+    SCOPED_TRACE(what);
+    static_cast<void>(picture());  // everything is laid out now
+    std::vector<QQuickItem*> items;
+    collect(view_->rootObject(), items);
+    const QRectF window(0, 0, view_->width(), view_->height());
+    const double u =
+        std::min(window.width() / tablet::Sizes::kWidth, window.height() / tablet::Sizes::kHeight);
+    std::vector<std::pair<std::string, QRectF>> solid;
+    for (QQuickItem* item : items) {
+      const std::string name = item->objectName().toStdString();
+      const QRectF box = scene(item);
+      const QString type = item->metaObject()->className();
+      if (type.startsWith("QQuickText")) {
+        const QString text = item->property("text").toString();
+        if (text.isEmpty()) continue;
+        EXPECT_FALSE(item->property("truncated").toBool()) << "cut: " << text.toStdString();
+        EXPECT_LE(item->property("contentWidth").toDouble(), item->width() + 1.0)
+            << text.toStdString();
+        EXPECT_LE(item->property("contentHeight").toDouble(), item->height() + 1.0)
+            << text.toStdString();
+        EXPECT_TRUE(window.adjusted(-1, -1, 1, 1).contains(box))
+            << "outside: " << text.toStdString();
+        if (name == "title") {
+          EXPECT_GE(item->property("font").value<QFont>().pixelSize(),
+                    std::floor(tablet::Sizes::kTitle * u));
+        }
+        if (name == "title" || name == "body" || name == "status" || name == "timeLeft" ||
+            name == "way" || name == "typed")
+          solid.emplace_back(text.toStdString(), box);
+      }
+      if (name.starts_with("button:") || name.starts_with("key:")) {
+        solid.emplace_back(name, box);
+        EXPECT_TRUE(window.adjusted(-1, -1, 1, 1).contains(box)) << "outside: " << name;
+      }
+      if (name == "floorPlan") solid.emplace_back(name, box);
+      if (name.starts_with("button:")) {
+        EXPECT_GE(box.width(), tablet::Sizes::kButtonWidth * u - 1.0) << name;
+        EXPECT_GE(box.height(), tablet::Sizes::kButtonHeight * u - 1.0) << name;
+        EXPECT_FALSE(item->property("cut").toBool()) << name << " is too narrow for its label";
+      }
+    }
+    for (std::size_t i = 0; i < solid.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const QRectF both = solid[i].second.intersected(solid[j].second);
+        EXPECT_FALSE(both.width() > 1.0 && both.height() > 1.0)
+            << solid[i].first << " lies on " << solid[j].first;
+      }
+    }
+    if (auto* plan = view_->rootObject()->findChild<tablet::FloorPlanItem*>("floorPlan")) {
+      const auto& labels = plan->labels();
+      for (std::size_t i = 0; i < labels.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(labels[i].intersects(labels[j]));
+      }
+    }
+  }
+
+  tablet::ScreenModel model_;
+  std::unique_ptr<QQuickView> view_;
+};
+
+TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
+  const QString folder = USHER_BINARY_DIR "/tablet_screens";
+  QDir().mkpath(folder);
+  std::set<std::string> states;
+  for (const std::string& language : kLanguages) {
+    tablet::Tablet tablet(
+        *phrases::PhraseBook::load(kTexts, kLanguages, "tablet", tablet::kTextKeys));
+    tablet.hear(true, true);
+    tablet.locate(geometry::Pose2{10.0, 5.0, 0.5});
+    int number = 0;
+    Visit visit(language, [&](const guide::Screen& screen, const char* suffix) {
+      static_cast<void>(tablet.take(to_tablet(screen), {}));
+      states.insert(screen.state);
+      ++number;
+      const std::string name = language + "-" + (number < 10 ? "0" : "") + std::to_string(number) +
+                               "-" + screen.state + suffix;
+      for (const auto& [width, height] :
+           {std::pair{1280, 800}, std::pair{2160, 1440}, std::pair{1080, 720}}) {
+        resize(width, height);
+        draw(tablet.view({}));
+        judge(name + " at " + std::to_string(width));
+      }
+      EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(name) + ".png"));
+    });
+    tablet.hear(false, false);
+    draw(tablet.view({}));
+    judge(language + " away");
+    EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-90-away.png"));
+    tablet.hear(true, true);
+    static_cast<void>(tablet.touch(tablet::Tablet::kStop, {}));
+    draw(tablet.view({}));
+    judge(language + " held");
+    EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-91-held.png"));
+  }
+  EXPECT_EQ(states.size(), 15U) << "every state of fig. 7.1";
+}
+
+TEST_F(Screens, ReactToATouchWithinATenthOfASecond) {
+  tablet::View view;
+  view.page = tablet::Page::kButtons;
+  view.title = "?";
+  view.primary = {{"yes", "Yes", tablet::Kind::kYes}, {"no", "No", tablet::Kind::kNo}};
+  draw(view);
+  std::vector<std::string> pressed;
+  model_.on_press = [&](const std::string& id) { pressed.push_back(id); };
+  std::vector<QQuickItem*> items;
+  collect(view_->rootObject(), items);
+  const auto yes = std::find_if(items.begin(), items.end(), [](const QQuickItem* item) {
+    return item->objectName() == "button:yes";
+  });
+  ASSERT_NE(yes, items.end());
+  const QPointF at = scene(*yes).center();
+  const auto mouse = [&](QEvent::Type type) {
+    QMouseEvent event(type, at, at, Qt::LeftButton,
+                      type == QEvent::MouseButtonPress ? Qt::LeftButton : Qt::NoButton, {});
+    QCoreApplication::sendEvent(view_.get(), &event);
+  };
+  const QImage before = picture();
+  mouse(QEvent::MouseButtonPress);
+  settle();
+  EXPECT_NE(picture(), before) << "the button shows that it is touched";
+  mouse(QEvent::MouseButtonRelease);
+  settle();
+  EXPECT_EQ(pressed, std::vector<std::string>{"yes"});
+}
+
+}  // namespace
+}  // namespace usher
