@@ -213,7 +213,8 @@ int demo(const DemoArguments& arguments) {
   if (!saved) return fail(saved.error());
   std::cout << (sheet.pass() ? "the visitor got there"
                              : "the visitor did not get there as promised")
-            << "; picture, table, result.json and the tablet's screens are in " << arguments.out << "\n";
+            << "; picture, table, result.json and the tablet's screens are in " << arguments.out
+            << "\n";
   return sheet.pass() ? 0 : 1;
 }
 
