@@ -11,7 +11,7 @@ std::string_view text(Cause cause) {
     case Cause::kBaseFallsShort:
       return "the base falls short of its command";
     case Cause::kForeignWriter:
-      return "foreign writer on drive/command";
+      return "foreign writer";
     case Cause::kDisobeyingBase:
       return "the base disobeys";
     case Cause::kEmergencyStop:
@@ -39,19 +39,24 @@ void FaultLog::raise(Cause cause, std::string_view component, std::string_view d
       return;
     }
   }
-  faults_.push_back({next_id_++, now, cause, std::string(component), std::string(detail), true});
+  faults_.push_back({next_id_++, now, cause, std::string(component), std::string(detail)});
 }
 
-void FaultLog::settle(Cause cause, std::string_view component) {
+void FaultLog::settle(Cause cause, std::string_view component, Time now) {
   if (latches(cause)) return;
   for (Fault& fault : faults_) {
-    if (fault.cause == cause && fault.component == component) fault.active = false;
+    if (!fault.active || fault.cause != cause || fault.component != component) continue;
+    fault.active = false;
+    fault.ended = now;
   }
 }
 
-void FaultLog::clear() {
+void FaultLog::clear(std::string_view by, Time now) {
   for (Fault& fault : faults_) {
-    if (fault.latched()) fault.active = false;
+    if (!fault.active || !fault.latched()) continue;
+    fault.active = false;
+    fault.ended = now;
+    fault.ended_by = by;
   }
 }
 

@@ -31,6 +31,8 @@ struct Fault {
   std::string component;  ///< whom it concerns
   std::string detail;     ///< what happened, in words for an operator
   bool active = true;
+  Time ended{};          ///< when it was over or cleared; zero while it is active
+  std::string ended_by;  ///< the operator who cleared it; empty when it ended by itself
 
   bool latched() const { return latches(cause); }
 };
@@ -43,9 +45,9 @@ class FaultLog {
   /// Notes a fault unless the same cause of the same component is active already.
   void raise(Cause cause, std::string_view component, std::string_view detail, Time now);
   /// An unlatched fault is over.
-  void settle(Cause cause, std::string_view component);
+  void settle(Cause cause, std::string_view component, Time now);
   /// An operator ends all latched faults.
-  void clear();
+  void clear(std::string_view by, Time now);
   /// Faults of before a restart.
   void restore(std::vector<Fault> faults);
 

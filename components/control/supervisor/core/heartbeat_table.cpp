@@ -20,8 +20,10 @@ HeartbeatTable::HeartbeatTable(std::vector<WatchedComponent> components, std::ui
     Record record;
     record.timeout = component.timeout;
     records_.push_back(std::move(record));
-    health_.push_back(
-        {std::move(component.name), component.criticality, Health::kMissing, {}, "never heard"});
+    ComponentHealth& entry = health_.emplace_back();
+    entry.name = std::move(component.name);
+    entry.criticality = component.criticality;
+    entry.reason = "never heard";
   }
 }
 
@@ -41,10 +43,13 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   if (!entry) return false;
   const auto index = static_cast<std::size_t>(entry - health_.data());
   Record& record = records_[index];
+  ComponentHealth& health = health_[index];
   if (heartbeat.writer != record.writer) {
     // A, B, A: both live. A, B alone is a restart.
-    if (heartbeat.writer == record.previous_writer && health_[index].heard_at) {
+    if (heartbeat.writer == record.previous_writer && health.heard_at) {
       record.conflict_at = now;
+    } else if (health.heard_at) {
+      ++health.restarts;
     }
     record.previous_writer = record.writer;
     record.writer = heartbeat.writer;
@@ -52,7 +57,9 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   record.reported = heartbeat.state;
   record.idl_digest = heartbeat.idl_digest;
   record.reason = heartbeat.reason;
-  health_[index].heard_at = now;
+  health.longest_handler = heartbeat.longest_handler;
+  if (health.host != heartbeat.host) health.host = heartbeat.host;
+  health.heard_at = now;
   return true;
 }
 

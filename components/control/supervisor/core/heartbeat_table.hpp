@@ -45,6 +45,8 @@ struct Heartbeat {
   std::uint64_t idl_digest = 0;
   Reported state = Reported::kStarting;
   std::string_view reason;  ///< empty when it is well
+  std::string_view host;    ///< where it runs, self-declared
+  Time longest_handler{};   ///< {>= 0} since its last heartbeat
 };
 
 struct ComponentHealth {
@@ -53,6 +55,9 @@ struct ComponentHealth {
   Health health = Health::kMissing;
   std::optional<Time> heard_at;  ///< nothing: never
   std::string reason;            ///< empty when it is well
+  std::string host;              ///< where it runs; empty: never heard
+  Time longest_handler{};        ///< in its last heartbeat
+  std::uint32_t restarts = 0;    ///< how often it came back as another process
 
   /// Whether its work gets done, though perhaps with less.
   bool able() const { return health == Health::kOk || health == Health::kDegraded; }

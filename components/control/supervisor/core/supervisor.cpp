@@ -23,11 +23,15 @@ bool over(NavigationState state) {
 Supervisor::Supervisor(const Parameters& parameters, Memory memory)
     : parameters_(parameters),
       table_(parameters.components, parameters.idl_digest),
-      right_(parameters.names.movement, parameters.claim_slack),
       behavior_(parameters.dwell),
       watch_(parameters.response),
       epoch_(std::min(memory.epoch, kHighestEpoch) + (memory.epoch > 0 ? kUnsavedEpochs : 0)) {
   assert(parameters.degraded_speed_factor >= 0.0 && parameters.degraded_speed_factor <= 1.0);
+  assert(!parameters.topics.empty());
+  for (const WatchedTopic& topic : parameters.topics) {
+    watched_.push_back(
+        {topic.name, drive::WriterRight(topic.participants, parameters.claim_slack)});
+  }
   stopped_by_ = std::move(memory.stopped_by);
   if (!parameters.movement_on_at_start) stop("start");
   faults_.restore(std::move(memory.latched));
@@ -36,21 +40,40 @@ Supervisor::Supervisor(const Parameters& parameters, Memory memory)
 
 void Supervisor::heartbeat(const Heartbeat& heartbeat, Time now) {
   if (!table_.hear(heartbeat, now)) ++unknown_heartbeats_;
-  right_.alive(heartbeat.writer, now);
+  alive(heartbeat.writer, now);
 }
 
-void Supervisor::writer_appeared(const WriterSighting& sighting, Time now) {
-  right_.appeared(sighting, now);
+void Supervisor::alive(const WriterId& writer, Time now) {
+  for (Watched& watched : watched_) watched.right.alive(writer, now);
 }
 
-void Supervisor::writer_gone(const WriterId& writer) {
-  right_.gone(writer);
-  commanded_.reset();
+Supervisor::Watched* Supervisor::watched(std::string_view topic) {
+  const auto at = std::find_if(watched_.begin(), watched_.end(),
+                               [topic](const Watched& watched) { return watched.topic == topic; });
+  return at == watched_.end() ? nullptr : &*at;
+}
+
+const Supervisor::Watched* Supervisor::invaded() const {
+  const auto at = std::find_if(watched_.begin(), watched_.end(), [](const Watched& watched) {
+    return watched.right.foreign() != nullptr;
+  });
+  return at == watched_.end() ? nullptr : &*at;
+}
+
+void Supervisor::writer_appeared(std::string_view topic, const WriterSighting& sighting, Time now) {
+  if (Watched* watched = this->watched(topic)) watched->right.appeared(sighting, now);
+}
+
+void Supervisor::writer_gone(std::string_view topic, const WriterId& writer) {
+  Watched* watched = this->watched(topic);
+  if (watched == nullptr) return;
+  watched->right.gone(writer);
+  if (watched == &watched_.front()) commanded_.reset();
 }
 
 void Supervisor::drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now) {
-  right_.alive(writer, now);
-  if (right_.holder() == writer && twist.finite()) commanded_ = Commanded{twist, now};
+  watched_.front().right.alive(writer, now);
+  if (holder() == writer && twist.finite()) commanded_ = Commanded{twist, now};
 }
 
 void Supervisor::base(const BaseReport& report, Time now) {
@@ -91,6 +114,7 @@ Answer Supervisor::request(const Request& request, Time now) {
   handled_[next_handled_] = {request.client, answer};
   next_handled_ = (next_handled_ + 1) % handled_.size();
   last_request_ = answer;
+  last_client_ = request.client;
   return answer;
 }
 
@@ -100,9 +124,13 @@ void Supervisor::stop(const std::string& client) {
   if (stopped_by_.size() < kMostStops) stopped_by_.push_back(client);
 }
 
-void Supervisor::movement_on(const std::string& client) {
+bool Supervisor::is_operator(const std::string& client) const {
   const auto& operators = parameters_.operators;
-  if (std::find(operators.begin(), operators.end(), client) != operators.end()) {
+  return std::find(operators.begin(), operators.end(), client) != operators.end();
+}
+
+void Supervisor::movement_on(const std::string& client) {
+  if (is_operator(client)) {
     stopped_by_.clear();
   } else {
     std::erase(stopped_by_, client);
@@ -154,10 +182,11 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
                     "an emergency stop was requested", now);
       return {};
     case Command::kClear:
-      if (const WriterSighting* foreign = right_.foreign()) {
-        return "'" + foreign->participant + "' still writes drive/command";
+      if (!is_operator(request.client)) return "only an operator may clear faults";
+      if (const Watched* watched = invaded()) {
+        return "'" + watched->right.foreign()->participant + "' still writes " + watched->topic;
       }
-      faults_.clear();
+      faults_.clear(request.client, now);
       watch_.reset();
       if (base_ && base_->emergency) reset_until_ = now + parameters_.reset_patience;
       return {};
@@ -170,18 +199,24 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
 void Supervisor::note_faults(Time now) {
   for (const ComponentHealth& component : table_.components()) {
     if (component.able()) {
-      faults_.settle(Cause::kComponentLost, component.name);
+      faults_.settle(Cause::kComponentLost, component.name, now);
     } else if (component.heard_at) {
       faults_.raise(Cause::kComponentLost, component.name, component.reason, now);
     }
   }
-  if (const WriterSighting* foreign = right_.foreign()) {
+  for (const Watched& watched : watched_) {
+    const WriterSighting* foreign = watched.right.foreign();
+    if (foreign == nullptr) continue;
     faults_.raise(Cause::kForeignWriter,
                   foreign->participant.empty() ? "unnamed participant" : foreign->participant,
-                  "writes drive/command as " + drive::to_string(foreign->writer) + " on host '" +
-                      foreign->host + "'",
+                  "writes " + watched.topic + " as " + drive::to_string(foreign->writer) +
+                      " on host '" + foreign->host + "'",
                   now);
   }
+  note_base(now);
+}
+
+void Supervisor::note_base(Time now) {
   const drive::ResponseWatch::Verdict verdict = watch_.verdict();
   if (verdict == drive::ResponseWatch::Verdict::kDisobeys) {
     faults_.raise(Cause::kDisobeyingBase, parameters_.names.base,
@@ -192,7 +227,7 @@ void Supervisor::note_faults(Time now) {
   } else if (verdict == drive::ResponseWatch::Verdict::kFallsShort) {
     faults_.raise(Cause::kBaseFallsShort, parameters_.names.base, "moves less than commanded", now);
   } else {
-    faults_.settle(Cause::kBaseFallsShort, parameters_.names.base);
+    faults_.settle(Cause::kBaseFallsShort, parameters_.names.base, now);
   }
   if (base_ && base_->emergency && !resetting(now)) {
     faults_.raise(Cause::kEmergencyStop, parameters_.names.base,
@@ -206,10 +241,14 @@ void Supervisor::explain() {
     reason_.append(": ").append(latched->detail);
   } else if (const ComponentHealth* missing = table_.missing_critical()) {
     reason_.assign(missing->name).append(": ").append(missing->reason);
-  } else if (!right_.holder()) {
+  } else if (!holder()) {
     reason_.assign(parameters_.names.movement).append(": writes no drive/command yet");
   } else if (base_ && base_->emergency) {
     reason_.assign("the base leaves its emergency stop");
+  } else if (!stopped_by_.empty()) {
+    reason_.assign("stopped by ").append(stopped_by_.front());
+    for (std::size_t i = 1; i < stopped_by_.size(); ++i)
+      reason_.append(", ").append(stopped_by_[i]);
   } else {
     reason_.clear();
   }
@@ -218,7 +257,7 @@ void Supervisor::explain() {
 void Supervisor::grant(bool able) {
   const bool may = able && !faults_.latched() && decision_.state != State::kInitialise &&
                    decision_.state != State::kFault;
-  const drive::WriterId writer = may ? *right_.holder() : drive::kNobody;
+  const drive::WriterId writer = may ? *holder() : drive::kNobody;
   if (may && writer != decision_.grant.writer) ++epoch_;
   decision_.grant = {writer, epoch_, drive::kNobody};
 }
@@ -226,7 +265,7 @@ void Supervisor::grant(bool able) {
 const Decision& Supervisor::step(Time now) {
   table_.judge(now);
   note_faults(now);
-  const bool able = !table_.missing_critical() && right_.holder() && !(base_ && base_->emergency);
+  const bool able = !table_.missing_critical() && holder() && !(base_ && base_->emergency);
   const bool fault = faults_.latched() != nullptr;
   decision_.state = behavior_.step(able, fault, now);
   grant(able);
@@ -280,11 +319,21 @@ SupervisorStatus Supervisor::status() const {
   status.enables = decision_.enables;
   status.granted = decision_.grant.writer != drive::kNobody;
   status.epoch = epoch_;
+  status.speed_factor = decision_.speed_factor;
+  status.camera_angle = decision_.camera_angle;
   status.reason = reason_;
   status.stopped_by = stopped_by_;
   status.components = table_.components();
   status.faults = faults_.faults();
+  for (const Watched& watched : watched_) {
+    for (const drive::WriterRight::Known& known : watched.right.writers()) {
+      status.writers.push_back({watched.topic, known.sighting, known.since,
+                                known.role != drive::WriterRight::Role::kForeign,
+                                status.granted && known.sighting.writer == decision_.grant.writer});
+    }
+  }
   status.last_request = last_request_;
+  status.last_client = last_client_;
   return status;
 }
 

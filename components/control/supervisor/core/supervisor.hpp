@@ -8,15 +8,23 @@
 #include <vector>
 
 #include "control/supervisor/core/behavior.hpp"
-#include "control/supervisor/core/drive_right.hpp"
 #include "control/supervisor/core/fault_log.hpp"
 #include "control/supervisor/core/heartbeat_table.hpp"
 #include "control/supervisor/core/memory.hpp"
 #include "drivers/base_obedience/core/base_obedience.hpp"
 #include "drivers/base_obedience/core/response_watch.hpp"
+#include "drivers/base_obedience/core/writer_right.hpp"
 #include "foundation/geometry/pose2.hpp"
 
 namespace usher::supervisor {
+
+using drive::WriterSighting;
+
+/// A topic that moves the robot, and who may write it.
+struct WatchedTopic {
+  std::string name;
+  std::vector<std::string> participants;  ///< names in the manifest
+};
 
 /// Names in the manifest that the supervisor has a field or a rule for.
 struct Names {
@@ -30,14 +38,16 @@ struct Names {
 
 struct Parameters {
   std::vector<WatchedComponent> components;  ///< from the manifest
-  std::uint64_t idl_digest = 0;              ///< of the supervisor's own build
+  /// The first one is drive/command, whose writer gets the right to drive.
+  std::vector<WatchedTopic> topics{{"drive/command", {"movement_control"}}};
+  std::uint64_t idl_digest = 0;  ///< of the supervisor's own build
   Names names;
   Time dwell = std::chrono::milliseconds(250);  ///< least time in Inactive; outlasts old commands
   double degraded_speed_factor = 0.5;           ///< {0..1}
   bool movement_on_at_start = true;
-  /// Clients whose kMovementOn also ends the stops of others.
+  /// Clients who may clear faults, and whose kMovementOn also ends the stops of others.
   std::vector<std::string> operators{"operator", "manual_control"};
-  Time claim_slack = std::chrono::milliseconds(50);      ///< see DriveRight
+  Time claim_slack = std::chrono::milliseconds(50);      ///< see WriterRight
   Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
   Time reset_patience = std::chrono::seconds(5);         ///< for a base that leaves its emergency
   bool emergency_stop_when_disobeying = true;
@@ -59,7 +69,7 @@ enum class Command : std::uint8_t {
   kNavigationGo = 6,     ///< the visitor is ready
   kNavigationEnd = 7,    ///< given up
   kEmergencyStop = 8,    ///< motors off, latched
-  kClear = 9,            ///< ends latched faults whose cause is gone
+  kClear = 9,            ///< ends latched faults whose cause is gone; operators only
 };
 
 struct Request {
@@ -102,7 +112,16 @@ struct Decision {
   bool emergency_stop = false;  ///< the base shall switch its motors off
   bool reset_base = false;      ///< the base shall leave its emergency
   double camera_angle = 0.0;    ///< [rad]
-  std::string_view reason;      ///< why nobody may drive; valid until the next call
+  std::string_view reason;      ///< why the robot may not move; valid until the next call
+};
+
+/// Somebody who can write a topic that moves the robot.
+struct CommandWriter {
+  std::string topic;
+  WriterSighting sighting;
+  Time since{};          ///< when discovery saw it
+  bool allowed = false;  ///< not foreign
+  bool granted = false;  ///< holds the right to drive
 };
 
 /// Appendix A.3 of the thesis, without its topic names, and what an operator wants to know besides.
@@ -128,11 +147,15 @@ struct SupervisorStatus {
   Enables enables;
   bool granted = false;
   std::uint64_t epoch = 0;
-  std::string reason;                   ///< why nobody may drive
+  double speed_factor = 1.0;            ///< {0..1}
+  double camera_angle = 0.0;            ///< [rad] asked now
+  std::string reason;                   ///< why the robot may not move; empty when it may
   std::vector<std::string> stopped_by;  ///< whose stops hold; movement is off while there are any
   std::vector<ComponentHealth> components;  ///< in the manifest's order
   std::vector<Fault> faults;                ///< newest last
+  std::vector<CommandWriter> writers;       ///< of all watched topics
   Answer last_request;
+  std::string last_client;  ///< whose request that was
 };
 
 /// Decides who may drive and what is enabled.
@@ -141,7 +164,8 @@ struct SupervisorStatus {
 /// drive/command is there and it is the right one, the base is in no emergency, and no latched
 /// fault is active. Everything else is withheld at once; each new grant has a higher epoch.
 ///
-/// Latched, until an operator clears them: a foreign writer, a disobeying base, an emergency stop.
+/// Latched, until an operator clears them: a foreign writer on a topic that moves the robot, a
+/// disobeying base, an emergency stop.
 /// The loss of a component ends by itself.
 ///
 /// Feed it what is heard, then call step(). `now` must not go back.
@@ -150,9 +174,11 @@ class Supervisor {
   Supervisor(const Parameters& parameters, Memory memory);
 
   void heartbeat(const Heartbeat& heartbeat, Time now);
-  /// Discovery of writers on drive/command.
-  void writer_appeared(const WriterSighting& sighting, Time now);
-  void writer_gone(const WriterId& writer);
+  /// Discovery of writers on a watched topic; other topics are ignored.
+  void writer_appeared(std::string_view topic, const WriterSighting& sighting, Time now);
+  void writer_gone(std::string_view topic, const WriterId& writer);
+  /// The participant that owns the writer shows life.
+  void alive(const WriterId& writer, Time now);
   /// A sample of drive/command.
   void drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now);
   void base(const BaseReport& report, Time now);
@@ -181,19 +207,30 @@ class Supervisor {
     geometry::Twist2 twist;
     Time at{};
   };
+  struct Watched {
+    std::string topic;
+    drive::WriterRight right;
+  };
 
   void stop(const std::string& client);
   void movement_on(const std::string& client);
+  bool is_operator(const std::string& client) const;
+  Watched* watched(std::string_view topic);
+  /// Who may drive, if anybody.
+  std::optional<WriterId> holder() const { return watched_.front().right.holder(); }
+  /// The first topic that somebody writes who must not; null when all is well.
+  const Watched* invaded() const;
   /// Why the request cannot be carried out; empty when it was.
   std::string carry_out(const Request& request, Time now);
   void note_faults(Time now);
+  void note_base(Time now);
   bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
   void grant(bool able);
   void explain();
 
   Parameters parameters_;
   HeartbeatTable table_;
-  DriveRight right_;
+  std::vector<Watched> watched_;  ///< the first is drive/command
   FaultLog faults_;
   Behavior behavior_;
   drive::ResponseWatch watch_;
@@ -213,6 +250,7 @@ class Supervisor {
   std::array<Handled, 16> handled_;  ///< the last requests, a ring
   std::size_t next_handled_ = 0;
   Answer last_request_;
+  std::string last_client_;
 
   Decision decision_;
   std::string reason_;

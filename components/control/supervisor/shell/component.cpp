@@ -16,10 +16,16 @@ constexpr int kDiagnosticsEvery = 50;  // 1 Hz
 constexpr auto kBaseAge = milliseconds(150);
 constexpr const char* kMemoryKey = "supervisor";
 constexpr int kMostComponents = 64;
+constexpr std::size_t kMostWriters = 64;  // in the status
 
 float single(double value) { return static_cast<float>(value); }
 float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
 Time time_from(double seconds) { return runtime::from_seconds(seconds); }
+
+/// Of a heartbeat; what is no time counts as none.
+Time handler_time(float seconds) {
+  return seconds > 0.0F && seconds < 1e6F ? runtime::from_seconds(seconds) : Time::zero();
+}
 
 Criticality criticality_from(const std::string& word) {
   if (word == "degrade") return Criticality::kDegrade;
@@ -41,13 +47,25 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
        {"criticality", ParameterKind::kText, "-", {}, "stop, degrade or notify."},
        {"timeout", ParameterKind::kNumber, "s", {0.05, 60}, "Silence that counts as loss."}},
       "Every component of the manifest, from the launcher.");
+  std::vector<drive::NamedComponent> manifest;
   for (const auto& record : components) {
+    manifest.push_back({record.text("name"), record.text("type")});
     if (record.text("name") == host.name()) continue;  // who grants is alive
     p.components.push_back({record.text("name"), criticality_from(record.text("criticality")),
                             time_from(record.number("timeout"))});
   }
   p.names.movement = parameters.text("movement_name", p.names.movement,
                                      "The component that may write drive/command.");
+  p.topics = {{std::string(topics::kDriveCommand.name), {p.names.movement}}};
+  const auto watched = [&](const auto& topic) {
+    p.topics.push_back({std::string(topic.name), drive::allowed_writers(topic.writers, manifest)});
+  };
+  watched(topics::kCmdVelManual);
+  watched(topics::kCmdVelInteraction);
+  watched(topics::kCmdVelNavigation);
+  watched(topics::kDriveGrant);
+  watched(topics::kMovementEnable);
+  watched(topics::kBaseRequest);
   p.names.interaction = parameters.text("interaction_name", p.names.interaction,
                                         "The component that poses the robot.");
   p.names.power =
@@ -100,14 +118,15 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
       grant_valid_for_(host.parameters().number("grant_valid_for", "s", {0.04, 0.12}, 0.12,
                                                 "Life of a grant without renewal.")),
       core_(read_parameters(host), remembered(host)) {
-  heartbeat_ = host.input(
-      topics::kHeartbeat, {.depth = 4 * kMostComponents},
-      [this](const auto& message, const auto& info) {
-        core_.heartbeat(
-            {message.component_name(), info.writer, message.idl_digest(),
-             static_cast<Reported>(std::min<std::uint8_t>(message.state(), 3)), message.reason()},
-            now());
-      });
+  heartbeat_ =
+      host.input(topics::kHeartbeat, {.depth = 4 * kMostComponents},
+                 [this](const auto& message, const auto& info) {
+                   core_.heartbeat(
+                       {message.component_name(), info.writer, message.idl_digest(),
+                        static_cast<Reported>(std::min<std::uint8_t>(message.state(), 3)),
+                        message.reason(), message.host(), handler_time(message.handler_time_max())},
+                       now());
+                 });
   command_ = host.input(topics::kDriveCommand, {.optional = true},
                         [this](const auto& message, const auto& info) {
                           core_.drive_command(info.writer, {message.v(), message.w()}, now());
@@ -127,15 +146,13 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
       });
   request_ = host.input(topics::kSupervisorRequest, {.optional = true},
                         [this](const auto& message, const auto&) { take_request(message); });
-  host.watch_writers(
-      std::string(topics::kDriveCommand.name), [this](const runtime::WriterInfo& writer) {
-        if (writer.alive) {
-          core_.writer_appeared({writer.guid, writer.participant, writer.host}, now());
-        } else {
-          core_.writer_gone(writer.guid);
-        }
-        step();
-      });
+  watch(topics::kDriveCommand.name);
+  watch(topics::kCmdVelManual.name);
+  watch(topics::kCmdVelInteraction.name);
+  watch(topics::kCmdVelNavigation.name);
+  watch(topics::kDriveGrant.name);
+  watch(topics::kMovementEnable.name);
+  watch(topics::kBaseRequest.name);
   grant_ = host.output(topics::kDriveGrant);
   enable_ = host.output(topics::kMovementEnable);
   base_requests_ = host.output(topics::kBaseRequest);
@@ -148,6 +165,17 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
   });
 }
 
+void SupervisorComponent::watch(std::string_view topic) {
+  host_.watch_writers(std::string(topic), [this, topic](const runtime::WriterInfo& writer) {
+    if (writer.alive) {
+      core_.writer_appeared(topic, {writer.guid, writer.participant, writer.host}, now());
+    } else {
+      core_.writer_gone(topic, writer.guid);
+    }
+    step();
+  });
+}
+
 void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message) {
   core_.request(
       {message.id(), message.client(), static_cast<Command>(message.command()), message.goal()},
@@ -156,7 +184,20 @@ void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest&
   publish_status();
 }
 
+/// So that another writer of these topics is a second one, whatever its name.
+void SupervisorComponent::introduce_itself() {
+  const auto introduce = [this](std::string_view topic, const runtime::Guid& writer) {
+    core_.writer_appeared(topic, {writer, host_.name(), host_.host_name()}, now());
+  };
+  introduce(topics::kDriveGrant.name, grant_.guid());
+  introduce(topics::kMovementEnable.name, enable_.guid());
+  introduce(topics::kBaseRequest.name, base_requests_.guid());
+}
+
 void SupervisorComponent::step() {
+  if (!introduced_) introduce_itself();
+  introduced_ = true;
+  core_.alive(grant_.guid(), now());
   const Decision& decision = core_.step(now());
   publish_grant(decision);
   publish_enable(decision);
@@ -174,7 +215,7 @@ void SupervisorComponent::publish_grant(const Decision& decision) {
   message.granted(decision.grant.writer != drive::kNobody);
   message.writer(decision.grant.writer);
   message.valid_for(single(grant_valid_for_));
-  message.reason(std::string(decision.reason));
+  message.reason(message.granted() ? std::string() : std::string(decision.reason));
   grant_.publish(message);
 }
 
@@ -185,6 +226,7 @@ void SupervisorComponent::publish_enable(const Decision& decision) {
   message.manual(decision.enables.manual);
   message.interaction(decision.enables.interaction);
   message.navigation(decision.enables.navigation);
+  message.interaction_control(decision.enables.interaction_control);
   message.speed_factor(single(decision.speed_factor));
   message.epoch(decision.grant.epoch);
   enable_.publish(message);
@@ -243,9 +285,24 @@ void SupervisorComponent::publish_status() {
   m.enable_manual(s.enables.manual);
   m.enable_interaction(s.enables.interaction);
   m.enable_navigation(s.enables.navigation);
+  m.enable_interaction_control(s.enables.interaction_control);
+  m.speed_factor(single(s.speed_factor));
+  m.kinect_angle(single(s.camera_angle));
   m.granted(s.granted);
   m.epoch(s.epoch);
   m.reason(s.reason);
+  m.stopped_by(s.stopped_by);
+  for (const auto& writer : s.writers) {
+    if (m.writers().size() >= kMostWriters) break;
+    auto& entry = m.writers().emplace_back();
+    entry.topic(writer.topic);
+    entry.participant(writer.sighting.participant);
+    entry.host(writer.sighting.host);
+    entry.writer(writer.sighting.writer);
+    entry.since(wire::to_message(runtime::Time(writer.since)));
+    entry.allowed(writer.allowed);
+    entry.granted(writer.granted);
+  }
   for (const auto& component : s.components) {
     auto& entry = m.components().emplace_back();
     entry.name(component.name);
@@ -253,6 +310,9 @@ void SupervisorComponent::publish_status() {
     entry.health(static_cast<std::uint8_t>(component.health));
     entry.age(component.heard_at ? in_seconds(now() - *component.heard_at) : -1.0F);
     entry.reason(component.reason);
+    entry.host(component.host);
+    entry.handler_time_max(in_seconds(component.longest_handler));
+    entry.restarts(component.restarts);
   }
   for (const auto& fault : s.faults) {
     auto& entry = m.faults().emplace_back();
@@ -262,10 +322,13 @@ void SupervisorComponent::publish_status() {
     entry.cause(std::string(text(fault.cause)) + (fault.detail.empty() ? "" : ": " + fault.detail));
     entry.latched(fault.latched());
     entry.active(fault.active);
+    entry.ended(wire::to_message(runtime::Time(fault.ended)));
+    entry.ended_by(fault.ended_by);
   }
   m.last_request(s.last_request.id);
   m.last_request_done(s.last_request.done);
   m.last_request_reason(s.last_request.reason);
+  m.last_request_client(s.last_client);
   status_.publish(m);
 }
 

@@ -17,8 +17,11 @@ class SupervisorComponent final : public runtime::Component {
  private:
   static Parameters read_parameters(runtime::Host& host);
   static Memory remembered(runtime::Host& host);
+  /// Tells the core who appears on the topic and who leaves it.
+  void watch(std::string_view topic);
   Time now() const { return host_.now().time_since_epoch(); }
   void take_request(const usher_msgs::msg::SupervisorRequest& message);
+  void introduce_itself();
   void step();
   void publish_grant(const Decision& decision);
   void publish_enable(const Decision& decision);
@@ -34,6 +37,7 @@ class SupervisorComponent final : public runtime::Component {
   std::uint64_t base_request_id_ = 0;
   std::uint8_t base_request_ = 0;
   int status_share_ = 0;
+  bool introduced_ = false;
 
   runtime::Input<usher_msgs::msg::Heartbeat> heartbeat_;
   runtime::Input<usher_msgs::msg::DriveCommand> command_;

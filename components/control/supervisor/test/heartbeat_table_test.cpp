@@ -123,5 +123,17 @@ TEST(HeartbeatTable, ARestartIsNoConflictButTwoLivesAre) {
   EXPECT_EQ(heartbeats.find("amcl")->health, Health::kOk);
 }
 
+TEST(HeartbeatTable, CountsRestarts) {
+  HeartbeatTable table({{"amcl", Criticality::kStop, milliseconds(100)}}, kDigest);
+  for (std::uint8_t life = 1; life <= 4; ++life) {
+    table.hear({"amcl", {life}, kDigest, Reported::kOk, ""}, milliseconds(2000 * life));
+  }
+  EXPECT_EQ(table.find("amcl")->restarts, 3U);
+  table.hear({"amcl", {4}, kDigest, Reported::kOk, "", "nuc", milliseconds(35)},
+             milliseconds(8020));
+  EXPECT_EQ(table.find("amcl")->host, "nuc");
+  EXPECT_EQ(table.find("amcl")->longest_handler, milliseconds(35));
+}
+
 }  // namespace
 }  // namespace usher::supervisor

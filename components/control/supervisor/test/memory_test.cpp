@@ -93,7 +93,7 @@ TEST(FaultLog, KeepsLatchedFaultsWhenItIsFull) {
   EXPECT_EQ(log.latched()->component, "rogue");
   log.raise(Cause::kEmergencyStop, "operator", "", Time(300));
   EXPECT_TRUE(log.active(Cause::kEmergencyStop)) << "a latched fault finds room";
-  log.clear();
+  log.clear("operator", Time(70));
   EXPECT_EQ(log.latched(), nullptr);
   for (int i = 0; i < 200; ++i) {
     log.raise(Cause::kDisobeyingBase, std::to_string(i), "", Time(i));
@@ -107,7 +107,7 @@ TEST(FaultLog, NotesARepeatedFaultOnceAndAReturnAnew) {
   log.raise(Cause::kComponentLost, "amcl", "silent", Time(1));
   log.raise(Cause::kComponentLost, "amcl", "silent", Time(2));
   EXPECT_EQ(log.faults().size(), 1U);
-  log.settle(Cause::kComponentLost, "amcl");
+  log.settle(Cause::kComponentLost, "amcl", Time(60));
   EXPECT_FALSE(log.active(Cause::kComponentLost));
   log.raise(Cause::kComponentLost, "amcl", "silent", Time(3));
   ASSERT_EQ(log.faults().size(), 2U);
@@ -117,7 +117,7 @@ TEST(FaultLog, NotesARepeatedFaultOnceAndAReturnAnew) {
 TEST(FaultLog, LatchedFaultsDoNotSettle) {
   FaultLog log;
   log.raise(Cause::kForeignWriter, "rogue", "", Time(1));
-  log.settle(Cause::kForeignWriter, "rogue");
+  log.settle(Cause::kForeignWriter, "rogue", Time(60));
   EXPECT_NE(log.latched(), nullptr);
 }
 

@@ -19,6 +19,7 @@ constexpr WriterId kMovement{1};
 constexpr WriterId kMovementHeartbeat{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 9};
 constexpr WriterId kReplacement{2};
 constexpr WriterId kRogue{66};
+constexpr const char* kDrive = "drive/command";
 
 Parameters parameters() {
   Parameters parameters;
@@ -50,7 +51,7 @@ class Robot {
 
   Time now() const { return milliseconds(now_ms); }
   void appear(const WriterId& writer = kMovement, const char* name = "movement_control") {
-    supervisor.writer_appeared({writer, name, "nuc"}, now());
+    supervisor.writer_appeared(kDrive, {writer, name, "nuc"}, now());
   }
   /// Runs for a while at 50 Hz.
   const Decision& run(int ms) {
@@ -145,8 +146,9 @@ TEST(Supervisor, EveryLossMeansWhatTheManifestSays) {
       {"critical component of another IDL", [](Robot& r) { r.other_idl.insert("amcl"); },
        [](Robot& r) { r.other_idl.clear(); }, true, 0.5,
        "amcl: built from another IDL than the supervisor"},
-      {"writer of drive/command gone", [](Robot& r) { r.supervisor.writer_gone(kMovement); },
-       [](Robot& r) { r.appear(); }, true, 1.0, "movement_control: writes no drive/command yet"},
+      {"writer of drive/command gone",
+       [](Robot& r) { r.supervisor.writer_gone(kDrive, kMovement); }, [](Robot& r) { r.appear(); },
+       true, 1.0, "movement_control: writes no drive/command yet"},
       {"degrading component silent", [](Robot& r) { r.silent.insert("people_detector"); },
        [](Robot& r) { r.silent.clear(); }, false, 0.5, ""},
       {"degrading component of another IDL",
@@ -343,10 +345,10 @@ struct Latched {
 TEST(Supervisor, LatchesUntilAnOperatorClears) {
   const Latched cases[] = {
       {"foreign writer", [](Robot& r) { r.appear(kRogue, "teleop_of_bob"); },
-       [](Robot& r) { r.supervisor.writer_gone(kRogue); }, Cause::kForeignWriter, "teleop_of_bob",
-       false, false},
+       [](Robot& r) { r.supervisor.writer_gone(kDrive, kRogue); }, Cause::kForeignWriter,
+       "teleop_of_bob", false, false},
       {"second live claimer", [](Robot& r) { r.appear(kReplacement); },
-       [](Robot& r) { r.supervisor.writer_gone(kReplacement); }, Cause::kForeignWriter,
+       [](Robot& r) { r.supervisor.writer_gone(kDrive, kReplacement); }, Cause::kForeignWriter,
        "movement_control", false, false},
       {"emergency request", [](Robot& r) { r.ask(Command::kEmergencyStop); }, [](Robot&) {},
        Cause::kEmergencyStop, "operator", true, true},
@@ -396,6 +398,87 @@ TEST(Supervisor, ReportsAForeignWriterWithinOneStepAndByName) {
   EXPECT_FALSE(robot.granted());
   EXPECT_NE(robot.reason().find("teleop_of_bob"), std::string::npos);
   EXPECT_NE(robot.reason().find(drive::to_string(kRogue)), std::string::npos);
+}
+
+Parameters watching_everything() {
+  Parameters given = parameters();
+  given.topics.push_back({"cmd_vel/manual", {"manual_control", "operator"}});
+  given.topics.push_back({"drive/grant", {"supervisor"}});
+  return given;
+}
+
+TEST(Supervisor, StopsForAForeignWriterOnEveryTopicThatMovesTheRobot) {
+  for (const char* topic : {"drive/command", "cmd_vel/manual", "drive/grant"}) {
+    SCOPED_TRACE(topic);
+    Robot robot(watching_everything());
+    robot.appear();
+    robot.run(400);
+    ASSERT_TRUE(robot.granted());
+    robot.supervisor.writer_appeared(topic, {kRogue, "teleop_of_bob", "laptop"}, robot.now());
+    robot.supervisor.step(robot.now());
+    EXPECT_EQ(robot.state(), State::kFault);
+    EXPECT_FALSE(robot.granted());
+    EXPECT_NE(robot.reason().find(topic), std::string::npos) << robot.reason();
+    EXPECT_NE(robot.reason().find("teleop_of_bob"), std::string::npos);
+    const Answer refused = robot.ask(Command::kClear);
+    EXPECT_EQ(refused.reason, std::string("'teleop_of_bob' still writes ") + topic);
+    robot.supervisor.writer_gone(topic, kRogue);
+    EXPECT_TRUE(robot.ask(Command::kClear).done);
+    robot.run(300);
+    EXPECT_TRUE(robot.granted());
+  }
+}
+
+TEST(Supervisor, SaysWhoWritesSinceWhenAndWhetherItMay) {
+  Robot robot(watching_everything());
+  robot.appear();
+  robot.run(400);
+  robot.supervisor.writer_appeared("cmd_vel/manual", {kReplacement, "operator", "nuc"},
+                                   robot.now());
+  robot.supervisor.writer_appeared("cmd_vel/manual", {kRogue, "teleop_of_bob", "laptop"},
+                                   robot.now());
+  robot.supervisor.writer_appeared("scan", {kRogue, "teleop_of_bob", "laptop"}, robot.now());
+  const std::vector<CommandWriter> before = robot.supervisor.status().writers;
+  ASSERT_EQ(before.size(), 3U);
+  EXPECT_EQ(before[0].topic, "drive/command");
+  EXPECT_TRUE(before[0].allowed && before[0].granted);
+  EXPECT_EQ(before[1].sighting.participant, "operator");
+  EXPECT_TRUE(before[1].allowed);
+  EXPECT_FALSE(before[1].granted);
+  EXPECT_EQ(before[2].sighting.host, "laptop");
+  EXPECT_EQ(before[2].since, milliseconds(400));
+  EXPECT_FALSE(before[2].allowed);
+  robot.run(20);
+  EXPECT_FALSE(robot.supervisor.status().writers[0].granted) << "the right was withdrawn";
+}
+
+TEST(Supervisor, OnlyAnOperatorClears) {
+  Robot robot = ready();
+  robot.ask(Command::kEmergencyStop);
+  const Answer answer = robot.supervisor.request({1, "tablet", Command::kClear, ""}, robot.now());
+  EXPECT_FALSE(answer.done);
+  EXPECT_EQ(answer.reason, "only an operator may clear faults");
+  EXPECT_EQ(robot.supervisor.status().last_client, "tablet");
+  robot.run(100);
+  EXPECT_EQ(robot.state(), State::kFault);
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  const Fault fault = robot.supervisor.status().faults.at(0);
+  EXPECT_FALSE(fault.active);
+  EXPECT_EQ(fault.ended, robot.now());
+  EXPECT_EQ(fault.ended_by, "operator");
+}
+
+TEST(Supervisor, SaysWhoStoppedTheRobot) {
+  Robot robot = ready();
+  robot.supervisor.request({1, "tablet", Command::kStop, ""}, robot.now());
+  robot.ask(Command::kStop);
+  robot.run(20);
+  EXPECT_EQ(robot.reason(), "stopped by tablet, operator");
+  EXPECT_EQ(robot.supervisor.status().stopped_by, (std::vector<std::string>{"tablet", "operator"}));
+  EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+  robot.ask(Command::kMovementOn);
+  robot.run(20);
+  EXPECT_EQ(robot.reason(), "");
 }
 
 TEST(Supervisor, ASecondLiveClaimerIsFoundWithin100Milliseconds) {
@@ -476,7 +559,7 @@ TEST(Supervisor, ReplacesAWriterOnlyAfterTheOldOneIsSeenDead) {
   robot.run(800);
   EXPECT_FALSE(robot.granted());
   EXPECT_NE(robot.state(), State::kFault);
-  robot.supervisor.writer_gone(kMovement);
+  robot.supervisor.writer_gone(kDrive, kMovement);
   robot.silent.clear();
   robot.run(400);
   EXPECT_EQ(robot.supervisor.decision().grant.writer, kReplacement);
