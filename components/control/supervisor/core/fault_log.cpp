@@ -16,6 +16,8 @@ std::string_view text(Cause cause) {
       return "the base disobeys";
     case Cause::kEmergencyStop:
       return "emergency stop";
+    case Cause::kBaseUnheard:
+      return "base unheard";
   }
   return "unknown cause";
 }

@@ -17,12 +17,15 @@ enum class Cause : std::uint8_t {
   kForeignWriter = 2,   ///< latched
   kDisobeyingBase = 3,  ///< latched
   kEmergencyStop = 4,   ///< latched
+  kBaseUnheard = 5,     ///< ends by itself when the base reports again
 };
 
 std::string_view text(Cause cause);
 
 /// Whether only an operator ends it.
-constexpr bool latches(Cause cause) { return cause >= Cause::kForeignWriter; }
+constexpr bool latches(Cause cause) {
+  return cause >= Cause::kForeignWriter && cause <= Cause::kEmergencyStop;
+}
 
 struct Fault {
   std::uint64_t id = 0;  ///< order of appearance, from 1

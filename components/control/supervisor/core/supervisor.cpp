@@ -81,11 +81,16 @@ void Supervisor::base(const BaseReport& report, Time now) {
     ++rejected_reports_;
     return;
   }
+  // What it did while nothing was heard, or while its motors were off, says nothing of obedience.
+  if (!base_heard(now) || !base_->ready || !report.ready) watch_.reset(report.measured);
   base_ = report;
+  base_at_ = now - report.age;
   if (!report.emergency) reset_until_.reset();
-  const bool driven = decision_.grant.writer != drive::kNobody && commanded_ &&
-                      now - commanded_->at < parameters_.command_expiry;
-  watch_.observe(driven ? commanded_->twist : geometry::Twist2{}, report.measured, now);
+  if (report.ready) {
+    const bool driven = decision_.grant.writer != drive::kNobody && commanded_ &&
+                        now - commanded_->at < parameters_.command_expiry;
+    watch_.observe(driven ? commanded_->twist : geometry::Twist2{}, report.measured, now);
+  }
   // Another supervisor's epochs, or ours of before the memory was lost: continue above them.
   if (report.epoch > epoch_ && report.epoch < kHighestEpoch) {
     epoch_ = report.epoch;
@@ -229,13 +234,18 @@ void Supervisor::note_base(Time now) {
   } else {
     faults_.settle(Cause::kBaseFallsShort, parameters_.names.base, now);
   }
+  if (base_heard(now)) {
+    faults_.settle(Cause::kBaseUnheard, parameters_.names.base, now);
+  } else if (base_) {
+    faults_.raise(Cause::kBaseUnheard, parameters_.names.base, "base/status is silent", now);
+  }
   if (base_ && base_->emergency && !resetting(now)) {
     faults_.raise(Cause::kEmergencyStop, parameters_.names.base,
                   "the base's motors are off after an emergency stop", now);
   }
 }
 
-void Supervisor::explain() {
+void Supervisor::explain(Time now) {
   if (const Fault* latched = faults_.latched()) {
     reason_.assign(text(latched->cause)).append(": ").append(latched->component);
     reason_.append(": ").append(latched->detail);
@@ -243,7 +253,10 @@ void Supervisor::explain() {
     reason_.assign(missing->name).append(": ").append(missing->reason);
   } else if (!holder()) {
     reason_.assign(parameters_.names.movement).append(": writes no drive/command yet");
-  } else if (base_ && base_->emergency) {
+  } else if (!base_heard(now)) {
+    reason_.assign(parameters_.names.base)
+        .append(base_ ? ": base/status is silent" : ": no base/status yet");
+  } else if (base_->emergency) {
     reason_.assign("the base leaves its emergency stop");
   } else if (!stopped_by_.empty()) {
     reason_.assign("stopped by ").append(stopped_by_.front());
@@ -265,7 +278,7 @@ void Supervisor::grant(bool able) {
 const Decision& Supervisor::step(Time now) {
   table_.judge(now);
   note_faults(now);
-  const bool able = !table_.missing_critical() && holder() && !(base_ && base_->emergency);
+  const bool able = !table_.missing_critical() && holder() && base_heard(now) && !base_->emergency;
   const bool fault = faults_.latched() != nullptr;
   decision_.state = behavior_.step(able, fault, now);
   grant(able);
@@ -281,7 +294,7 @@ const Decision& Supervisor::step(Time now) {
       decision_.state == State::kInteraction        ? parameters_.camera_angle_interaction
       : decision_.state == State::kNavigationActive ? parameters_.camera_angle_navigation
                                                     : parameters_.camera_angle_default;
-  explain();
+  explain(now);
   decision_.reason = reason_;
   if (!behavior_.navigation_wanted()) goal_.clear();
   return decision_;

@@ -49,6 +49,7 @@ struct Parameters {
   std::vector<std::string> operators{"operator", "manual_control"};
   Time claim_slack = std::chrono::milliseconds(50);      ///< see WriterRight
   Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
+  Time base_age = std::chrono::milliseconds(150);        ///< {> 0} nobody drives an older report
   Time reset_patience = std::chrono::seconds(5);         ///< for a base that leaves its emergency
   bool emergency_stop_when_disobeying = true;
   drive::ResponseWatch::Parameters response;
@@ -99,8 +100,10 @@ enum class NavigationState : std::uint8_t {
 
 struct BaseReport {
   bool emergency = false;     ///< its motors are off after an emergency stop
+  bool ready = true;          ///< its motors are on and it takes commands
   geometry::Twist2 measured;  ///< what it does
   std::uint64_t epoch = 0;    ///< the highest that it ever heard
+  Time age{};                 ///< {>= 0} of the measurement when it arrived
 };
 
 /// What is to be published, at 50 Hz and after each event.
@@ -161,8 +164,8 @@ struct SupervisorStatus {
 /// Decides who may drive and what is enabled.
 ///
 /// The right to drive is granted while every critical component is able, exactly one writer of
-/// drive/command is there and it is the right one, the base is in no emergency, and no latched
-/// fault is active. Everything else is withheld at once; each new grant has a higher epoch.
+/// drive/command is there and it is the right one, the base reports and is in no emergency, and no
+/// latched fault is active. Everything else is withheld at once; each new grant has a higher epoch.
 ///
 /// Latched, until an operator clears them: a foreign writer on a topic that moves the robot, a
 /// disobeying base, an emergency stop.
@@ -224,9 +227,10 @@ class Supervisor {
   std::string carry_out(const Request& request, Time now);
   void note_faults(Time now);
   void note_base(Time now);
+  bool base_heard(Time now) const { return base_ && now - base_at_ < parameters_.base_age; }
   bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
   void grant(bool able);
-  void explain();
+  void explain(Time now);
 
   Parameters parameters_;
   HeartbeatTable table_;
@@ -238,6 +242,7 @@ class Supervisor {
   std::uint64_t epoch_;
   std::vector<std::string> stopped_by_;  ///< clients that hold a stop
   std::optional<BaseReport> base_;
+  Time base_at_{};  ///< when that was measured
   std::optional<Commanded> commanded_;
   std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
 

@@ -38,6 +38,7 @@ Criticality criticality_from(const std::string& word) {
 Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   auto& parameters = host.parameters();
   Parameters p;
+  p.base_age = kBaseAge;
   p.idl_digest = USHER_IDL_DIGEST;
   const auto components = parameters.records(
       "manifest.components",
@@ -131,14 +132,17 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                         [this](const auto& message, const auto& info) {
                           core_.drive_command(info.writer, {message.v(), message.w()}, now());
                         });
-  base_ = host.input(
-      topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "withdraws the right to drive"},
-      [this](const auto& message, const auto&) {
-        core_.base({message.state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY,
-                    {message.v(), message.w()},
-                    message.epoch()},
-                   now());
-      });
+  base_ = host.input(topics::kBaseStatus,
+                     {.max_age = kBaseAge, .on_loss = "withdraws the right to drive"},
+                     [this](const auto& message, const auto& info) {
+                       using namespace usher_msgs::msg::BaseStatus_Constants;
+                       core_.base({message.state() == STATE_EMERGENCY,
+                                   message.state() == STATE_BALANCING,
+                                   {message.v(), message.w()},
+                                   message.epoch(),
+                                   host_.now() - info.effective},
+                                  now());
+                     });
   navigation_ = host.input(
       topics::kNavigateStatus, {.optional = true}, [this](const auto& message, const auto&) {
         core_.navigation(message.id(),

@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 
 constexpr std::uint64_t kDigest = 5;
 constexpr int kTimeout = 100;
+constexpr int kBaseAge = 150;
 const char* const kCritical[] = {"movement_control", "segway_rmp", "amcl"};
 
 Parameters parameters() {
@@ -46,6 +47,8 @@ struct World {
   std::uint8_t next_writer = 1;
   bool latched = false;  ///< a foreign writer or an emergency since the last clear
   bool base_emergency = false;
+  bool base_reports = true;
+  int base_heard_ms = -kBaseAge;
   std::uint64_t sequence = 0;
   std::uint64_t request_id = 0;
 
@@ -61,8 +64,18 @@ struct World {
     well_until[name] = good ? now_ms + kTimeout : -1;
   }
 
+  void report() {
+    if (!base_reports) return;
+    BaseReport report;
+    report.emergency = base_emergency;
+    report.ready = !base_emergency;
+    report.epoch = base.highest_epoch();
+    supervisor.base(report, now());
+    base_heard_ms = now_ms;
+  }
+
   void happen() {
-    switch (random.below(12)) {
+    switch (random.below(13)) {
       case 0:
         alive[kCritical[random.below(3)]] = false;
         break;
@@ -108,7 +121,10 @@ struct World {
       case 9:
         supervisor.navigation(random.below(4), static_cast<NavigationState>(random.below(7)));
         break;
-      case 10:  // a visitor
+      case 10:
+        base_reports = !chance(4);
+        break;
+      case 11:  // a visitor
         for (const Command command : {Command::kNavigationStart, Command::kNavigationGo}) {
           supervisor.request({++request_id, "guide", command, "am218"}, now());
         }
@@ -135,10 +151,7 @@ TEST(SupervisorLaws, NoGrantWhileSomethingCriticalIsDeadOrLatched) {
       for (const char* name : kCritical) {
         if (world.alive[name]) world.hear(name);
       }
-      BaseReport report;
-      report.emergency = world.base_emergency;
-      report.epoch = world.base.highest_epoch();
-      world.supervisor.base(report, world.now());
+      world.report();
       const Decision& decision = world.supervisor.step(world.now());
       const bool granted = decision.grant.writer != drive::kNobody;
 
@@ -148,7 +161,8 @@ TEST(SupervisorLaws, NoGrantWhileSomethingCriticalIsDeadOrLatched) {
           ASSERT_GT(world.well_until[name], world.now_ms) << name << " is dead";
         }
         ASSERT_FALSE(world.latched);
-        ASSERT_FALSE(world.base_emergency);
+        ASSERT_LT(world.now_ms - world.base_heard_ms, kBaseAge);
+        ASSERT_FALSE(world.base_reports && world.base_emergency);
         ASSERT_EQ(world.writers.count(decision.grant.writer), 1U) << "the holder is alive";
         ASSERT_EQ(world.writers[decision.grant.writer], "movement_control");
         for (const auto& [writer, name] : world.writers) ASSERT_EQ(name, "movement_control");
@@ -202,6 +216,7 @@ TEST(SupervisorLaws, RecoversFromEveryHistory) {
       for (const char* name : kCritical) {
         if (world.alive[name]) world.hear(name);
       }
+      world.report();
       world.supervisor.step(world.now());
     }
     const std::map<WriterId, std::string> writers = world.writers;

@@ -2,109 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "control/supervisor/test/robot.hpp"
+
 namespace usher::supervisor {
 namespace {
-
-using geometry::Twist2;
-using std::chrono::milliseconds;
-
-constexpr std::uint64_t kDigest = 5;
-constexpr WriterId kMovement{1};
-constexpr WriterId kMovementHeartbeat{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 9};
-constexpr WriterId kReplacement{2};
-constexpr WriterId kRogue{66};
-constexpr const char* kDrive = "drive/command";
-
-Parameters parameters() {
-  Parameters parameters;
-  parameters.components = {
-      {"movement_control", Criticality::kStop, milliseconds(100)},
-      {"segway_rmp", Criticality::kStop, milliseconds(100)},
-      {"amcl", Criticality::kStop, milliseconds(100)},
-      {"people_detector", Criticality::kDegrade, milliseconds(300)},
-      {"interaction_control", Criticality::kNotify, milliseconds(300)},
-      {"tablet", Criticality::kNotify, milliseconds(300)},
-  };
-  parameters.idl_digest = kDigest;
-  return parameters;
-}
-
-/// A supervisor whose robot is well unless a test says otherwise.
-class Robot {
- public:
-  explicit Robot(const Parameters& given = parameters(), Memory memory = {})
-      : supervisor(given, std::move(memory)) {}
-
-  Supervisor supervisor;
-  std::set<std::string> silent;
-  std::set<std::string> starting;
-  std::set<std::string> other_idl;
-  BaseReport base;
-  Twist2 command;
-  int now_ms = 0;
-
-  Time now() const { return milliseconds(now_ms); }
-  void appear(const WriterId& writer = kMovement, const char* name = "movement_control") {
-    supervisor.writer_appeared(kDrive, {writer, name, "nuc"}, now());
-  }
-  /// Runs for a while at 50 Hz.
-  const Decision& run(int ms) {
-    for (const int end = now_ms + ms; now_ms < end;) {
-      now_ms += 20;
-      for (const WatchedComponent& component : parameters().components) {
-        if (silent.contains(component.name)) continue;
-        const WriterId writer =
-            component.name == "movement_control" ? kMovementHeartbeat : WriterId{99};
-        const Reported state =
-            starting.contains(component.name) ? Reported::kStarting : Reported::kOk;
-        supervisor.heartbeat({component.name, writer,
-                              kDigest + (other_idl.contains(component.name) ? 1U : 0U), state, ""},
-                             now());
-      }
-      if (!silent.contains("movement_control")) {
-        supervisor.drive_command(kMovement, command, now());
-      }
-      if (!silent.contains("segway_rmp")) supervisor.base(base, now());
-      supervisor.step(now());
-    }
-    return supervisor.decision();
-  }
-  Answer ask(Command what, const char* goal = "") {
-    const Answer answer = supervisor.request({++request_id, "operator", what, goal}, now());
-    supervisor.step(now());
-    return answer;
-  }
-  bool granted() const { return supervisor.decision().grant.writer != drive::kNobody; }
-  State state() const { return supervisor.decision().state; }
-  std::string reason() const { return std::string(supervisor.decision().reason); }
-
-  std::uint64_t request_id = 0;
-};
-
-Robot ready() {
-  Robot robot;
-  robot.appear();
-  robot.run(400);
-  return robot;
-}
-
-Robot guiding() {
-  Robot robot = ready();
-  EXPECT_TRUE(robot.ask(Command::kNavigationStart, "am218").done);
-  robot.run(300);
-  EXPECT_EQ(robot.state(), State::kNavigationStart);
-  EXPECT_TRUE(robot.ask(Command::kNavigationGo).done);
-  robot.supervisor.navigation(41, NavigationState::kActive);
-  robot.run(100);
-  EXPECT_EQ(robot.state(), State::kNavigationActive);
-  return robot;
-}
 
 TEST(Supervisor, GrantsWhenAllIsThere) {
   const Robot robot = ready();
@@ -149,6 +53,10 @@ TEST(Supervisor, EveryLossMeansWhatTheManifestSays) {
       {"writer of drive/command gone",
        [](Robot& r) { r.supervisor.writer_gone(kDrive, kMovement); }, [](Robot& r) { r.appear(); },
        true, 1.0, "movement_control: writes no drive/command yet"},
+      {"base driver lives, its status does not", [](Robot& r) { r.base_unheard = true; },
+       [](Robot& r) { r.base_unheard = false; }, true, 1.0, "segway_rmp: base/status is silent"},
+      {"status older than its arrival", [](Robot& r) { r.base.age = milliseconds(150); },
+       [](Robot& r) { r.base.age = {}; }, true, 1.0, "segway_rmp: base/status is silent"},
       {"degrading component silent", [](Robot& r) { r.silent.insert("people_detector"); },
        [](Robot& r) { r.silent.clear(); }, false, 0.5, ""},
       {"degrading component of another IDL",
@@ -488,69 +396,6 @@ TEST(Supervisor, ASecondLiveClaimerIsFoundWithin100Milliseconds) {
   EXPECT_EQ(robot.state(), State::kFault);
 }
 
-TEST(Supervisor, ClearsABaseOutOfItsEmergency) {
-  Robot robot = ready();
-  robot.base.emergency = true;
-  robot.run(100);
-  EXPECT_TRUE(robot.ask(Command::kClear).done);
-  EXPECT_TRUE(robot.supervisor.decision().reset_base);
-  EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
-  EXPECT_FALSE(robot.granted()) << "not before the base stands again";
-  robot.run(1000);
-  EXPECT_TRUE(robot.supervisor.decision().reset_base);
-  robot.base.emergency = false;
-  robot.run(300);
-  EXPECT_FALSE(robot.supervisor.decision().reset_base);
-  EXPECT_TRUE(robot.granted());
-}
-
-TEST(Supervisor, LatchesAnewWhenTheBaseStaysInItsEmergency) {
-  Robot robot = ready();
-  robot.base.emergency = true;
-  robot.run(100);
-  robot.ask(Command::kClear);
-  robot.run(5100);
-  EXPECT_EQ(robot.state(), State::kFault);
-}
-
-TEST(Supervisor, TrustsABaseThatTakesTwoSecondsToStop) {
-  Robot robot = guiding();
-  robot.command = {1.4, 0.0};
-  robot.base.measured = {1.4, 0.0};
-  robot.run(100);
-  robot.command = {};
-  for (int ms = 0; ms < 6000; ms += 20) {
-    const double t = ms * 0.001;
-    const double slow = 1.4 - 0.2 * t;
-    robot.base.measured.v = t < 1.5 ? slow : std::max(1.1 - 2.8 * (t - 1.5), -0.3 * (t < 3.0));
-    robot.run(20);
-    ASSERT_EQ(robot.state(), State::kNavigationActive) << "after " << t << " s";
-  }
-}
-
-TEST(Supervisor, ABaseThatStandsIsNoFault) {
-  Robot robot = guiding();
-  robot.command = {1.0, 0.0};
-  robot.run(10000);
-  EXPECT_EQ(robot.state(), State::kNavigationActive);
-  const SupervisorStatus status = robot.supervisor.status();
-  ASSERT_EQ(status.faults.size(), 1U);
-  EXPECT_EQ(status.faults[0].cause, Cause::kBaseFallsShort);
-  EXPECT_FALSE(status.faults[0].latched());
-}
-
-TEST(Supervisor, WithoutAGrantTheBaseShallStand) {
-  Robot robot = ready();
-  robot.command = {1.0, 0.0};
-  robot.base.measured = {1.0, 0.0};
-  robot.run(2000);
-  ASSERT_EQ(robot.state(), State::kInteraction) << "it drives as commanded";
-  robot.silent.insert("amcl");
-  robot.run(6000);
-  EXPECT_EQ(robot.state(), State::kFault) << "it drives without the right";
-  EXPECT_TRUE(robot.supervisor.decision().emergency_stop);
-}
-
 TEST(Supervisor, ReplacesAWriterOnlyAfterTheOldOneIsSeenDead) {
   Robot robot = guiding();
   robot.silent.insert("movement_control");  // killed
@@ -586,27 +431,6 @@ TEST(Supervisor, EpochsGrowOverARestart) {
   EXPECT_GT(second.supervisor.decision().grant.epoch, memory.epoch + 1);
   EXPECT_EQ(second.state(), State::kInteraction);
   EXPECT_FALSE(second.supervisor.decision().enables.movement) << "nor does it end a stop";
-}
-
-TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
-  Robot robot;
-  robot.base.epoch = 5000;
-  robot.appear();
-  robot.run(400);
-  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
-  robot.base.epoch = 5001;
-  robot.run(400);
-  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
-  robot.base.epoch = std::numeric_limits<std::uint64_t>::max();  // nonsense is not believed
-  robot.run(400);
-  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
-}
-
-TEST(Supervisor, RejectsAnOdometryThatIsNotANumber) {
-  Robot robot = ready();
-  robot.base.measured.v = std::numeric_limits<double>::quiet_NaN();
-  robot.run(100);
-  EXPECT_EQ(robot.supervisor.rejected_reports(), 5U);
 }
 
 TEST(Supervisor, CountsHeartbeatsThatTheManifestDoesNotKnow) {

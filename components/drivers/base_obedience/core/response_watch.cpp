@@ -22,7 +22,11 @@ ResponseWatch::ResponseWatch(const Parameters& parameters)
   assert(slice_ > Time::zero() && parameters.overshoot >= 0.0);
 }
 
-void ResponseWatch::reset() { *this = ResponseWatch(parameters_); }
+void ResponseWatch::reset(const geometry::Twist2& found) {
+  *this = ResponseWatch(parameters_);
+  linear_.history.fill({found.v, found.v});
+  angular_.history.fill({found.w, found.w});
+}
 
 void ResponseWatch::advance(Time now) {
   const std::int64_t bucket = now / slice_;

@@ -51,8 +51,9 @@ class ResponseWatch {
   const AxisError& linear() const { return linear_.error; }
   const AxisError& angular() const { return angular_.error; }
 
-  /// Forgets commands and errors, as after a restart of the base.
-  void reset();
+  /// Forgets commands and errors, as after a restart of the base. A base that is found moving has
+  /// `response` to get to its command.
+  void reset(const geometry::Twist2& found = {});
 
  private:
   static constexpr std::size_t kBuckets = 26;  ///< the window and the bucket being filled

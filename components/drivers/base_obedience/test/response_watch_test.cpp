@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -151,6 +152,20 @@ TEST(ResponseWatch, ForgetsOnReset) {
   ASSERT_EQ(watch.verdict(), Verdict::kDisobeys);
   watch.reset();
   EXPECT_EQ(watch.verdict(), Verdict::kObeys);
+}
+
+TEST(ResponseWatch, ABaseFoundMovingHasTheTimeOfAResponse) {
+  for (const bool stops : {true, false}) {
+    ResponseWatch watch;
+    watch.reset({1.2, 0.9});
+    Verdict verdict = Verdict::kObeys;
+    for (int i = 0; i <= 400; ++i) {
+      const double t = i * 0.01;
+      const double rest = stops ? std::max(0.0, 1.0 - t / 2.4) : 1.0;
+      verdict = std::max(verdict, watch.observe({}, {1.2 * rest, 0.9 * rest}, at(t)));
+    }
+    EXPECT_EQ(verdict, stops ? Verdict::kObeys : Verdict::kDisobeys);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,158 @@
+// What the supervisor makes of the base's reports.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "control/supervisor/test/robot.hpp"
+
+namespace usher::supervisor {
+namespace {
+
+TEST(Supervisor, NobodyDrivesABaseThatWasNeverHeard) {
+  Robot robot;
+  robot.base_unheard = true;
+  robot.appear();
+  robot.run(1000);
+  EXPECT_EQ(robot.state(), State::kInitialise);
+  EXPECT_FALSE(robot.granted());
+  EXPECT_EQ(robot.reason(), "segway_rmp: no base/status yet");
+  robot.base_unheard = false;
+  robot.run(400);
+  EXPECT_TRUE(robot.granted());
+}
+
+TEST(Supervisor, ClearsABaseOutOfItsEmergency) {
+  Robot robot = ready();
+  robot.base.emergency = true;
+  robot.run(100);
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+  EXPECT_FALSE(robot.granted()) << "not before the base stands again";
+  robot.run(1000);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  robot.base.emergency = false;
+  robot.run(300);
+  EXPECT_FALSE(robot.supervisor.decision().reset_base);
+  EXPECT_TRUE(robot.granted());
+}
+
+TEST(Supervisor, LatchesAnewWhenTheBaseStaysInItsEmergency) {
+  Robot robot = ready();
+  robot.base.emergency = true;
+  robot.run(100);
+  robot.ask(Command::kClear);
+  robot.run(5100);
+  EXPECT_EQ(robot.state(), State::kFault);
+}
+
+TEST(Supervisor, TrustsABaseThatTakesTwoSecondsToStop) {
+  Robot robot = guiding();
+  robot.command = {1.4, 0.0};
+  robot.base.measured = {1.4, 0.0};
+  robot.run(100);
+  robot.command = {};
+  for (int ms = 0; ms < 6000; ms += 20) {
+    const double t = ms * 0.001;
+    const double slow = 1.4 - 0.2 * t;
+    robot.base.measured.v = t < 1.5 ? slow : std::max(1.1 - 2.8 * (t - 1.5), -0.3 * (t < 3.0));
+    robot.run(20);
+    ASSERT_EQ(robot.state(), State::kNavigationActive) << "after " << t << " s";
+  }
+}
+
+TEST(Supervisor, ABaseThatStandsIsNoFault) {
+  Robot robot = guiding();
+  robot.command = {1.0, 0.0};
+  robot.run(10000);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  const SupervisorStatus status = robot.supervisor.status();
+  ASSERT_EQ(status.faults.size(), 1U);
+  EXPECT_EQ(status.faults[0].cause, Cause::kBaseFallsShort);
+  EXPECT_FALSE(status.faults[0].latched());
+}
+
+TEST(Supervisor, ALostSerialLineIsNoDisobedience) {
+  Robot robot = guiding();
+  robot.command = {1.0, 0.0};
+  robot.base.measured = {1.0, 0.0};
+  robot.run(1000);
+  // The line is lost; the driver reports no speed, or the last one, for minutes.
+  for (const Twist2& reported : {Twist2{}, Twist2{1.0, 0.0}, Twist2{-2.0, 3.0}}) {
+    robot.base.ready = false;
+    robot.base.measured = reported;
+    robot.command = {};
+    robot.run(60000);
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+    // It is back while the base still rolls out, two seconds long.
+    robot.base.ready = true;
+    for (int ms = 0; ms < 2000; ms += 20) {
+      robot.base.measured = {1.2 - 0.0006 * ms, 0.0};
+      robot.run(20);
+    }
+    robot.base.measured = {};
+    robot.run(3000);
+    ASSERT_EQ(robot.state(), State::kNavigationActive) << robot.reason();
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+  }
+  // But it must come to what it is told.
+  robot.base.ready = false;
+  robot.run(100);
+  robot.base.ready = true;
+  robot.base.measured = {1.0, 0.0};
+  robot.run(4000);
+  EXPECT_EQ(robot.state(), State::kFault);
+}
+
+TEST(Supervisor, AGapInTheBasesReportsProvesNoDisobedience) {
+  Robot robot = guiding();
+  robot.base_unheard = true;
+  robot.run(5000);
+  robot.base_unheard = false;
+  for (int ms = 0; ms < 2000; ms += 20) {
+    robot.base.measured = {1.2 - 0.0006 * ms, 0.0};
+    robot.run(20);
+    ASSERT_NE(robot.state(), State::kFault) << ms;
+  }
+  const SupervisorStatus status = robot.supervisor.status();
+  ASSERT_EQ(status.faults.size(), 1U);
+  EXPECT_EQ(status.faults[0].cause, Cause::kBaseUnheard);
+  EXPECT_FALSE(status.faults[0].active);
+}
+
+TEST(Supervisor, WithoutAGrantTheBaseShallStand) {
+  Robot robot = ready();
+  robot.command = {1.0, 0.0};
+  robot.base.measured = {1.0, 0.0};
+  robot.run(2000);
+  ASSERT_EQ(robot.state(), State::kInteraction) << "it drives as commanded";
+  robot.silent.insert("amcl");
+  robot.run(6000);
+  EXPECT_EQ(robot.state(), State::kFault) << "it drives without the right";
+  EXPECT_TRUE(robot.supervisor.decision().emergency_stop);
+}
+
+TEST(Supervisor, RejectsAnOdometryThatIsNotANumber) {
+  Robot robot = ready();
+  robot.base.measured.v = std::numeric_limits<double>::quiet_NaN();
+  robot.run(100);
+  EXPECT_EQ(robot.supervisor.rejected_reports(), 5U);
+}
+
+TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
+  Robot robot;
+  robot.base.epoch = 5000;
+  robot.appear();
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+  robot.base.epoch = 5001;
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+  robot.base.epoch = std::numeric_limits<std::uint64_t>::max();  // nonsense is not believed
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
+}
+
+}  // namespace
+}  // namespace usher::supervisor
