@@ -32,8 +32,9 @@ struct Place {
 
 /// A start and `goals` goals, chosen by the seed, all in the largest part of the known free space
 /// that hangs together for the robot. Named places when there are such, those with names of their
-/// own before numbered way points, where the robot can turn on the spot; otherwise cells 0.85 m from
-/// obstacles. Fewer when there are not so many places; the error says that there is no room at all.
+/// own before numbered way points, where the robot can turn on the spot; otherwise cells 0.85 m
+/// from obstacles. Fewer when there are not so many places; the error says that there is no room at
+/// all.
 Result<std::vector<Place>> choose_places(const BuildingMap& building,
                                          const grid::OccupancyGrid& map, std::size_t goals,
                                          std::uint64_t seed);

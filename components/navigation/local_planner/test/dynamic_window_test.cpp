@@ -263,9 +263,9 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   };
   const Row rows[] = {
       {{}, 0.0, 1.0},
-      {{.back_right = true}, 1.0, 0.0},   // the tail would swing into it
-      {{.front_left = true}, -1.0, 0.0},  // the nose would
-      {{.front_right = true}, 0.0, 1.0},  // turns away from it
+      {{.back_right = true}, 1.0, 0.0},                      // the tail would swing into it
+      {{.front_left = true}, -1.0, 0.0},                     // the nose would
+      {{.front_right = true}, 0.0, 1.0},                     // turns away from it
       {{.front_left = true, .back_right = true}, 0.0, 1.0},  // no way out: the reflex holds it
   };
   for (const Row& row : rows) {
