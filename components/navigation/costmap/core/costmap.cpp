@@ -33,7 +33,7 @@ grid::GridGeometry window_geometry(const Raster& raster) {
           raster.anchor_y + raster.first_y * raster.resolution};
 }
 
-Status check(const CostmapConfig& config, const Footprint& footprint) {
+Status check(const CostmapConfig& config, const geometry::Footprint& footprint) {
   constexpr int kMaxSide = 1 << 20;
   constexpr std::size_t kMaxCells = std::size_t{1} << 28;
   const grid::GridGeometry& window = config.window;
@@ -84,13 +84,13 @@ void fill_unseen(const std::uint8_t* __restrict states, int count,
 }  // namespace
 
 Result<Costmap> Costmap::make(CostmapConfig config) {
-  Result<Footprint> footprint = Footprint::make(config.footprint);
+  Result<geometry::Footprint> footprint = geometry::Footprint::make(config.footprint);
   if (!footprint.ok()) return Error{footprint.error()};
   if (Status status = check(config, *footprint); !status.ok()) return Error{status.error()};
   return Costmap(std::move(config), std::move(footprint).value());
 }
 
-Costmap::Costmap(CostmapConfig config, Footprint footprint)
+Costmap::Costmap(CostmapConfig config, geometry::Footprint footprint)
     : config_(std::move(config)),
       footprint_(std::move(footprint)),
       raster_(make_raster(config_)),
@@ -210,7 +210,7 @@ const grid::Grid<std::uint8_t>& Costmap::update(double now) {
 
 void Costmap::clear_footprint() {
   if (!base_) return;
-  const PolygonRaster footprint(footprint_, *base_, window_geometry(raster_));
+  const PolygonRaster footprint(footprint_.corners(), *base_, window_geometry(raster_));
   footprint.for_each_span([&](const CellSpan& span) {
     for (ObstacleLayer& layer : layers_) {
       if (!layer.config().footprint_clearing) continue;

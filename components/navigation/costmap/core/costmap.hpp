@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "foundation/cpu/cpu.hpp"
+#include "foundation/geometry/footprint.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/grid/grid.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/costmap/core/cells.hpp"
 #include "navigation/costmap/core/costs.hpp"
-#include "navigation/costmap/core/footprint.hpp"
 #include "navigation/costmap/core/inflation.hpp"
 #include "navigation/costmap/core/obstacle_layer.hpp"
+#include "navigation/costmap/core/polygon_raster.hpp"
 #include "navigation/costmap/core/static_layer.hpp"
 
 namespace usher::costmap {
@@ -26,7 +27,8 @@ struct CostmapConfig {
   /// cells.
   grid::GridGeometry window;
   bool rolling = false;
-  std::vector<geometry::Point2> footprint;  ///< corners in the base frame [m], see Footprint::make
+  std::vector<geometry::Point2>
+      footprint;                   ///< corners in the base frame [m], see geometry::Footprint
   double inflation_radius = 0.55;  ///< [m] from the footprint's inscribed radius to 120 cells
   double cost_scaling = 10.0;      ///< [1/m] see CostDecay
   Inflation::Unseen unseen =
@@ -90,23 +92,23 @@ class Costmap {
   std::optional<std::uint8_t> cost_at(const geometry::Point2& point) const;
   /// What lies under the footprint at a pose in the costmap's frame.
   FootprintReading footprint_at(const geometry::Pose2& base) const {
-    return footprint_reading(master_, footprint_, base);
+    return footprint_reading(master_, footprint_.corners(), base);
   }
 
-  const Footprint& footprint() const { return footprint_; }
+  const geometry::Footprint& footprint() const { return footprint_; }
   const Raster& raster() const { return raster_; }
   std::size_t layer_count() const { return layers_.size(); }
   const ObstacleLayer& layer(LayerId id) const { return layers_[id]; }
 
  private:
-  Costmap(CostmapConfig config, Footprint footprint);
+  Costmap(CostmapConfig config, geometry::Footprint footprint);
   void touch(const CellRect& cells) { dirty_ = dirty_.united(cells); }
   void clear_footprint();
   void sample_entered(int dx, int dy);
   void combine_row(int y, int x0, int x1);
 
   CostmapConfig config_;
-  Footprint footprint_;
+  geometry::Footprint footprint_;
   Raster raster_;
   StaticLayer static_layer_;
   geometry::Pose2 map_T_window_;

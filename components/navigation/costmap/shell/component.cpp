@@ -37,7 +37,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       transforms_(host) {
   auto& parameters = host.parameters();
   const auto corners = parameters.numbers(
-      "robot.footprint", "m", {-5, 5}, 6, 2 * Footprint::kMaxCorners,
+      "robot.footprint", "m", {-5, 5}, 6, 2 * geometry::Footprint::kMaxCorners,
       "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
   for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
     footprint_.emplace_back(corners[i], corners[i + 1]);

@@ -17,7 +17,8 @@ namespace usher::costmap {
 class ReferenceCostmap {
  public:
   explicit ReferenceCostmap(CostmapConfig config)
-      : config_(std::move(config)), footprint_(Footprint::make(config_.footprint).value()) {
+      : config_(std::move(config)),
+        footprint_(geometry::Footprint::make(config_.footprint).value()) {
     if (config_.rolling) {
       first_x_ = -config_.window.width / 2;
       first_y_ = -config_.window.height / 2;
@@ -96,13 +97,14 @@ class ReferenceCostmap {
     grid::Grid<std::uint8_t> master({width, height, resolution, anchor_x_ + first_x_ * resolution,
                                      anchor_y_ + first_y_ * resolution});
     if (base_) {
-      PolygonRaster(footprint_, *base_, master.geometry()).for_each_span([&](const CellSpan& span) {
-        for (Layer& layer : layers_) {
-          for (int x = span.x0; layer.config.footprint_clearing && x < span.x1; ++x) {
-            layer.cells[{first_x_ + x, first_y_ + span.y}] = {kSeenFree, now};
-          }
-        }
-      });
+      PolygonRaster(footprint_.corners(), *base_, master.geometry())
+          .for_each_span([&](const CellSpan& span) {
+            for (Layer& layer : layers_) {
+              for (int x = span.x0; layer.config.footprint_clearing && x < span.x1; ++x) {
+                layer.cells[{first_x_ + x, first_y_ + span.y}] = {kSeenFree, now};
+              }
+            }
+          });
     }
     grid::Grid<std::uint8_t> states(master.geometry());
     for (int y = 0; y < height; ++y) {
@@ -217,7 +219,7 @@ class ReferenceCostmap {
   }
 
   CostmapConfig config_;
-  Footprint footprint_;
+  geometry::Footprint footprint_;
   double anchor_x_ = 0.0;
   double anchor_y_ = 0.0;
   int first_x_ = 0;

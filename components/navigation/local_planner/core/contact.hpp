@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "foundation/cpu/cpu.hpp"
+#include "foundation/geometry/footprint.hpp"
 #include "foundation/grid/grid.hpp"
-#include "navigation/local_planner/core/footprint.hpp"
 
 namespace usher::local_planner {
+
+using geometry::Footprint;
 
 /// Values of a cost grid that decide (ROS costmap_2d): 252..1 fall with the distance, 0 is free.
 inline constexpr std::uint8_t kCostUnknown = 255;

@@ -13,7 +13,6 @@
 #include "foundation/kinematics/stopping_distance.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/local_planner/core/contact.hpp"
-#include "navigation/local_planner/core/footprint.hpp"
 #include "navigation/local_planner/core/reference_path.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
 #include "navigation/local_planner/core/trail.hpp"

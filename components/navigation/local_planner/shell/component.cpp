@@ -28,7 +28,7 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
   auto& p = host.parameters();
   DynamicWindowConfig c;
   const auto corners =
-      p.numbers("robot.footprint", "m", {-5, 5}, 6, 128,
+      p.numbers("robot.footprint", "m", {-5, 5}, 6, 2 * Footprint::kMaxCorners,
                 "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
   std::vector<geometry::Point2> outline;
   for (std::size_t i = 0; i + 1 < corners.size(); i += 2)

@@ -1,4 +1,4 @@
-#include "navigation/costmap/core/footprint.hpp"
+#include "navigation/costmap/core/polygon_raster.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 using geometry::Point2;
 using geometry::Pose2;
 
-Footprint square(double half) {
-  return Footprint::make({{half, half}, {-half, half}, {-half, -half}, {half, -half}}).value();
+std::vector<Point2> square(double half) {
+  return {{half, half}, {-half, half}, {-half, -half}, {half, -half}};
 }
 
 /// A polygon star-shaped around the origin: corners at rising angles, so it never crosses itself.
@@ -32,11 +32,11 @@ std::vector<Point2> star(Random& random, std::size_t corners, double smallest) {
   return points;
 }
 
-std::set<std::pair<int, int>> raster(const Footprint& footprint, const Pose2& pose,
+std::set<std::pair<int, int>> raster(std::span<const Point2> polygon, const Pose2& pose,
                                      const grid::GridGeometry& geometry) {
   std::set<std::pair<int, int>> cells;
   CellSpan last{-1, 0, 0};
-  PolygonRaster(footprint, pose, geometry).for_each_span([&](const CellSpan& span) {
+  PolygonRaster(polygon, pose, geometry).for_each_span([&](const CellSpan& span) {
     EXPECT_TRUE(span.x0 >= 0 && span.x0 < span.x1 && span.x1 <= geometry.width);
     EXPECT_TRUE(span.y > last.y || (span.y == last.y && span.x0 > last.x1))
         << "runs rise and never touch";
@@ -74,34 +74,17 @@ bool winds_around(const std::vector<Point2>& polygon, const Point2& point) {
   return std::abs(turned) > geometry::kPi;
 }
 
-bool touches(const Footprint& footprint, const Pose2& pose, const grid::GridGeometry& geometry,
+bool touches(std::span<const Point2> polygon, const Pose2& pose, const grid::GridGeometry& geometry,
              grid::Cell cell) {
-  std::vector<Point2> polygon;
-  for (const Point2& corner : footprint.corners()) polygon.push_back(pose * corner);
+  std::vector<Point2> placed;
+  for (const Point2& corner : polygon) placed.push_back(pose * corner);
   const Point2 center = geometry.center(cell);
   const Point2 low = center.array() - 0.5 * geometry.resolution;
   const Point2 high = center.array() + 0.5 * geometry.resolution;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    if (meets_square(polygon[i], polygon[(i + 1) % polygon.size()], low, high)) return true;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (meets_square(placed[i], placed[(i + 1) % placed.size()], low, high)) return true;
   }
-  return winds_around(polygon, center);
-}
-
-TEST(Footprint, KnowsItsRadii) {
-  EXPECT_DOUBLE_EQ(square(0.3).inscribed_radius(), 0.3);
-  EXPECT_DOUBLE_EQ(square(0.3).circumscribed_radius(), 0.3 * std::sqrt(2.0));
-  const Footprint beside = Footprint::make({{1.0, 0.0}, {2.0, 0.0}, {1.0, 1.0}}).value();
-  EXPECT_EQ(beside.inscribed_radius(), 0.0) << "the origin lies outside";
-}
-
-TEST(Footprint, RefusesWhatIsNoPolygon) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(Footprint::make({}).error(), "footprint must have 3 to 64 corners, got 0");
-  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}}).ok());
-  EXPECT_FALSE(Footprint::make(std::vector<Point2>(65, Point2{1, 1})).ok());
-  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}, {0, nan}}).ok());
-  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 0}, {0, 101}}).ok());
-  EXPECT_FALSE(Footprint::make({{0, 0}, {1, 1}, {2, 2}}).ok()) << "no area";
+  return winds_around(placed, center);
 }
 
 TEST(PolygonRaster, GivesExactlyTheCellsThatThePolygonTouches) {
@@ -110,16 +93,13 @@ TEST(PolygonRaster, GivesExactlyTheCellsThatThePolygonTouches) {
     const grid::GridGeometry geometry{40, 36, 0.05, random.uniform(-2.0, 2.0),
                                       random.uniform(-2.0, 2.0)};
     const std::size_t corners = 3 + random.below(14);
-    const Result<Footprint> made =
-        Footprint::make(star(random, corners, round % 2 == 0 ? 0.05 : 0.5));
-    if (!made.ok()) continue;
-    const Footprint& footprint = made.value();
+    const auto polygon = star(random, corners, round % 2 == 0 ? 0.05 : 0.5);
     const Pose2 pose{geometry.origin_x + random.uniform(-0.5, 2.5),
                      geometry.origin_y + random.uniform(-0.5, 2.3), random.uniform(-4.0, 4.0)};
-    const auto cells = raster(footprint, pose, geometry);
+    const auto cells = raster(polygon, pose, geometry);
     for (int y = 0; y < geometry.height; ++y) {
       for (int x = 0; x < geometry.width; ++x) {
-        ASSERT_EQ(cells.contains({x, y}), touches(footprint, pose, geometry, {x, y}))
+        ASSERT_EQ(cells.contains({x, y}), touches(polygon, pose, geometry, {x, y}))
             << "round " << round << " cell " << x << ", " << y;
       }
     }
@@ -129,24 +109,16 @@ TEST(PolygonRaster, GivesExactlyTheCellsThatThePolygonTouches) {
 TEST(PolygonRaster, TakesCornersEitherWayRound) {
   Random random(8);
   std::vector<Point2> corners = star(random, 9, 0.1);
-  const Footprint one = Footprint::make(corners).value();
+  const std::vector<Point2> one = corners;
   std::reverse(corners.begin(), corners.end());
-  const Footprint other = Footprint::make(corners).value();
   const grid::GridGeometry geometry{40, 40, 0.05, -1.0, -1.0};
-  EXPECT_EQ(raster(one, {0.1, 0.2, 0.3}, geometry), raster(other, {0.1, 0.2, 0.3}, geometry));
+  EXPECT_EQ(raster(one, {0.1, 0.2, 0.3}, geometry), raster(corners, {0.1, 0.2, 0.3}, geometry));
 }
 
 TEST(PolygonRaster, LeavesOutTheInsideOfAConcavity) {
   // A horseshoe open to +x around the origin.
-  const Footprint horseshoe = Footprint::make({{0.5, 0.5},
-                                               {-0.5, 0.5},
-                                               {-0.5, -0.5},
-                                               {0.5, -0.5},
-                                               {0.5, -0.3},
-                                               {-0.3, -0.3},
-                                               {-0.3, 0.3},
-                                               {0.5, 0.3}})
-                                  .value();
+  const std::vector<Point2> horseshoe{{0.5, 0.5},  {-0.5, 0.5},  {-0.5, -0.5}, {0.5, -0.5},
+                                      {0.5, -0.3}, {-0.3, -0.3}, {-0.3, 0.3},  {0.5, 0.3}};
   grid::Grid<std::uint8_t> costs({40, 40, 0.05, -1.0, -1.0}, kFreeCost);
   costs.at(costs.geometry().cell_at(0.1, 0.0)) = kLethalCost;
   EXPECT_EQ(footprint_reading(costs, horseshoe, {0.01, 0.01, 0.0}).highest_cost, kFreeCost);
@@ -155,7 +127,7 @@ TEST(PolygonRaster, LeavesOutTheInsideOfAConcavity) {
 
 TEST(FootprintReading, ReportsCostUnknownAndOutside) {
   grid::Grid<std::uint8_t> costs({40, 40, 0.05, 0.0, 0.0}, kFreeCost);
-  const Footprint footprint = square(0.2);
+  const auto footprint = square(0.2);
   EXPECT_EQ(footprint_reading(costs, footprint, {1.0, 1.0, 0.3}),
             (FootprintReading{0, false, false}));
   costs.at(costs.geometry().cell_at(1.01, 1.01)) = 77;

@@ -1,9 +1,9 @@
-#include "navigation/costmap/core/footprint.hpp"
+#include "navigation/costmap/core/polygon_raster.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <limits>
-#include <string>
-#include <utility>
 
 #include "navigation/costmap/core/costs.hpp"
 
@@ -13,37 +13,6 @@ using geometry::Point2;
 
 namespace {
 
-constexpr double kFarthestCorner = 100.0;  // [m]
-constexpr double kSmallestArea = 1e-6;     // [m2]
-
-double signed_area(const std::vector<Point2>& corners) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Point2& a = corners[i];
-    const Point2& b = corners[(i + 1) % corners.size()];
-    twice += a.x() * b.y() - b.x() * a.y();
-  }
-  return 0.5 * twice;
-}
-
-double distance_from_origin_to_edge(const Point2& a, const Point2& b) {
-  const Point2 along = b - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0.0 ? std::clamp(-a.dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (a + t * along).norm();
-}
-
-bool holds_origin(const std::vector<Point2>& corners) {
-  bool inside = false;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Point2& a = corners[i];
-    const Point2& b = corners[(i + 1) % corners.size()];
-    if ((a.y() <= 0.0) == (b.y() <= 0.0)) continue;
-    if (a.x() - a.y() * (b.x() - a.x()) / (b.y() - a.y()) > 0.0) inside = !inside;
-  }
-  return inside;
-}
-
 int clamped_floor(double value, int low, int high) {
   return static_cast<int>(
       std::floor(std::clamp(value, static_cast<double>(low), static_cast<double>(high))));
@@ -51,45 +20,16 @@ int clamped_floor(double value, int low, int high) {
 
 }  // namespace
 
-Result<Footprint> Footprint::make(std::vector<Point2> corners) {
-  if (corners.size() < 3 || corners.size() > kMaxCorners) {
-    return Error{"footprint must have 3 to " + std::to_string(kMaxCorners) + " corners, got " +
-                 std::to_string(corners.size())};
-  }
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!(corners[i].cwiseAbs().maxCoeff() <= kFarthestCorner) || !corners[i].allFinite()) {
-      return Error{"footprint corner " + std::to_string(i) +
-                   " must be finite and within 100 m, got (" + std::to_string(corners[i].x()) +
-                   ", " + std::to_string(corners[i].y()) + ") m"};
-    }
-  }
-  const double area = std::abs(signed_area(corners));
-  if (area < kSmallestArea) {
-    return Error{"footprint must enclose an area, got " + std::to_string(area) + " m2"};
-  }
-  return Footprint(std::move(corners));
-}
-
-Footprint::Footprint(std::vector<Point2> corners) : corners_(std::move(corners)) {
-  inscribed_radius_ = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Point2& next = corners_[(i + 1) % corners_.size()];
-    inscribed_radius_ =
-        std::min(inscribed_radius_, distance_from_origin_to_edge(corners_[i], next));
-    circumscribed_radius_ = std::max(circumscribed_radius_, corners_[i].norm());
-  }
-  if (!holds_origin(corners_)) inscribed_radius_ = 0.0;
-}
-
-PolygonRaster::PolygonRaster(const Footprint& footprint, const geometry::Pose2& pose,
+PolygonRaster::PolygonRaster(std::span<const Point2> polygon, const geometry::Pose2& pose,
                              const grid::GridGeometry& geometry)
-    : corners_(footprint.corners().size()), width_(geometry.width) {
+    : corners_(polygon.size()), width_(geometry.width) {
+  assert(corners_ >= 3 && corners_ <= kMaxCorners);
   const double c = std::cos(pose.yaw);
   const double s = std::sin(pose.yaw);
   double low_x = std::numeric_limits<double>::infinity(), low_y = low_x, high_x = -low_x,
          high_y = -low_x;
   for (std::size_t i = 0; i < corners_; ++i) {
-    const Point2& corner = footprint.corners()[i];
+    const Point2& corner = polygon[i];
     x_[i] = (pose.x + c * corner.x() - s * corner.y() - geometry.origin_x) / geometry.resolution;
     y_[i] = (pose.y + s * corner.x() + c * corner.y() - geometry.origin_y) / geometry.resolution;
     low_x = std::min(low_x, x_[i]), high_x = std::max(high_x, x_[i]);
@@ -113,7 +53,7 @@ std::size_t PolygonRaster::row_spans(int y, std::array<CellSpan, kMaxSpans>& spa
   const double bottom = y;
   const double top = bottom + 1.0;
   const double middle = bottom + 0.5;
-  std::array<double, Footprint::kMaxCorners> crossings;
+  std::array<double, kMaxCorners> crossings;
   std::size_t crossing_count = 0;
   std::size_t count = 0;
   const auto add = [&](int first, int last) {
@@ -158,7 +98,7 @@ std::size_t PolygonRaster::row_spans(int y, std::array<CellSpan, kMaxSpans>& spa
 }
 
 FootprintReading footprint_reading(const grid::Grid<std::uint8_t>& costs,
-                                   const Footprint& footprint, const geometry::Pose2& pose) {
+                                   std::span<const Point2> footprint, const geometry::Pose2& pose) {
   FootprintReading reading;
   if (!pose.finite() || costs.empty()) {
     reading.leaves_grid = true;
