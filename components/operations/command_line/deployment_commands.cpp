@@ -1,13 +1,8 @@
 #include <signal.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cstddef>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -18,8 +13,11 @@
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/installation.hpp"
+#include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/host/service.hpp"
 #include "operations/launcher/launcher.hpp"
+#include "operations/security/permissions.hpp"
 #include "runtime/dds/observer.hpp"
 
 namespace usher::operations {
@@ -39,7 +37,7 @@ int check(const std::vector<std::string>& manifests) {
   const auto installation = Installation::of_this_program();
   int bad = 0;
   for (const auto& path : manifests) {
-    const auto deployment = load_deployment(path, installation, {});
+    const auto deployment = load_deployment(path, installation, {}, keys_folder());
     if (!deployment) {
       ++bad;
       std::cout << path << ": unreadable: " << deployment.error() << "\n";
@@ -172,21 +170,29 @@ Table live_table(const Launcher& launcher, const Heartbeats& heartbeats) {
   return table;
 }
 
-/// One datagram to systemd where it started this program (sd_notify's protocol): that it is up, and
-/// in every round that it still goes round, so that WatchdogSec restarts a launcher that hangs.
-void tell_service_manager(std::string_view state) {
-  const char* path = std::getenv("NOTIFY_SOCKET");
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::size_t size = path == nullptr ? 0 : std::strlen(path);
-  if (size < 2 || size >= sizeof(address.sun_path)) return;
-  std::memcpy(address.sun_path, path, size);
-  if (path[0] == '@') address.sun_path[0] = '\0';  // an abstract name
-  static const int handle = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  static_cast<void>(!sendto(handle, state.data(), state.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
-                            reinterpret_cast<const sockaddr*>(&address),
-                            static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + size)));
-}
+/// Says once who was kept out, and once in a while how many messages were dropped.
+class RefusalReport {
+ public:
+  std::vector<std::string> news(const std::vector<runtime::Refusal>& refusals) {
+    std::vector<std::string> lines;
+    const auto now = std::chrono::steady_clock::now();
+    for (const auto& refusal : refusals) {
+      auto [entry, is_new] = told_.try_emplace({refusal.name, refusal.address});
+      auto& [messages, at] = entry->second;
+      if (!is_new && (refusal.messages == messages || now - at < kPause)) continue;
+      lines.push_back(runtime::to_string(refusal));
+      messages = refusal.messages;
+      at = now;
+    }
+    return lines;
+  }
+
+ private:
+  static constexpr std::chrono::seconds kPause{10};
+  std::map<std::pair<std::string, std::string>,
+           std::pair<std::uint64_t, std::chrono::steady_clock::time_point>>
+      told_;
+};
 
 struct LaunchArguments {
   std::string manifest, host, run_directory;
@@ -201,7 +207,8 @@ int launch(const LaunchArguments& arguments) {
     if (!parsed) return fail(parsed.error());
     overrides.push_back(*parsed);
   }
-  const auto deployment = load_deployment(arguments.manifest, installation, overrides);
+  const auto deployment =
+      load_deployment(arguments.manifest, installation, overrides, keys_folder());
   if (!deployment) return fail(deployment.error());
   for (const auto& finding : deployment->findings) {
     std::cerr << to_string(finding) << "\n";
@@ -212,6 +219,7 @@ int launch(const LaunchArguments& arguments) {
   LaunchOptions options{arguments.host, installation.programs, arguments.run_directory};
   if (options.run_directory.empty())
     options.run_directory = default_run_directory(deployment->manifest.domain, arguments.host);
+  ServiceNotifier service;
   auto launcher = Launcher::create(*deployment, options);
   if (!launcher) return fail(launcher.error());
 
@@ -221,8 +229,10 @@ int launch(const LaunchArguments& arguments) {
   sigaction(SIGTERM, &action, nullptr);
 
   Heartbeats heartbeats;
-  auto observer = runtime::Observer::create(
-      {.name = "launcher", .host = arguments.host, .domain = deployment->manifest.domain});
+  auto reach = reach_robot(kLauncher, deployment->manifest.domain);
+  if (!deployment->manifest.keys.empty())
+    reach.identity = deployment->manifest.keys + "/" + kLauncher;
+  auto observer = runtime::Observer::create(reach);
   if (!observer) return fail(observer.error());
   const auto reader = (*observer)->reader(
       topics::kHeartbeat, [&](const auto& message, const auto&) { heartbeats.take(message); });
@@ -231,16 +241,18 @@ int launch(const LaunchArguments& arguments) {
   std::cout << "launching " << deployment->manifest.name << "; logs in " << options.run_directory
             << "; Ctrl-C stops\n"
             << std::flush;
-  tell_service_manager("READY=1");
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   auto next_table = std::chrono::steady_clock::now() + milliseconds(1000);
   std::size_t table_lines = 0;
+  RefusalReport refusals;
+  service.ready();
   while (!stop_asked && !launcher->broken()) {
     for (const auto& [component, entry] : heartbeats.entries())
       launcher->heard(component, entry.at);
     launcher->poll();
-    tell_service_manager("WATCHDOG=1");
-    const auto events = launcher->events();
+    service.alive(launcher->healthy(), launcher->summary());
+    auto events = launcher->events();
+    for (auto& news : refusals.news((*observer)->refusals())) events.push_back(std::move(news));
     if (!events.empty()) table_lines = 0;
     for (const auto& event : events) std::cout << event << "\n";
     if (terminal && std::chrono::steady_clock::now() >= next_table) {
@@ -254,6 +266,7 @@ int launch(const LaunchArguments& arguments) {
     std::this_thread::sleep_for(milliseconds(20));
   }
   const bool broken = launcher->broken();
+  service.stopping();
   std::cout << (broken ? "a component cannot be kept running; stopping all\n" : "stopping\n")
             << std::flush;
   launcher->stop();

@@ -8,6 +8,7 @@
 
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
 #include "runtime/dds/message_layout.hpp"
 #include "runtime/dds/message_types.hpp"
@@ -40,9 +41,13 @@ const char* health_name(std::uint8_t health) {
   return health < std::size(kNames) ? kNames[health] : "?";
 }
 
+void show_refusals(const std::vector<runtime::Refusal>& refusals) {
+  for (const auto& refusal : refusals) std::cout << to_string(refusal) << "\n";
+}
+
 /// What the supervisor thinks; exit code 0 only when nothing is wrong.
 int status(std::uint32_t domain, double patience) {
-  auto observer = Observer::create({.name = "status", .domain = domain});
+  auto observer = Observer::create(reach_robot("status", domain));
   if (!observer) return fail(observer.error());
   auto reader = (*observer)->reader(topics::kSupervisorStatus);
   if (!reader) return fail(reader.error());
@@ -68,6 +73,7 @@ int status(std::uint32_t domain, double patience) {
     std::cout << (fault.latched() ? "latched fault: " : "fault: ") << fault.component_name() << ": "
               << fault.cause() << "\n";
   }
+  show_refusals((*observer)->refusals());
   return well ? 0 : 1;
 }
 
@@ -85,7 +91,7 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 int list_topics(std::uint32_t domain, double duration) {
-  auto observer = Observer::create({.name = "topics", .domain = domain});
+  auto observer = Observer::create(reach_robot("topics", domain));
   if (!observer) return fail(observer.error());
   std::this_thread::sleep_for(milliseconds(500));  // discovery
   std::map<std::string, TopicRow> rows;
@@ -124,7 +130,7 @@ struct EchoArguments {
 };
 
 int echo(std::uint32_t domain, const EchoArguments& arguments) {
-  auto observer = Observer::create({.name = "echo", .domain = domain});
+  auto observer = Observer::create(reach_robot("echo", domain));
   if (!observer) return fail(observer.error());
   const std::string wire_name = kPrefix + arguments.topic;
   runtime::EndpointInfo writer;

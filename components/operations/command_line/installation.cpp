@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "operations/security/keys.hpp"
+
 namespace usher::operations {
 
 namespace fs = std::filesystem;
@@ -22,13 +24,16 @@ std::vector<std::string> config_directories(const std::string& manifest_path,
 
 Result<Deployment> load_deployment(const std::string& manifest_path,
                                    const Installation& installation,
-                                   const std::vector<Override>& overrides) {
+                                   const std::vector<Override>& overrides,
+                                   const std::string& keys) {
   const auto contracts = read_contracts(installation.contracts);
   if (!contracts) return Error{contracts.error()};
-  const auto manifest =
-      read_manifest(manifest_path, config_directories(manifest_path, installation));
+  auto manifest = read_manifest(manifest_path, config_directories(manifest_path, installation));
   if (!manifest) return Error{manifest.error()};
-  return resolve(*manifest, *contracts, overrides);
+  if (!keys.empty()) manifest->keys = keys;
+  auto deployment = resolve(*manifest, *contracts, overrides);
+  judge_keys(*manifest, *contracts, deployment.findings);
+  return deployment;
 }
 
 Result<Override> parse_override(const std::string& text) {

@@ -1,14 +1,18 @@
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/robot.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Usher: the software of an indoor guide robot", "usher");
   app.require_subcommand(1);
   app.set_version_flag("--version", USHER_VERSION);
+  app.fallthrough();  // options of the program may follow its command
+  usher::operations::add_robot_options(app);
   int exit_code = 0;
   usher::operations::add_deployment_commands(app, exit_code);
   usher::operations::add_inspection_commands(app, exit_code);
   usher::operations::add_operator_commands(app, exit_code);
   usher::operations::add_teleop_command(app, exit_code);
+  usher::operations::add_host_commands(app, exit_code);
   usher::operations::add_demo_command(app, exit_code);
   usher::operations::add_measuring_commands(app, exit_code);
   try {

@@ -12,6 +12,7 @@
 #include "idl/topics.hpp"
 #include "mapping/map_server/core/map_from_log.hpp"
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
 #include "operations/command_line/table.hpp"
 #include "runtime/dds/observer.hpp"
@@ -37,7 +38,7 @@ int fail(const std::string& message) {
 }
 
 int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
-  auto observer = Observer::create({.name = kClient, .domain = domain});
+  auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
   if (const auto told = tell_supervisor(**observer, command); !told) return fail(told.error());
   std::cout << done << "\n";
@@ -155,7 +156,7 @@ int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& argume
 /// The supervisor lets the navigation drive from the start to the end of a goal.
 int go(std::uint32_t domain, const GoalArguments& arguments) {
   using namespace SupervisorRequest_Constants;
-  auto observer = Observer::create({.name = kClient, .domain = domain});
+  auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
   if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
   struct sigaction action {};
@@ -177,7 +178,7 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
 }
 
 int save_map(std::uint32_t domain, const std::string& path) {
-  auto observer = Observer::create({.name = kClient, .domain = domain});
+  auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
   auto reader = (*observer)->reader(topics::kMap);
   if (!reader) return fail(reader.error());

@@ -15,6 +15,7 @@
 
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
 #include "operations/command_line/table.hpp"
 #include "runtime/dds/observer.hpp"
@@ -152,7 +153,7 @@ int teleop(std::uint32_t domain, milliseconds hold) {
     std::cerr << "usher: " << message << "\n";
     return 1;
   };
-  auto observer = Observer::create({.name = kOperatorName, .domain = domain});
+  auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
   auto joy = (*observer)->writer(topics::kJoy);
   auto movement = (*observer)->reader(topics::kMovementStatus);

@@ -29,6 +29,8 @@ constexpr auto kShortestPause = milliseconds(100);
 constexpr auto kLongestPause = seconds(5);
 constexpr auto kGrace = seconds(2);
 constexpr auto kLongestPollPause = milliseconds(500);
+constexpr const char* kOperator = "operator";
+constexpr const char* kDiscoveryServer = "discovery_server";
 constexpr int kWrongParameters = 2;  // exit code of a component program
 
 std::string quoted(const std::string& text) {
@@ -72,6 +74,14 @@ std::string tail(const std::string& path, std::size_t bytes) {
   return line == std::string::npos ? text : text.substr(line + 1);
 }
 
+Status write_parameters(const runtime::ParameterFile& file, const std::string& path) {
+  std::ofstream out(path, std::ios::trunc);
+  out << to_yaml(file);
+  out.close();
+  if (!out) return Error{"cannot write " + path};
+  return {};
+}
+
 /// Where this user's deployments keep their locks and, by default, their run directories.
 std::string runtime_directory() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
@@ -89,6 +99,12 @@ std::string default_run_directory(std::uint32_t domain, const std::string& host)
          (host.empty() ? "" : "-" + host);
 }
 
+std::vector<std::string> operator_files(std::uint32_t domain) {
+  constexpr const char* kServiceDirectory = "/run/usher";  // RuntimeDirectory of the units
+  const std::string name = "/domain-" + std::to_string(domain) + "-operator.yaml";
+  return {runtime_directory() + name, kServiceDirectory + name};
+}
+
 std::string to_yaml(const runtime::ParameterFile& file) {
   std::ostringstream out;
   out << "component: " << file.component << "\nname: " << file.name << "\nhost: " << file.host
@@ -102,6 +118,8 @@ std::string to_yaml(const runtime::ParameterFile& file) {
       out << (i > 0 ? ", " : "") << quoted(file.peers[i]);
     out << "]\n";
   }
+  if (!file.discovery_server.empty()) out << "discovery_server: " << file.discovery_server << "\n";
+  if (!file.identity.empty()) out << "identity: " << quoted(file.identity) << "\n";
   out << (file.values.empty() ? "parameters: {}\n" : "parameters:\n");
   for (const auto& value : file.values) {
     out << "  " << value.name << ": {value: " << value.yaml << ", origin: " << quoted(value.origin)
@@ -129,6 +147,7 @@ Launcher::Launcher(Launcher&& other) noexcept
     : options_(std::move(other.options_)),
       processes_(std::move(other.processes_)),
       events_(std::move(other.events_)),
+      operator_file_(std::exchange(other.operator_file_, {})),
       locks_(std::exchange(other.locks_, {})),
       last_poll_(other.last_poll_),
       trusted_from_(other.trusted_from_) {
@@ -137,6 +156,7 @@ Launcher::Launcher(Launcher&& other) noexcept
 
 Launcher::~Launcher() {
   stop();
+  if (!operator_file_.empty()) unlink(operator_file_.c_str());
   for (const int file : locks_) close(file);
 }
 
@@ -181,6 +201,8 @@ Status Launcher::prepare(const Deployment& deployment) {
     if (error) return Error{"cannot empty " + options_.run_directory + "/kept: " + error.message()};
   }
   const std::int64_t anchor = clock_anchor();
+  if (auto status = leave_operator_file(deployment, anchor); !status) return status;
+  if (auto status = add_discovery_server(deployment, anchor); !status) return status;
   for (std::size_t i = 0; i < deployment.files.size(); ++i) {
     const auto& component = deployment.manifest.components[i];
     if (!options_.host.empty() && component.host != options_.host) continue;
@@ -188,10 +210,7 @@ Status Launcher::prepare(const Deployment& deployment) {
     file.clock_anchor = anchor;
     file.run_directory = options_.run_directory;
     const std::string path = options_.run_directory + "/" + component.name + ".yaml";
-    std::ofstream out(path, std::ios::trunc);
-    out << to_yaml(file);
-    out.close();
-    if (!out) return Error{"cannot write " + path};
+    if (auto status = write_parameters(file, path); !status) return status;
 
     const bool grouped = !component.group.empty();
     const std::string name = grouped ? component.group : component.name;
@@ -217,6 +236,43 @@ Status Launcher::prepare(const Deployment& deployment) {
   }
   if (processes_.empty())
     return Error{"nothing runs on host '" + options_.host + "' (" + deployment.manifest.path + ")"};
+  return {};
+}
+
+Status Launcher::leave_operator_file(const Deployment& deployment, std::int64_t anchor) {
+  const Manifest& manifest = deployment.manifest;
+  runtime::ParameterFile file;
+  file.component = file.name = kOperator;
+  file.host = options_.host.empty() ? manifest.hosts.front().name : options_.host;
+  file.domain = manifest.domain;
+  file.clock_anchor = anchor;
+  if (const auto* host = manifest.host(file.host)) file.peers = host->peers;
+  file.discovery_server = manifest.discovery_server.locator();
+  if (!manifest.keys.empty()) file.identity = manifest.keys + "/" + kOperator;
+  operator_file_ = operator_files(manifest.domain).front();
+  return write_parameters(file, operator_file_);
+}
+
+Status Launcher::add_discovery_server(const Deployment& deployment, std::int64_t anchor) {
+  const auto& server = deployment.manifest.discovery_server;
+  if (server.host.empty() || (!options_.host.empty() && server.host != options_.host)) return {};
+  runtime::ParameterFile file;
+  file.component = file.name = kDiscoveryServer;
+  file.host = server.host;
+  file.domain = deployment.manifest.domain;
+  file.clock_anchor = anchor;
+  file.discovery_server = server.locator();
+  if (!deployment.manifest.keys.empty())
+    file.identity = deployment.manifest.keys + "/" + kDiscoveryServer;
+  const std::string path = options_.run_directory + "/" + kDiscoveryServer + ".yaml";
+  if (auto status = write_parameters(file, path); !status) return status;
+  Process& process = processes_.emplace_back();
+  process.name = kDiscoveryServer;
+  process.arguments = {options_.program_directory + "/usher-" + kDiscoveryServer, "--parameters",
+                       path};
+  process.components = {kDiscoveryServer};
+  process.budget = 1000;  // nothing finds anything without it
+  process.log = options_.run_directory + "/" + kDiscoveryServer + ".log";
   return {};
 }
 
@@ -372,6 +428,31 @@ const Process* Launcher::find(const std::string& component) const {
 }
 
 std::vector<std::string> Launcher::events() { return std::exchange(events_, {}); }
+
+bool Launcher::healthy() const {
+  const auto overdue = Clock::now() - seconds(1);
+  return !broken() && std::none_of(processes_.begin(), processes_.end(), [&](const Process& p) {
+    return p.state == Process::State::kWaiting && p.start_at != Clock::time_point{} &&
+           p.start_at < overdue;
+  });
+}
+
+std::string Launcher::summary() const {
+  std::size_t running = 0;
+  std::string others;
+  for (const auto& process : processes_) {
+    if (process.state == Process::State::kRunning) {
+      ++running;
+    } else {
+      others += (others.empty() ? ": " : ", ") + process.name +
+                (process.state == Process::State::kWaiting  ? " is waiting"
+                 : process.state == Process::State::kGaveUp ? " is given up"
+                                                            : " has stopped");
+    }
+  }
+  return std::to_string(running) + " of " + std::to_string(processes_.size()) + " processes run" +
+         others;
+}
 
 bool Launcher::broken() const {
   return std::any_of(processes_.begin(), processes_.end(),

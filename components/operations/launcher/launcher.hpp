@@ -81,6 +81,10 @@ class Launcher {
   std::vector<std::string> events();
   /// A process gave up: the deployment is not what the manifest says.
   bool broken() const;
+  /// Nothing has given up and nothing waits longer than it should for its start.
+  bool healthy() const;
+  /// "14 of 15 processes run: amcl is waiting"
+  std::string summary() const;
   const std::string& run_directory() const { return options_.run_directory; }
 
  private:
@@ -88,6 +92,8 @@ class Launcher {
   Status lock(const Deployment& deployment);
   Status lock_file(const std::string& path);
   Status prepare(const Deployment& deployment);
+  Status leave_operator_file(const Deployment& deployment, std::int64_t anchor);
+  Status add_discovery_server(const Deployment& deployment, std::int64_t anchor);
   void start(Process& process);
   void ended(Process& process, int status);
   bool reap(Process& process);
@@ -96,6 +102,7 @@ class Launcher {
   LaunchOptions options_;
   std::vector<Process> processes_;
   std::vector<std::string> events_;
+  std::string operator_file_;
   std::vector<int> locks_;  ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
@@ -103,6 +110,10 @@ class Launcher {
 
 /// Where a deployment runs on this machine by default: one place for each user and DDS domain.
 std::string default_run_directory(std::uint32_t domain, const std::string& host);
+
+/// Where a launcher leaves how its robot is reached (a parameter file without parameters), and
+/// where it is looked for: that of this user first, then that of a service.
+std::vector<std::string> operator_files(std::uint32_t domain);
 
 /// The file that a component gets with --parameters.
 std::string to_yaml(const runtime::ParameterFile& file);

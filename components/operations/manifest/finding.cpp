@@ -40,6 +40,8 @@ std::string to_string(Verdict verdict) {
       return "split group";
     case Verdict::kWrongIdl:
       return "wrong IDL";
+    case Verdict::kNoPermission:
+      return "no permission";
   }
   return "?";
 }

@@ -24,6 +24,7 @@ enum class Verdict {
   kSplitDriveChain,     ///< the drive chain spread over several hosts
   kSplitGroup,          ///< a group that cannot be one process
   kWrongIdl,            ///< a contract made from other IDL
+  kNoPermission,        ///< keys that do not let a component do what its contract says, or more
 };
 std::string to_string(Verdict verdict);
 

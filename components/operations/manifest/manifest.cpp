@@ -1,5 +1,7 @@
 #include "operations/manifest/manifest.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -202,6 +204,20 @@ ManifestComponent read_component(const std::string& name, const Tree& tree,
   return component;
 }
 
+bool is_address(const std::string& text) {
+  in_addr ignored{};
+  return inet_pton(AF_INET, text.c_str(), &ignored) == 1;
+}
+
+void judge_address(const std::string& what, const std::string& address, const std::string& origin,
+                   std::vector<Finding>& findings) {
+  if (is_address(address)) return;
+  findings.push_back(
+      {Verdict::kWrongValue,
+       what + " must be an IPv4 address like 10.0.0.2, got " + Tree::word(address, {}).yaml(),
+       origin});
+}
+
 ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Finding>& findings) {
   ManifestHost host;
   host.name = name;
@@ -210,19 +226,40 @@ ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Fi
   Fields fields(tree, "host '" + name + "'", findings);
   fields.texts("peers", host.peers);
   fields.finish();
+  for (const auto& peer : host.peers)
+    judge_address("a peer of '" + name + "'", peer, tree.origin, findings);
   return host;
 }
 
-void judge_host_of(const ManifestComponent& component, Manifest& manifest) {
-  if (manifest.hosts.empty() || manifest.host(component.host) != nullptr) return;
+void judge_host(const std::string& who, const std::string& name, const std::string& origin,
+                Manifest& manifest) {
+  if (manifest.hosts.empty() || manifest.host(name) != nullptr) return;
   std::string known;
   for (const auto& host : manifest.hosts) known += (known.empty() ? "" : ", ") + host.name;
   manifest.findings.push_back(
       {Verdict::kUnknownHost,
-       "component '" + component.name + "' runs on the " +
-           (component.host.empty() ? "host of no name" : "unknown host '" + component.host + "'") +
+       who + " runs on the " + (name.empty() ? "host of no name" : "unknown host '" + name + "'") +
            ", expected one of " + known,
-       component.origin_of("host")});
+       origin});
+}
+
+ManifestDiscoveryServer read_discovery_server(const Tree& tree, std::vector<Finding>& findings) {
+  ManifestDiscoveryServer server;
+  Fields fields(tree, "the discovery server", findings);
+  fields.text("host", server.host);
+  fields.text("address", server.address);
+  fields.number("port", std::uint16_t{1024}, std::uint16_t{65535}, server.port);
+  fields.finish();
+  if (server.host.empty()) fields.missing("host");
+  judge_address("the discovery server's address", server.address, tree.origin, findings);
+  return server;
+}
+
+/// A path is meant from the folder of the file that gives it.
+std::string beside(const std::string& origin, const std::string& path) {
+  const std::filesystem::path file = origin.substr(0, origin.rfind(':'));
+  std::error_code ignored;
+  return std::filesystem::absolute(file.parent_path() / path, ignored).lexically_normal().string();
 }
 
 /// The first one that is there; the first one at all where none is, to be named in the error.
@@ -253,6 +290,11 @@ const ManifestHost* Manifest::host(const std::string& host_name) const {
   const auto found = std::find_if(hosts.begin(), hosts.end(),
                                   [&](const ManifestHost& h) { return h.name == host_name; });
   return found == hosts.end() ? nullptr : &*found;
+}
+
+std::string Manifest::origin_of(const std::string& key) const {
+  const auto found = origins.find(key);
+  return found == origins.end() ? path + ":1" : found->second;
 }
 
 std::string to_string(Criticality criticality) {
@@ -286,6 +328,9 @@ Result<Manifest> read_manifest(const std::string& path,
   fields.one_of("fresh_start", {{"true", true}, {"false", false}}, manifest.fresh_start);
   if (robot.empty()) fields.missing("robot");
   if (site.empty()) fields.missing("site");
+  std::string keys;
+  fields.text("security", keys);
+  const Tree* server = fields.map("discovery_server");
   const Tree* hosts = fields.map("hosts", true);
   const Tree* components = fields.map("components", true);
   fields.finish();
@@ -300,9 +345,16 @@ Result<Manifest> read_manifest(const std::string& path,
   }
   if (components != nullptr) {
     for (const auto& [name, entry] : components->entries) {
-      manifest.components.push_back(read_component(name, entry, manifest.findings));
-      judge_host_of(manifest.components.back(), manifest);
+      const auto& component =
+          manifest.components.emplace_back(read_component(name, entry, manifest.findings));
+      judge_host("component '" + name + "'", component.host, component.origin_of("host"), manifest);
     }
+  }
+  for (const auto& [key, value] : tree->entries) manifest.origins[key] = value.origin;
+  if (!keys.empty()) manifest.keys = beside(manifest.origin_of("security"), keys);
+  if (server != nullptr) {
+    manifest.discovery_server = read_discovery_server(*server, manifest.findings);
+    judge_host("the discovery server", manifest.discovery_server.host, server->origin, manifest);
   }
   return manifest;
 }

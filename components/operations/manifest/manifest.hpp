@@ -40,6 +40,15 @@ struct ManifestHost {
   std::string origin;
 };
 
+/// Where participants that multicast and peers do not bring together find one another.
+struct ManifestDiscoveryServer {
+  std::string host;     ///< that runs it; empty = there is none
+  std::string address;  ///< of that host, as the others reach it
+  std::uint16_t port = 11811;
+
+  std::string locator() const { return host.empty() ? "" : address + ":" + std::to_string(port); }
+};
+
 /// What runs where. Read strictly: an unknown key, a missing host or a wrong type is a finding.
 struct Manifest {
   std::string path;
@@ -50,12 +59,17 @@ struct Manifest {
   std::uint64_t seed = 1;
   bool fresh_start = false;  ///< a launch forgets what components kept: a simulated robot stands
                              ///< elsewhere than the last one
+  std::string keys;          ///< folder of `usher keys` (`security:`); empty = without security
+  ManifestDiscoveryServer discovery_server;
   std::vector<ManifestHost> hosts;
   std::vector<ManifestComponent> components;
-  std::vector<Finding> findings;  ///< what is wrong with the manifest by itself
+  std::map<std::string, std::string> origins;  ///< of the keys that are given
+  std::vector<Finding> findings;               ///< what is wrong with the manifest by itself
 
   const ManifestComponent* component(const std::string& component_name) const;
   const ManifestHost* host(const std::string& host_name) const;
+  /// Where `key` is given, or the manifest itself where it is not.
+  std::string origin_of(const std::string& key) const;
 };
 
 /// Reads a manifest and what it extends. The config directories hold robots/ and sites/; the first

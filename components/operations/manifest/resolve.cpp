@@ -130,6 +130,8 @@ class Resolver {
     file.seed = manifest_.seed;
     file.critical = component.criticality == Criticality::kStop;
     if (const auto* host = manifest_.host(component.host)) file.peers = host->peers;
+    file.discovery_server = manifest_.discovery_server.locator();
+    if (!manifest_.keys.empty()) file.identity = manifest_.keys + "/" + component.name;
 
     const auto contract = contracts_.find(component.type);
     if (contract == contracts_.end()) {

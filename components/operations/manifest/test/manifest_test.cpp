@@ -159,7 +159,8 @@ TEST_F(ManifestFile, FindsEveryUnknownKey) {
   EXPECT_THAT(findings(std::string(kHead) +
                        "robots: 3\ncomponents:\n  amcl: {host: nuc, critical: stop}\n"),
               ElementsAre("m.yaml:4: unknown key: manifest: unknown key 'robots', expected one of "
-                          "name, robot, site, domain, seed, fresh_start, hosts, components",
+                          "name, robot, site, domain, seed, fresh_start, security, "
+                          "discovery_server, hosts, components",
                           HasSubstr("m.yaml:6: unknown key: component 'amcl': unknown key "
                                     "'critical', expected one of type, host")));
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peer: [a]}}\n"
@@ -202,9 +203,34 @@ TEST_F(ManifestFile, WantsMapsWhereMapsBelong) {
               ElementsAre(HasSubstr("'components' must be a map, got [amcl]")));
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: nuc\ncomponents: {a: {host: nuc}}\n"),
               ElementsAre(HasSubstr("'hosts' must be a map, got nuc")));
-  EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peers: [1, [2]]}}\n"
+  EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peers: [10.0.0.1, [2]]}}\n"
                        "components: {a: {host: nuc}}\n"),
               ElementsAre(HasSubstr("host 'nuc': 'peers' must hold words, got [2]")));
+}
+
+TEST_F(ManifestFile, SaysHowHostsMeetAndWhereTheKeysAre) {
+  const auto manifest = read(std::string(kHead) +
+                             "security: ../keys\n"
+                             "discovery_server: {host: nuc, address: 10.0.0.1}\n"
+                             "components: {amcl: {host: nuc}}\n");
+  ASSERT_TRUE(manifest) << manifest.error();
+  EXPECT_THAT(manifest->findings, IsEmpty());
+  EXPECT_EQ(manifest->keys, folder_.path() + "/keys") << "from the folder of the manifest";
+  EXPECT_EQ(manifest->discovery_server.locator(), "10.0.0.1:11811");
+  EXPECT_EQ(shortened(manifest->origin_of("security")), "m.yaml:4");
+}
+
+TEST_F(ManifestFile, FindsHostsThatCannotBeReached) {
+  EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peers: [nuc.local]}}\n"
+                       "components: {a: {host: nuc}}\n"),
+              ElementsAre("m.yaml:3: wrong value: a peer of 'nuc' must be an IPv4 address like "
+                          "10.0.0.2, got nuc.local"));
+  EXPECT_THAT(
+      findings(std::string(kHead) + "discovery_server: {host: laptop, address: nuc, port: 80}\n"
+                                    "components: {a: {host: nuc}}\n"),
+      ElementsAre(HasSubstr("'port' must be a whole number in [1024, 65535], got 80"),
+                  HasSubstr("the discovery server's address must be an IPv4 address"),
+                  HasSubstr("the discovery server runs on the unknown host 'laptop'")));
 }
 
 TEST_F(ManifestFile, FindsUnknownHosts) {

@@ -1,0 +1,136 @@
+#include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+#include "operations/host/doctor.hpp"
+#include "operations/host/service.hpp"
+#include "support/folder.hpp"
+#include "support/process.hpp"
+
+namespace usher::operations {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+Manifest manifest() {
+  Manifest made;
+  made.name = "marvin";
+  return made;
+}
+
+TEST(ServiceUnit, RestartsAndIsWatched) {
+  const auto unit = service_unit(manifest(), {.program = "/usr/bin/usher",
+                                              .manifest = "/etc/usher/my robot 100%.yaml",
+                                              .host = "nuc",
+                                              .keys = "/etc/usher/keys",
+                                              .user = "usher"});
+  EXPECT_EQ(unit.name, "usher-nuc.service");
+  EXPECT_THAT(unit.text,
+              HasSubstr("ExecStart=\"/usr/bin/usher\" launch \"/etc/usher/my robot 100%%.yaml\" "
+                        "--host \"nuc\" --keys \"/etc/usher/keys\"\n"));
+  for (const auto* line : {"Type=notify\n", "Restart=always\n", "WatchdogSec=5\n", "User=usher\n",
+                           "WantedBy=multi-user.target\n"})
+    EXPECT_THAT(unit.text, HasSubstr(line));
+}
+
+TEST(ServiceUnit, IsAcceptedBySystemd) {
+  if (::access("/usr/bin/systemd-analyze", X_OK) != 0) GTEST_SKIP() << "no systemd-analyze";
+  const test::Folder folder;
+  const auto unit = service_unit(manifest(), {.program = "/bin/true",
+                                              .manifest = "/etc/usher/my robot.yaml",
+                                              .host = "nuc",
+                                              .keys = "",
+                                              .user = ""});
+  const auto path = folder.file(unit.name, unit.text);
+  test::Process verify({"/usr/bin/systemd-analyze", "verify", "--man=no", path});
+  EXPECT_EQ(verify.wait(), 0) << verify.errors();
+  EXPECT_THAT(verify.errors(), Not(HasSubstr(unit.name))) << "not even a warning";
+}
+
+/// Stands for systemd: the socket that a service notifies.
+class Notify : public testing::Test {
+ protected:
+  Notify() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path().c_str(), sizeof(address.sun_path) - 1);
+    EXPECT_EQ(::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    ::setenv("NOTIFY_SOCKET", path().c_str(), 1);
+    ::setenv("WATCHDOG_USEC", "60000", 1);
+  }
+  ~Notify() override { ::close(socket_); }
+  std::string path() const { return folder_.path() + "/notify"; }
+  std::vector<std::string> heard() const {
+    std::vector<std::string> all;
+    char text[512];
+    for (ssize_t size = 0; (size = ::recv(socket_, text, sizeof(text), 0)) > 0;)
+      all.emplace_back(text, static_cast<std::size_t>(size));
+    return all;
+  }
+
+  test::Folder folder_;
+  int socket_;
+};
+
+TEST_F(Notify, TellsTheWatchdogOnlyWhileHealthy) {
+  ServiceNotifier service;
+  EXPECT_EQ(::getenv("NOTIFY_SOCKET"), nullptr) << "components must not speak for the launcher";
+  service.ready();
+  service.alive(true, "3 of 3 processes run");
+  EXPECT_THAT(heard(),
+              testing::ElementsAre("READY=1", "STATUS=3 of 3 processes run", "WATCHDOG=1"));
+  service.alive(true, "3 of 3 processes run");
+  EXPECT_TRUE(heard().empty()) << "not more often than it must";
+  std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  service.alive(false, "2 of 3 processes run: amcl is given up");
+  EXPECT_THAT(heard(), testing::ElementsAre("STATUS=2 of 3 processes run: amcl is given up"));
+  service.alive(true, "2 of 3 processes run: amcl is given up");
+  EXPECT_THAT(heard(), testing::ElementsAre("WATCHDOG=1"));
+  service.stopping();
+  EXPECT_THAT(heard(), testing::ElementsAre("STOPPING=1"));
+}
+
+TEST_F(Notify, IsSilentWithoutAServiceManager) {
+  ::unsetenv("NOTIFY_SOCKET");
+  ServiceNotifier service;
+  service.ready();
+  service.alive(true, "well");
+  EXPECT_TRUE(heard().empty());
+}
+
+TEST(Doctor, ExaminesThisMachine) {
+  const test::Folder folder;
+  const auto found = examine_host(folder.path() + "/run/usher");
+  std::vector<std::string> subjects;
+  for (const auto& diagnosis : found) {
+    subjects.push_back(diagnosis.subject);
+    EXPECT_FALSE(diagnosis.found.empty()) << diagnosis.subject;
+    EXPECT_EQ(diagnosis.remedy.empty(), diagnosis.verdict == Diagnosis::Verdict::kGood)
+        << diagnosis.subject;
+  }
+  for (const auto* subject : {"receive buffer", "send buffer", "sysctl file", "clock",
+                              "shared memory", "run directory", "multicast on lo"})
+    EXPECT_THAT(subjects, Contains(subject));
+}
+
+TEST(Doctor, FindsWhatIsWrongWithAFolderOfKeys) {
+  const test::Folder folder;
+  const auto none = examine_keys(folder.path());
+  ASSERT_EQ(none.size(), 1U);
+  EXPECT_EQ(none[0].verdict, Diagnosis::Verdict::kBad);
+}
+
+TEST(Doctor, WantsWhatTheShippedFileSets) {
+  EXPECT_EQ(test::content_of(std::string(USHER_SOURCE_DIR) + "/deploy/sysctl.d/60-usher.conf"),
+            sysctl_file());
+}
+
+}  // namespace
+}  // namespace usher::operations
