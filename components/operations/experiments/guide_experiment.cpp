@@ -115,15 +115,15 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   if (!deployment) return Error{deployment.error()};
   const auto names = places(*deployment);
   if (names.empty()) return Error{"the site has no locations"};
-  const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
+  const int only = options.only.empty() ? 0 : std::atoi(options.only.c_str());
+  if (!options.only.empty() && only < 1)
+    return Error{"--only takes a seed from 1 on, not " + options.only};
+  const int seeds = std::max(only, options.seeds > 0 ? options.seeds : kSeeds);
 
   std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));
   std::atomic<int> next{0}, done{0};
   std::mutex mutex;
   std::string error;
-  const int only = options.only.empty() ? 0 : std::atoi(options.only.c_str());
-  if (!options.only.empty() && (only < 1 || only > seeds))
-    return Error{"--only takes a seed in 1 to " + std::to_string(seeds) + ", not " + options.only};
   const int end = only > 0 ? only : seeds;
   const auto work = [&] {
     for (int i = next++; i < end; i = next++) {
@@ -144,6 +144,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
             i + 1, place.c_str(), result->arrived ? "arrived" : result->outcome.c_str(),
             result->summary.contacts, result->summary.contact_with.c_str(), i + 1,
             result->complaints.c_str());
+        std::fflush(stdout);
       }
       visits[static_cast<std::size_t>(i)] = std::move(result).value();
       show_progress(std::to_string(++done) + " of " + std::to_string(seeds) + " visits");

@@ -49,6 +49,7 @@ struct Parameters {
   VelocityLimit localization_lost{0.0, 0.5};  ///< navigation only; turning may find the pose again
   VelocityLimit low_battery{0.8, 0.6};
   double reverse = 0.4;  ///< [m/s] {>= 0} nothing sees behind
+  double touched = 0.1;  ///< [m/s] {>= 0} creeping past what a whisker touches
 
   /// The Segway's own acceleration; a stop passes at once, as the stopping distances were measured.
   AccelerationLimit linear{0.7, 1.4, 0.0};

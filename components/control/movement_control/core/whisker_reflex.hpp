@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "foundation/geometry/pose2.hpp"
 
 namespace usher::movement_control {
@@ -14,15 +17,29 @@ struct Whiskers {
 
 /// The command without the motion that would press a touched corner further (the thesis, fig. 6.3):
 /// a front whisker bars forward motion and the turn toward its side; a back whisker bars backward
-/// motion and the turn that swings its corner outward.
-constexpr geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& whiskers) {
-  const bool bar_forward = whiskers.front_left || whiskers.front_right;
-  const bool bar_backward = whiskers.back_left || whiskers.back_right;
-  // Turning left moves the front left corner outward, and the back right one.
-  const bool bar_left = whiskers.front_left || whiskers.back_right;
-  const bool bar_right = whiskers.front_right || whiskers.back_left;
+/// motion and the turn that swings its corner outward. Two refinements, without which a robot
+/// beside a wall could never leave it: what touches both corners of a side stands beside it, so
+/// that it may creep along and bend away; and an arc whose turn is barred is driven straight only
+/// at `creep` [m/s], because only the arc was chosen to be free.
+inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& whiskers,
+                                          double creep) {
+  constexpr double kBend = 0.3;  // [1/m] swings the other corner of the side outward by 1.3 cm
+  const Whiskers& t = whiskers;
+  const bool beside_left = t.front_left && t.back_left;
+  const bool beside_right = t.front_right && t.back_right;
+  const bool bar_forward = (t.front_left && !beside_left) || (t.front_right && !beside_right);
+  const bool bar_backward = (t.back_left && !beside_left) || (t.back_right && !beside_right);
   if ((twist.v > 0.0 && bar_forward) || (twist.v < 0.0 && bar_backward)) twist.v = 0.0;
-  if ((twist.w > 0.0 && bar_left) || (twist.w < 0.0 && bar_right)) twist.w = 0.0;
+  // Turning left moves the front left corner outward, and the back right one.
+  const bool bar_left = t.front_left || t.back_right;
+  const bool bar_right = t.front_right || t.back_left;
+  const bool turn_barred = (twist.w > 0.0 && bar_left) || (twist.w < 0.0 && bar_right);
+  if (beside_left || beside_right || turn_barred) twist.v = std::clamp(twist.v, -creep, creep);
+  if (!turn_barred) return twist;
+  // The leading corner away from what stands beside.
+  const bool away = beside_left != beside_right && (twist.v * twist.w < 0.0) == beside_left;
+  const double most = away ? kBend * std::abs(twist.v) : 0.0;
+  twist.w = std::clamp(twist.w, -most, most);
   return twist;
 }
 

@@ -36,6 +36,8 @@ Parameters MovementControlComponent::read_parameters(runtime::Parameters& parame
   limit(p.low_battery, "low_battery", "with a low battery");
   p.reverse = parameters.number("reverse_v", "m/s", {0, 1}, p.reverse,
                                 "Greatest speed backwards, where nothing sees.");
+  p.touched = parameters.number("touched_v", "m/s", {0, 0.3}, p.touched,
+                                "Greatest speed past what a whisker touches.");
   const auto acceleration = [&](AccelerationLimit& value, const std::string& name,
                                 const std::string& unit) {
     value.speed_up = parameters.number(name + "_speed_up", unit, {0, 10}, value.speed_up,

@@ -293,27 +293,47 @@ TEST(MovementControl, WorksWithoutWhiskersWhereThereAreNone) {
 TEST(WhiskerReflex, BarsPerCornerAndDirection) {
   struct Row {
     Whiskers whiskers;
-    bool forward, backward, left, right;  ///< what stays possible
+    double forward, backward;  ///< [m/s] of 0.5
+    bool left, right;          ///< what stays possible
   };
   const Row rows[] = {
-      {{false, false, false, false}, true, true, true, true},
-      {{true, false, false, false}, false, true, false, true},
-      {{false, true, false, false}, false, true, true, false},
-      {{true, true, false, false}, false, true, false, false},
-      {{false, false, true, false}, true, false, true, false},
-      {{false, false, false, true}, true, false, false, true},
-      {{false, false, true, true}, true, false, false, false},
-      {{true, false, true, false}, false, false, false, false},
-      {{true, false, false, true}, false, false, false, true},
-      {{false, true, true, false}, false, false, true, false},
-      {{true, true, true, true}, false, false, false, false},
+      {{false, false, false, false}, 0.5, 0.5, true, true},
+      {{true, false, false, false}, 0.0, 0.5, false, true},
+      {{false, true, false, false}, 0.0, 0.5, true, false},
+      {{true, true, false, false}, 0.0, 0.5, false, false},
+      {{false, false, true, false}, 0.5, 0.0, true, false},
+      {{false, false, false, true}, 0.5, 0.0, false, true},
+      {{false, false, true, true}, 0.5, 0.0, false, false},
+      {{true, false, false, true}, 0.0, 0.0, false, true},
+      {{false, true, true, false}, 0.0, 0.0, true, false},
+      // Beside a wall, or between two: creeps along.
+      {{true, false, true, false}, 0.1, 0.1, false, false},
+      {{true, true, true, false}, 0.0, 0.1, false, false},
+      {{true, false, true, true}, 0.1, 0.0, false, false},
+      {{true, true, true, true}, 0.1, 0.1, false, false},
   };
   for (const Row& row : rows) {
-    EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers).v, row.forward ? 0.5 : 0.0);
-    EXPECT_EQ(whisker_reflex({-0.5, 0.0}, row.whiskers).v, row.backward ? -0.5 : 0.0);
-    EXPECT_EQ(whisker_reflex({0.0, 0.5}, row.whiskers).w, row.left ? 0.5 : 0.0);
-    EXPECT_EQ(whisker_reflex({0.0, -0.5}, row.whiskers).w, row.right ? -0.5 : 0.0);
+    EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers, 0.1).v, row.forward);
+    EXPECT_EQ(whisker_reflex({-0.5, 0.0}, row.whiskers, 0.1).v, -row.backward);
+    EXPECT_EQ(whisker_reflex({0.0, 0.5}, row.whiskers, 0.1).w, row.left ? 0.5 : 0.0);
+    EXPECT_EQ(whisker_reflex({0.0, -0.5}, row.whiskers, 0.1).w, row.right ? -0.5 : 0.0);
   }
+}
+
+TEST(WhiskerReflex, AnArcWhoseTurnIsBarredIsNotDrivenStraightAtSpeed) {
+  const Whiskers back_right{.back_right = true};
+  EXPECT_EQ(whisker_reflex({0.5, 0.5}, back_right, 0.1), Twist2(0.1, 0.0));
+  EXPECT_EQ(whisker_reflex({0.5, -0.5}, back_right, 0.1), Twist2(0.5, -0.5));
+}
+
+TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
+  const Whiskers left{.front_left = true, .back_left = true};
+  EXPECT_LT(whisker_reflex({0.1, -0.5}, left, 0.1).w, 0.0);
+  EXPECT_GE(whisker_reflex({0.1, -0.5}, left, 0.1).w, -0.05);
+  EXPECT_EQ(whisker_reflex({0.1, 0.5}, left, 0.1).w, 0.0);
+  EXPECT_GT(whisker_reflex({-0.1, 0.5}, left, 0.1).w, 0.0);
+  const Whiskers both{true, true, true, true};
+  EXPECT_EQ(whisker_reflex({0.1, -0.5}, both, 0.1).w, 0.0);
 }
 
 TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
@@ -456,7 +476,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
         ASSERT_EQ(out, Twist2{});
       }
       if (inputs.whiskers) {
-        ASSERT_EQ(whisker_reflex(out, *inputs.whiskers), out);
+        ASSERT_EQ(whisker_reflex(out, *inputs.whiskers, Parameters{}.touched), out);
       }
       last = out.v;
     }

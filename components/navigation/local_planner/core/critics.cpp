@@ -276,6 +276,10 @@ int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticSco
     const double v = speeds_[static_cast<std::size_t>(trajectory.speed)].target;
     const double w = turns_[static_cast<std::size_t>(trajectory.turn)].target;
     if (std::abs(v * w) > config_.lateral_acceleration) continue;
+    // Without the whole clearance its corners are as slow as itself.
+    if (speeds_[static_cast<std::size_t>(trajectory.speed)].contact == 0 &&
+        std::abs(w) > careful_turn_)
+      continue;
     const CriticScores scores = score(input, i, fastest);
     if (winner < 0 || scores.total() < best.total()) winner = static_cast<int>(i), best = scores;
   }

@@ -17,6 +17,7 @@ constexpr double kSlowEnoughToTurn = 0.15;  // [m/s] below this a turn in place 
 constexpr double kLongestCycle = 0.2;  // [s] a command is ramped for at most this long after a gap
 constexpr double kLookAhead =
     0.5;  // [m] the direction of the path is that to the point this far along
+constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer than this is passed
 constexpr double kAligned = 0.15;  // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
@@ -39,6 +40,7 @@ Status check(const DynamicWindowConfig& c) {
       {"fastest_turn", c.fastest_turn, 0.05, 5.0},
       {"spot_turn", c.spot_turn, 0.05, 5.0},
       {"slowest_turn", c.slowest_turn, 0.01, c.spot_turn},
+      {"tight_turn", c.tight_turn, 0.01, c.spot_turn},
       {"lateral_acceleration", c.lateral_acceleration, 0.05, 10.0},
       {"turn_stopping_time", c.turn_stopping_time, 0.05, 5.0},
       {"braking", c.braking, 0.1, 20.0},
@@ -129,7 +131,7 @@ Result<DynamicWindow> DynamicWindow::make(const DynamicWindowConfig& config, cpu
 DynamicWindow::DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd)
     : config_(config),
       roomy_(config.footprint.grown(config.clearance), CellExtent::kWhole, simd),
-      narrow_(config.footprint.grown(0.25 * config.clearance), CellExtent::kWhole, simd),
+      narrow_(config.footprint.grown(0.5 * config.clearance), CellExtent::kWhole, simd),
       whole_(config.footprint, CellExtent::kWhole, simd),
       center_(config.footprint, CellExtent::kCenter, simd),
       rollout_({.step = config.simulated_time / config.steps,
@@ -203,10 +205,29 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
   return decision;
 }
 
+/// Along the slowest of the arcs just tried that stays free for longest; of equal ones the one that
+/// bends least from now.
 Decision DynamicWindow::brake(const Input& input) {
   const bool standing = std::abs(input.measured.v) < kStanding;
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
+  if (standing) return decision;
+  const Trajectory* best = nullptr;
+  double best_bend = 0.0;
+  for (const Trajectory& trajectory : rollout_.trajectories()) {
+    if (trajectory.speed != 0) continue;
+    const double turn = turns_[static_cast<std::size_t>(trajectory.turn)].target;
+    const double bend = std::abs(turn - decision.command.w);
+    if (best != nullptr && (trajectory.free_steps < best->free_steps ||
+                            (trajectory.free_steps == best->free_steps && bend >= best_bend)))
+      continue;
+    best = &trajectory;
+    best_bend = bend;
+  }
+  if (best != nullptr && decision.command.v > 0.0) {
+    const double turn = turns_[static_cast<std::size_t>(best->turn)].target;
+    decision.command.w = ramped(input, {0.0, turn}, config_.braking).w;
+  }
   return decision;
 }
 
@@ -257,15 +278,22 @@ bool DynamicWindow::touches(const Input& input, const ContactTest& contact,
   return contact.touches(bits_, turned, x, y);
 }
 
-bool DynamicWindow::can_turn(const Input& input, double angle) const {
+/// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
+double DynamicWindow::turn_rate(const Input& input, double angle) const {
+  const Touches& t = touches_;
+  if (angle > 0.0 ? t.front_left || t.back_right : t.front_right || t.back_left) return 0.0;
   // Cells that it overlaps in part already cannot be asked to stay untouched.
-  const ContactTest& contact = touches(input, whole_, input.pose) ? center_ : whole_;
+  const ContactTest& least = touches(input, whole_, input.pose) ? center_ : whole_;
+  double rate = config_.spot_turn;
   const int steps = static_cast<int>(std::ceil(std::abs(angle) / kSweep));
-  for (int i = 1; i <= steps; ++i) {
-    const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / steps};
-    if (touches(input, contact, turned)) return false;
+  for (int i = 0; i <= steps; ++i) {
+    const Pose2 turned{input.pose.x, input.pose.y,
+                       input.pose.yaw + angle * i / std::max(steps, 1)};
+    if (!touches(input, roomy_, turned)) continue;
+    rate = std::min(rate, config_.tight_turn);
+    if (i > 0 && touches(input, least, turned)) return 0.0;
   }
-  return true;
+  return rate;
 }
 
 /// The small move that takes a touched corner out of the way of a turn; nothing when none does, or
@@ -290,15 +318,17 @@ Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   if (turning_ != 0 && std::abs(angle) > 0.5 && angle * turning_ < 0.0)
     angle += turning_ * 2.0 * geometry::kPi;
   if (auto decision = free_corner(input, angle)) return *decision;
-  if (!can_turn(input, angle)) {
+  double fastest = turn_rate(input, angle);
+  if (fastest == 0.0) {
     angle += angle > 0.0 ? -2.0 * geometry::kPi : 2.0 * geometry::kPi;
-    if (!can_turn(input, angle)) return halt(input, Reason::kBlocked, config_.braking);
+    fastest = turn_rate(input, angle);
+    if (fastest == 0.0) return halt(input, Reason::kBlocked, config_.braking);
   }
   turning_ = angle > 0.0 ? 1 : -1;
   const double remaining = std::abs(angle) - config_.response.turn_time_constant *
                                                  std::max(0.0, turning_ * input.measured.w);
   const double rate =
-      std::clamp(remaining / config_.turn_stopping_time, config_.slowest_turn, config_.spot_turn);
+      std::min(fastest, std::max(config_.slowest_turn, remaining / config_.turn_stopping_time));
   Decision decision;
   decision.reason = reason;
   decision.target = {0.0, turning_ * rate};
@@ -346,31 +376,41 @@ Decision DynamicWindow::follow(const Input& input) {
   double fastest = std::min(config_.pace, config_.stopping.speed(path_.remaining() - lag));
   if (!way_open_) {
     const double room = config_.stopping.speed(obstacle - config_.margin - lag);
-    if (room < config_.slowest) return with_obstacle(brake(input));
+    if (room < config_.slowest) {
+      drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);  // the arcs to stop on
+      return with_obstacle(brake(input));
+    }
     fastest = std::min(fastest, room);
   }
   fastest = std::max(fastest, config_.slowest);
   tight_ = false;
-  Decision decision = drive(input, {&narrow_, &roomy_}, fastest);
+  // Squeezing is for where the plan leads through; past what stands on the plan only with room,
+  // else it waits: people go on, and the next plan leads round what stays.
+  const bool detour = obstacle < kDetourSight;
+  Decision decision = detour ? drive(input, {&roomy_, &roomy_}, fastest, config_.pace)
+                             : drive(input, {&narrow_, &roomy_}, fastest, config_.careful_speed);
   if (decision.admissible > 0) return with_obstacle(decision);
   // No arc fits: perhaps one does after a turn to the path, or slowly and with less room.
   const double error = geometry::shortest_turn(input.pose.yaw, heading);
   const bool standing = std::abs(input.measured.v) < kSlowEnoughToTurn;
-  if (standing && std::abs(error) > kAligned && can_turn(input, error)) {
+  if (standing && std::abs(error) > kAligned && turn_rate(input, error) > 0.0) {
     return with_obstacle(turn_to(input, heading, Reason::kTurning));
   }
+  if (detour) return with_obstacle(brake(input));
   const double slow = std::min({fastest, config_.tight_speed, config_.pace});
   tight_ = true;
-  decision = drive(input, {&whole_, &narrow_}, slow);
+  decision = drive(input, {&whole_, &narrow_}, slow, config_.tight_speed);
   // Who overlaps part of a cell already must be let out by its center.
   if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {
-    decision = drive(input, {&center_, &whole_}, slow);
+    decision = drive(input, {&center_, &whole_}, slow, config_.tight_speed);
   }
   decision.reason = Reason::kTight;
   return with_obstacle(decision.admissible > 0 ? decision : brake(input));
 }
 
-Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, double fastest) {
+Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, double fastest,
+                              double corner_speed) {
+  careful_turn_ = corner_speed / config_.footprint.circumscribed_radius();
   sample(input, fastest);
   const RolloutStart start{input.pose, input.measured, input.last_command};
   rollout_.run(start, speeds_, turns_, input.costs, bits_, contacts, config_.footprint,
@@ -434,7 +474,14 @@ Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose
                                double seconds_since_last, double rate) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
-  return recover({costs, pose, measured, last_command, seconds, {}}, {0.0, rate});
+  const Input input{costs, pose, measured, last_command, seconds, {}};
+  if (!valid(input) || !std::isfinite(rate)) return refused();
+  load(input);
+  // Looking around is worth no touch: only with room.
+  const double angle = std::copysign(std::abs(rate) * config_.turn_stopping_time + kAligned, rate);
+  if (turn_rate(input, angle) < config_.spot_turn)
+    return halt(input, Reason::kBlocked, config_.braking);
+  return recover(input, {0.0, rate});
 }
 
 }  // namespace usher::local_planner

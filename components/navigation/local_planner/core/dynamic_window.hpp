@@ -51,7 +51,7 @@ struct DynamicWindowConfig {
 
   double pace = 1.15;          ///< [m/s] the speed to keep where it can be stopped
   double slowest = 0.1;        ///< [m/s] the base does not follow slower commands well
-  double careful_speed = 0.4;  ///< [m/s] up to here a quarter of the clearance is enough
+  double careful_speed = 0.4;  ///< [m/s] up to here half of the clearance is enough
   double clearance = 0.06;     ///< [m] kept around the outline above the careful speed
   double disc_clearance =
       0.2;  ///< [m] kept from moving discs above the careful speed, a quarter of it below
@@ -60,6 +60,7 @@ struct DynamicWindowConfig {
   double fastest_turn = 1.0;          ///< [rad/s]
   double slowest_turn = 0.15;         ///< [rad/s] turning in place
   double spot_turn = 0.8;             ///< [rad/s] turning in place
+  double tight_turn = 0.15;           ///< [rad/s] turning in place without the whole clearance
   double lateral_acceleration = 0.8;  ///< [m/s2] bounds speed x turn rate
   double turn_stopping_time = 0.6;    ///< [s] a turn stops within this time x its rate
   double braking = 2.0;               ///< [m/s2] slope of the command when it must stop
@@ -190,11 +191,12 @@ class DynamicWindow {
   Decision follow(const Input& input);
   Decision brake(const Input& input);
   Decision halt(const Input& input, Reason reason, double deceleration) const;
-  Decision drive(const Input& input, const ContactTests& contacts, double fastest);
+  Decision drive(const Input& input, const ContactTests& contacts, double fastest,
+                 double corner_speed);
   Decision recover(const Input& input, const geometry::Twist2& target);
   bool must_turn_first(const Input& input, double& heading);
   bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
-  bool can_turn(const Input& input, double angle) const;
+  double turn_rate(const Input& input, double angle) const;
   geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;
 
   // What the critics see (critics.cpp).
@@ -211,7 +213,7 @@ class DynamicWindow {
 
   DynamicWindowConfig config_;
   ContactTest roomy_;   // whole cells, with clearance
-  ContactTest narrow_;  // whole cells, with a quarter of it: what the prediction may be wrong by
+  ContactTest narrow_;  // whole cells, with half of it: what the prediction may be wrong by
   ContactTest whole_;   // whole cells
   ContactTest center_;  // centers of cells
   Rollout rollout_;
@@ -226,6 +228,7 @@ class DynamicWindow {
   geometry::Pose2 oscillation_pose_;
   Trail trail_;
   Touches touches_;
+  double careful_turn_ = 0.0;  // [rad/s] the fastest without the whole clearance
   bool tight_ = false;  // only its own outline fits: the path's line counts for more
 
   double local_goal_arc_ = 0.0;

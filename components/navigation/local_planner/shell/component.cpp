@@ -57,7 +57,7 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
   c.tight_speed = p.number("tight_speed", "m/s", {0.05, 1}, c.tight_speed,
                            "Speed where only the outline fits.");
   c.careful_speed = p.number("careful_speed", "m/s", {0, 1.5}, c.careful_speed,
-                             "Up to here a quarter of the clearance is enough.");
+                             "Up to here half of the clearance is enough.");
   c.clearance = p.number("clearance", "m", {0, 0.5}, c.clearance,
                          "Kept around the outline above the careful speed.");
   c.fastest_turn =
@@ -69,6 +69,8 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
       p.number("deceleration", "m/s2", {0.1, 5}, 1.0, "Of the command, toward standstill.");
   c.limits.angular_acceleration =
       p.number("angular_acceleration", "rad/s2", {0.1, 10}, 1.5, "Of the turn command.");
+  c.tight_turn = p.number("tight_turn", "rad/s", {0.05, 2}, c.tight_turn,
+                          "Turn rate in place without the whole clearance.");
   c.lateral_acceleration = p.number("lateral_acceleration", "m/s2", {0.1, 3},
                                     c.lateral_acceleration, "Bounds speed times turn rate.");
   c.braking =

@@ -266,7 +266,7 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
       {{.back_right = true}, 1.0, 0.0},                      // the tail would swing into it
       {{.front_left = true}, -1.0, 0.0},                     // the nose would
       {{.front_right = true}, 0.0, 1.0},                     // turns away from it
-      {{.front_left = true, .back_right = true}, 0.0, 1.0},  // no way out: the reflex holds it
+      {{.front_left = true, .back_right = true}, 0.0, -1.0},  // the long way round
   };
   for (const Row& row : rows) {
     DynamicWindow planner = DynamicWindow::make({}).value();

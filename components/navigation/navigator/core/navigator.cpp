@@ -10,8 +10,11 @@ namespace {
 
 constexpr double kRepeat = 0.2 - 1e-6;  // [s] between repetitions of what was not answered
 constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever restarts the stall clock
+constexpr double kTurned = 0.35;        // [rad] a slow turn is progress too,
+constexpr int kMostTurns = 12;          // but not to turn and turn again
 constexpr double kSlowestKept =
     0.02;  // [m/s] slower than this tells nothing about the time of arrival
+constexpr double kBarred = 1.5;  // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
 
 std::string text(const char* format, double value) {
@@ -322,6 +325,11 @@ bool Navigator::pause_if_unfit(const Situation& s) {
   return true;
 }
 
+void Navigator::restart_stall_clock(const Situation& s) {
+  nearest_since_ = s.time;
+  stall_yaw_ = s.pose->yaw;
+}
+
 void Navigator::track(const Situation& s) {
   if (route_.empty()) return;
   const double elapsed = std::clamp(s.time - last_step_, 0.0, 1.0);
@@ -333,7 +341,12 @@ void Navigator::track(const Situation& s) {
   }
   if (route_.remaining() < nearest_ - kProgress) {
     nearest_ = route_.remaining();
-    nearest_since_ = s.time;
+    restart_stall_clock(s);
+    turns_counted_ = 0;
+  } else if (turns_counted_ < kMostTurns &&
+             std::abs(geometry::shortest_turn(stall_yaw_, s.pose->yaw)) > kTurned) {
+    restart_stall_clock(s);
+    ++turns_counted_;
   }
   recovered_at_ = std::min(recovered_at_, advanced_);
   if (advanced_ - recovered_at_ >= config_.recovery_progress) recoveries_in_a_row_ = 0;
@@ -418,7 +431,8 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   route_.track(*s.pose);
   longest_ = std::max(longest_, advanced_ + route_.length());
   nearest_ = route_.remaining();
-  nearest_since_ = s.time;
+  restart_stall_clock(s);
+  turns_counted_ = 0;
   standing_since_.reset();
   obstacle_since_.reset();
   state_ = State::kActive;
@@ -484,7 +498,7 @@ void Navigator::replan_if_due(const Situation& s) {
 
 void Navigator::wait_blocked(const Situation& s) {
   if (!blocked(s)) {
-    nearest_since_ = s.time;
+    restart_stall_clock(s);
     return enter(Phase::kFollowing, s.time);
   }
   blocked_by_person_ |= s.person_ahead;
@@ -531,8 +545,9 @@ void Navigator::recover(const Situation& s, Failure failure, const std::string& 
 
 void Navigator::continue_recovery(const Situation& s) {
   const double elapsed = s.time - phase_since_;
-  const bool moved = follower_speaks(s) && (s.follow.state == GoalState::kSucceeded ||
-                                            s.follow.state == GoalState::kFailed);
+  const bool barred = blocked(s) && elapsed >= kBarred;
+  const bool moved = barred || (follower_speaks(s) && (s.follow.state == GoalState::kSucceeded ||
+                                                       s.follow.state == GoalState::kFailed));
   const bool done = phase_ == Phase::kClearing ? elapsed >= config_.clear_time
                                                : moved || elapsed >= config_.recovery_timeout ||
                                                      (phase_ == Phase::kBackingOff &&

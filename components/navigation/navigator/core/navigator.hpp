@@ -30,7 +30,7 @@ struct NavigatorConfig {
 
   double wait_object = 2.0;        ///< [s] blocked by a thing: wait before planning round it
   double wait_person = 8.0;        ///< [s] blocked by somebody, who probably moves
-  double recovery_patience = 3.0;  ///< [s] still blocked after the new path: recover
+  double recovery_patience = 6.0;  ///< [s] still blocked after the new path: recover
   double stall_time = 15.0;        ///< [s] without getting nearer counts as blocked
 
   int most_recoveries = 6;         ///< in a row without progress; clear, back off, look, clear, ...
@@ -235,6 +235,7 @@ class Navigator {
   void step_state(const Situation& s);
   void pursue(const Situation& s);
   bool pause_if_unfit(const Situation& s);
+  void restart_stall_clock(const Situation& s);
   void track(const Situation& s);
   bool arrived(const Situation& s);
   void handle_reply(const Situation& s);
@@ -287,6 +288,8 @@ class Navigator {
   double last_planned_ = 0.0;
   double nearest_ = 0.0;  // [m] least remaining way on this path, for the stall clock
   double nearest_since_ = 0.0;
+  double stall_yaw_ = 0.0;  // [rad] when the stall clock was restarted
+  int turns_counted_ = 0;   // as progress, since it came nearer
   std::optional<double> standing_since_, obstacle_since_;
 
   // Blocked and recovering.

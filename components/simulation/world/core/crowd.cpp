@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kArrived = 0.25;   // [m]
 constexpr double kTrailStep = 0.1;  // [m]
+constexpr double kLookPeriod = 0.2;  // [s] between looks for the way to follow
 constexpr std::size_t kTrailLength = 400;
 constexpr double kStandsFirm = 0.5;   // [m/s^2] a weaker push does not make a standing person step
 constexpr double kProgress = 0.3;     // [m] less than this within the patience is none
@@ -87,7 +88,7 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
   for (std::size_t i = 0; i < people_.size(); ++i) {
     Person& person = people_[i];
     Mind& mind = minds_[i];
-    choose_goal(person, mind, robot);
+    choose_goal(person, mind, scene, robot);
     const Point2 wanted = wanted_velocity(person, mind, robot);
     // Who follows and is near enough stands, and has to step out of the robot's way.
     const bool walks =
@@ -134,17 +135,37 @@ void Crowd::remember_robot(const RobotView& robot) {
   if (trail_.size() > kTrailLength) trail_.pop_front();
 }
 
-void Crowd::choose_goal(Person& person, Mind& mind, const RobotView& robot) {
-  if (mind.follow && mind.has_goal && !trail_.empty()) {
-    // Along the robot's way, so that no wall comes between, up to the distance behind it.
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i < trail_.size(); ++i) {
-      if ((trail_[i] - person.position).norm() <= (trail_[nearest] - person.position).norm()) {
-        nearest = i;
-      }
+/// Along the robot's way, so that no wall comes between: the newest point of it that a straight
+/// walk reaches, else the nearest.
+Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
+  constexpr double kSight = 6.0;     // [m]
+  constexpr double kTested = 0.2;    // [m] between tested points of the straight walk
+  constexpr std::size_t kSkip = 3;   // points of the trail
+  const auto free = [&](const Point2& there) {
+    const Point2 way = there - here;
+    const int steps = static_cast<int>(way.norm() / kTested);
+    for (int i = 1; i <= steps; ++i) {
+      const Point2 point = here + way * (static_cast<double>(i) / steps);
+      if (scene.nearest(point, config_.top, config_.radius).thing >= 0) return false;
     }
-    constexpr std::size_t kAhead = 8;  // points of the trail
-    mind.goal = trail_[std::min(nearest + kAhead, trail_.size() - 1)];
+    return true;
+  };
+  Point2 nearest = trail_.back();
+  for (std::size_t i = trail_.size(); i > 0; i -= std::min(i, kSkip)) {
+    const Point2& point = trail_[i - 1];
+    if ((point - here).norm() < kSight && free(point)) return point;
+    if ((point - here).norm() < (nearest - here).norm()) nearest = point;
+  }
+  return nearest;
+}
+
+void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot) {
+  if (mind.follow && mind.has_goal && !trail_.empty()) {
+    mind.look_left -= kStep;
+    if (mind.look_left <= 0.0) {
+      mind.look_left = kLookPeriod;
+      mind.goal = point_to_follow(person.position, scene);
+    }
     // Near enough, or still in front of it: lets the robot pass first.
     const Point2 from_robot = person.position - robot.pose.position();
     const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));

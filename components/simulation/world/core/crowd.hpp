@@ -79,6 +79,7 @@ class Crowd {
     Point2 goal = Point2::Zero();
     bool has_goal = false;
     bool follow = false;
+    double look_left = 0.0;  // s, to the next look for the way to follow
     std::vector<Point2> loop;
     std::size_t next = 0;
     bool reversed = false;
@@ -89,7 +90,8 @@ class Crowd {
   };
 
   void remember_robot(const RobotView& robot);
-  void choose_goal(Person& person, Mind& mind, const RobotView& robot);
+  Point2 point_to_follow(const Point2& here, const Scene& scene) const;
+  void choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot);
   void turn_round(Mind& mind) const;
   void lose_patience(Person& person, Mind& mind);
   void hold(Person& person, const Mind& mind, Mover& mover) const;
