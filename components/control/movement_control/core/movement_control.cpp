@@ -165,7 +165,8 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
 
     const geometry::Twist2 ramped = ramp(wanted, now);
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
-    decision.twist = whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+    decision.twist =
+        whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
     if (decision.twist != ramped) decision.limit = Limit::kWhisker;
   }
 

@@ -22,7 +22,7 @@ struct Whiskers {
 /// that it may creep along and bend away; and an arc whose turn is barred is driven straight only
 /// at `creep` [m/s], because only the arc was chosen to be free.
 inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& whiskers,
-                                          double creep) {
+                                       double creep) {
   constexpr double kBend = 0.3;  // [1/m] swings the other corner of the side outward by 1.3 cm
   const Whiskers& t = whiskers;
   const bool beside_left = t.front_left && t.back_left;

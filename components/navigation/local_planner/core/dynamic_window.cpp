@@ -18,7 +18,7 @@ constexpr double kLongestCycle = 0.2;  // [s] a command is ramped for at most th
 constexpr double kLookAhead =
     0.5;  // [m] the direction of the path is that to the point this far along
 constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer than this is passed
-constexpr double kAligned = 0.15;  // [rad] a turn towards the path ends here
+constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
 
@@ -287,8 +287,7 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
   double rate = config_.spot_turn;
   const int steps = static_cast<int>(std::ceil(std::abs(angle) / kSweep));
   for (int i = 0; i <= steps; ++i) {
-    const Pose2 turned{input.pose.x, input.pose.y,
-                       input.pose.yaw + angle * i / std::max(steps, 1)};
+    const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / std::max(steps, 1)};
     if (!touches(input, roomy_, turned)) continue;
     rate = std::min(rate, config_.tight_turn);
     if (i > 0 && touches(input, least, turned)) return 0.0;
@@ -377,7 +376,8 @@ Decision DynamicWindow::follow(const Input& input) {
   if (!way_open_) {
     const double room = config_.stopping.speed(obstacle - config_.margin - lag);
     if (room < config_.slowest) {
-      drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);  // the arcs to stop on
+      // The arcs to stop on.
+      drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
       return with_obstacle(brake(input));
     }
     fastest = std::min(fastest, room);

@@ -229,7 +229,7 @@ class DynamicWindow {
   Trail trail_;
   Touches touches_;
   double careful_turn_ = 0.0;  // [rad/s] the fastest without the whole clearance
-  bool tight_ = false;  // only its own outline fits: the path's line counts for more
+  bool tight_ = false;         // only its own outline fits: the path's line counts for more
 
   double local_goal_arc_ = 0.0;
   bool goal_in_window_ = false;

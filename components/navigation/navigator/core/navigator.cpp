@@ -13,7 +13,7 @@ constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever rest
 constexpr double kTurned = 0.35;        // [rad] a slow turn is progress too,
 constexpr int kMostTurns = 12;          // but not to turn and turn again
 constexpr double kSlowestKept =
-    0.02;  // [m/s] slower than this tells nothing about the time of arrival
+    0.02;                        // [m/s] slower than this tells nothing about the time of arrival
 constexpr double kBarred = 1.5;  // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
 

@@ -9,8 +9,8 @@
 namespace usher::world {
 namespace {
 
-constexpr double kArrived = 0.25;   // [m]
-constexpr double kTrailStep = 0.1;  // [m]
+constexpr double kArrived = 0.25;    // [m]
+constexpr double kTrailStep = 0.1;   // [m]
 constexpr double kLookPeriod = 0.2;  // [s] between looks for the way to follow
 constexpr std::size_t kTrailLength = 400;
 constexpr double kStandsFirm = 0.5;   // [m/s^2] a weaker push does not make a standing person step
@@ -138,9 +138,9 @@ void Crowd::remember_robot(const RobotView& robot) {
 /// Along the robot's way, so that no wall comes between: the newest point of it that a straight
 /// walk reaches, else the nearest.
 Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
-  constexpr double kSight = 6.0;     // [m]
-  constexpr double kTested = 0.2;    // [m] between tested points of the straight walk
-  constexpr std::size_t kSkip = 3;   // points of the trail
+  constexpr double kSight = 6.0;    // [m]
+  constexpr double kTested = 0.2;   // [m] between tested points of the straight walk
+  constexpr std::size_t kSkip = 3;  // points of the trail
   const auto free = [&](const Point2& there) {
     const Point2 way = there - here;
     const int steps = static_cast<int>(way.norm() / kTested);
