@@ -65,9 +65,13 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
     const bool up = from.layer == "core" && !test && !starts_with_any(name, {from.room + "/core/"});
     return up ? "a core does not know its shell" : "";
   }
-  // Libraries without a shell are no components.
-  if (starts_with_any(name, {"drivers/base_obedience/core/", "interaction/phrases/core/",
-                             "simulation/rendering/core/"})) {
+  // Libraries are no components; those of drivers have what shells share, too.
+  if (starts_with_any(name, {"drivers/base_obedience/core/", "drivers/laser_scanner/core/",
+                             "interaction/phrases/core/", "simulation/rendering/core/"})) {
+    return {};
+  }
+  if (from.room.starts_with("drivers/") && from.layer != "core" &&
+      starts_with_any(name, {"drivers/base_obedience/shell/", "drivers/laser_scanner/shell/"})) {
     return {};
   }
   if (from.layer == "core" && !test) return "a core knows itself and foundation";

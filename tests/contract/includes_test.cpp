@@ -31,6 +31,10 @@ TEST(IncludeRules, RefuseWhatBreaksTheHouse) {
   refused("drivers/lms100/device_sim/device.cpp", "\"simulation/world/core/world.hpp\"");
   refused("drivers/lms100/test/lms100_test.cpp", "\"simulation/world/core/world.hpp\"");
   refused("simulation/visitor/shell/component.cpp", "\"simulation/world/core/world.hpp\"");
+  refused("drivers/p3dx/core/link.hpp", "\"drivers/base_obedience/shell/obedient_base.hpp\"");
+  refused("control/supervisor/shell/component.cpp",
+          "\"drivers/base_obedience/shell/obedient_base.hpp\"");
+  refused("drivers/p3dx/device_real/component.cpp", "\"drivers/segway_rmp/core/link.hpp\"");
   refused("foundation/grid/grid.hpp", "\"wire/conversions.hpp\"");
   refused("foundation/grid/grid.hpp", "\"runtime/api/time.hpp\"");
   refused("foundation/grid/grid.hpp", "<atomic>");
@@ -59,6 +63,11 @@ TEST(IncludeRules, AllowTheRest) {
   allowed("drivers/segway_rmp/shell/component.cpp",
           "\"drivers/base_obedience/core/base_obedience.hpp\"");
   allowed("drivers/segway_rmp/core/base.cpp", "\"drivers/base_obedience/core/base_obedience.hpp\"");
+  allowed("drivers/p3dx/shell/base_driver.hpp",
+          "\"drivers/base_obedience/shell/obedient_base.hpp\"");
+  allowed("drivers/lms100/device_real/component.hpp",
+          "\"drivers/laser_scanner/shell/scanner_line.hpp\"");
+  allowed("drivers/lms100/core/session.hpp", "\"drivers/laser_scanner/core/scan.hpp\"");
   allowed("simulation/world/shell/component.cpp", "\"simulation/world/core/world.hpp\"");
   allowed("operations/experiments/guide.cpp", "\"simulation/world/core/world.hpp\"");
   allowed("operations/experiments/guide.cpp", "\"runtime/lockstep/lockstep_world.hpp\"");

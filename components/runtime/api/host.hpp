@@ -43,8 +43,12 @@ struct InputOptions {
 class Stream {
  public:
   virtual ~Stream() = default;
-  /// Queues the bytes; false when the stream is closed or 64 kB are already waiting.
+  /// Queues the bytes; false when the stream is closed, or 64 kB or 1024 writes are already
+  /// waiting.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
+  /// The same, in the place of what an earlier write_latest left waiting: for commands of which
+  /// only the newest counts. What has begun to go out goes out whole.
+  virtual bool write_latest(std::span<const std::uint8_t> bytes) = 0;
   virtual bool open() const = 0;
   /// Closes and opens anew after `delay`.
   virtual void reopen(Duration delay) = 0;

@@ -38,6 +38,7 @@ class NoTimer final : public TimerPort {
 class NoStream final : public Stream {
  public:
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
+  bool write_latest(std::span<const std::uint8_t> /*bytes*/) override { return false; }
   bool open() const override { return false; }
   void reopen(Duration /*delay*/) override {}
 };

@@ -21,19 +21,20 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/guard/outbox.hpp"
 #include "runtime/guard/port.hpp"
 
 namespace usher::runtime {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t kMaxQueued = 65536;
 constexpr auto kReopenAfter = std::chrono::seconds(1);
 /// After a guard or the one who called has gone: the next one is there at once.
 constexpr auto kReopenSoon = std::chrono::milliseconds(50);
 constexpr auto kConnectTimeout = std::chrono::seconds(3);
 constexpr auto kGuardStart = std::chrono::seconds(1);
 constexpr auto kOfferAgain = std::chrono::milliseconds(10);
+constexpr auto kLineAgain = std::chrono::milliseconds(2);
 
 std::string reason(const std::string& what) { return what + ": " + std::strerror(errno); }
 
@@ -106,17 +107,10 @@ class Connection final : public Stream {
 
   // --- Stream ---
   bool write(std::span<const std::uint8_t> bytes) override {
-    const std::scoped_lock lock(mutex_);
-    if (state_ != State::kOpen || queue_.size() + bytes.size() > kMaxQueued) return false;
-    // Straight to the device when nothing waits: a drive command must not wait for another thread.
-    if (queue_.empty()) {
-      const ssize_t written = put(bytes);
-      if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
-      if (bytes.empty()) return true;
-    }
-    queue_.insert(queue_.end(), bytes.begin(), bytes.end());
-    wake();
-    return true;
+    return put(Outbox::Kind::kEach, bytes);
+  }
+  bool write_latest(std::span<const std::uint8_t> bytes) override {
+    return put(Outbox::Kind::kLatest, bytes);
   }
   bool open() const override {
     const std::scoped_lock lock(mutex_);
@@ -141,7 +135,8 @@ class Connection final : public Stream {
     if (state_ == State::kOpen) {
       // While the component refuses bytes, nothing is read and a hang-up has to wait with them.
       if (held_.empty()) entry = {descriptor_, POLLIN, 0};
-      if (!queue_.empty()) entry = {descriptor_, static_cast<short>(entry.events | POLLOUT), 0};
+      if (!outbox_.empty() && !line_full_)
+        entry = {descriptor_, static_cast<short>(entry.events | POLLOUT), 0};
     }
     return entry;
   }
@@ -149,7 +144,8 @@ class Connection final : public Stream {
   Clock::time_point due() const {
     const std::scoped_lock lock(mutex_);
     const bool waits = (state_ == State::kOpen && held_.empty()) || state_ == State::kListening;
-    return waits ? Clock::time_point::max() : due_;
+    const auto due = waits ? Clock::time_point::max() : due_;
+    return line_full_ ? std::min(due, Clock::now() + kLineAgain) : due;
   }
 
   void advance(short events, Clock::time_point now) {
@@ -171,7 +167,7 @@ class Connection final : public Stream {
         } else {
           connect(events, now, outcome);
         }
-      } else if (state_ == State::kOpen && (events & POLLOUT) != 0) {
+      } else if (state_ == State::kOpen && ((events & POLLOUT) != 0 || line_full_)) {
         drain(now, outcome);
       }
     }
@@ -195,10 +191,35 @@ class Connection final : public Stream {
     const std::uint64_t one = 1;
     static_cast<void>(!::write(wake_, &one, sizeof(one)));
   }
-  ssize_t put(std::span<const std::uint8_t> bytes) const {
-    return address_->socket() || guarded()
-               ? ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
-               : ::write(descriptor_, bytes.data(), bytes.size());
+  bool put(Outbox::Kind kind, std::span<const std::uint8_t> bytes) {
+    const std::scoped_lock lock(mutex_);
+    if (state_ != State::kOpen) return false;
+    // Straight to the device when nothing waits: a drive command must not wait for another thread.
+    const bool straight = outbox_.empty();
+    if (!outbox_.push(kind, guarded() ? for_guard(kind, bytes) : bytes)) return false;
+    if (straight) send_waiting();
+    if (!outbox_.empty()) wake();
+    return true;
+  }
+  /// What the guard process takes: the kind, then the bytes.
+  std::span<const std::uint8_t> for_guard(Outbox::Kind kind, std::span<const std::uint8_t> bytes) {
+    message_.assign(1, static_cast<std::uint8_t>(kind));
+    message_.insert(message_.end(), bytes.begin(), bytes.end());
+    return message_;
+  }
+  /// False when the port failed, for errno.
+  bool send_waiting() {
+    while (!outbox_.empty()) {
+      line_full_ = address_->kind == StreamAddress::Kind::kSerial && line_full(descriptor_);
+      if (line_full_) return true;
+      const auto bytes = guarded() ? outbox_.first() : outbox_.waiting();
+      const ssize_t count = address_->socket() || guarded()
+                                ? ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                                : ::write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0) return errno == EAGAIN || errno == EINTR;
+      outbox_.sent(static_cast<std::size_t>(count));
+    }
+    return true;
   }
   bool guarded() const { return !sink_.guard.safe.empty(); }
   void reap() {
@@ -207,7 +228,8 @@ class Connection final : public Stream {
   void close_until(Clock::time_point due) {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
-    queue_.clear();
+    outbox_.clear();
+    line_full_ = false;
     state_ = State::kWaiting;
     due_ = due;
   }
@@ -282,13 +304,9 @@ class Connection final : public Stream {
     close_until(now + kReopenAfter);
   }
   void drain(Clock::time_point now, Outcome& outcome) {
-    const ssize_t written = put(queue_);
-    if (written > 0) {
-      queue_.erase(queue_.begin(), queue_.begin() + written);
-    } else if (written < 0 && errno != EAGAIN && errno != EINTR) {
-      outcome.closed = reason("writing to " + uri_);
-      close_until(now + kReopenAfter);
-    }
+    if (send_waiting()) return;
+    outcome.closed = reason("writing to " + uri_);
+    close_until(now + kReopenAfter);
   }
   /// Offers what the component refused last time, then at most one buffer more.
   void receive(Clock::time_point now) {
@@ -327,7 +345,9 @@ class Connection final : public Stream {
   int descriptor_ = -1;  // changed by the I/O thread only
   int listener_ = -1;    // I/O thread only
   pid_t guard_pid_ = 0;  // I/O thread only
-  std::vector<std::uint8_t> queue_;
+  Outbox outbox_;
+  Bytes message_;  // of the guard, reused
+  bool line_full_ = false;
   std::vector<std::uint8_t> held_;  // I/O thread only
   bool reopen_asked_ = false;
   Duration reopen_delay_{};

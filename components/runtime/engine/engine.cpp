@@ -172,6 +172,9 @@ class EngineStream final : public Stream {
   bool write(std::span<const std::uint8_t> bytes) override {
     return stream_ && stream_->write(bytes);
   }
+  bool write_latest(std::span<const std::uint8_t> bytes) override {
+    return stream_ && stream_->write_latest(bytes);
+  }
   bool open() const override { return stream_ && stream_->open(); }
   void reopen(Duration delay) override {
     if (stream_) stream_->reopen(delay);

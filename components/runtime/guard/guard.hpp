@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "runtime/guard/outbox.hpp"
+
 namespace usher::runtime {
 
 /// What a guard process sends to the port that it owns: everything that the driver writes, and the
@@ -22,40 +24,35 @@ class Guard {
   using Time = std::chrono::nanoseconds;
   static constexpr auto kRepeat = std::chrono::milliseconds(10);  ///< between two safe messages
   static constexpr int kFarewells = 3;  ///< safe messages to the port after the driver's end
-  static constexpr std::size_t kMostWaiting = 65536;  ///< bytes
-  static constexpr std::size_t kMostMessages = 1024;
 
   Guard(std::vector<std::uint8_t> safe, Time silence);
 
   /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
   /// messages, wait for it.
-  bool heard(std::span<const std::uint8_t> message, Time now);
+  bool heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now);
   /// The driver ended.
   void gone(Time now);
   /// Puts a safe message up when one is due.
   void tick(Time now);
 
   /// What the port shall get next; empty when nothing waits.
-  std::span<const std::uint8_t> output() const;
+  std::span<const std::uint8_t> output() const { return outbox_.waiting(); }
   /// The port took so many bytes of it.
-  void sent(std::size_t count);
+  void sent(std::size_t count) { outbox_.sent(count); }
 
   /// When tick() has something to do; nothing while the driver was never heard.
   std::optional<Time> due() const;
   /// The driver is gone and the port was told so: the guard may end.
-  bool finished() const { return gone_ && farewells_ == 0 && waiting_.empty(); }
+  bool finished() const { return gone_ && farewells_ == 0 && outbox_.empty(); }
   /// The driver is being overruled.
   bool overruling() const { return overruling_; }
 
  private:
-  void append(std::span<const std::uint8_t> message);
   void put_safe(Time now);
 
   const std::vector<std::uint8_t> safe_;
   const Time silence_;
-  std::vector<std::uint8_t> waiting_;
-  std::vector<std::size_t> lengths_;  ///< of the messages in it, of the first one what is left
-  bool first_under_way_ = false;      ///< a part of the first one was sent
+  Outbox outbox_;
   std::optional<Time> heard_at_;
   Time safe_at_{};
   bool overruling_ = false;

@@ -2,8 +2,9 @@
 //
 // Started by a driver's host with one end of a socket pair of whole messages. It opens the port and
 // answers with one message: a zero octet, or a one octet and why it could not. From then on it
-// passes messages both ways (guard.hpp). It ends when the driver's end of the pair is closed, when
-// the port fails, and by no signal that can be ignored.
+// passes messages both ways (guard.hpp); each of the driver's begins with one octet, its kind
+// (outbox.hpp), nothing but that is a sign of life. It ends when the driver's end of the pair is
+// closed, when the port fails, and by no signal that can be ignored.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -29,6 +31,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Time = Guard::Time;
 constexpr int kConnectMs = 3000;
+constexpr auto kLineAgain = std::chrono::milliseconds(2);
 /// A port that takes nothing must not hold the guard, and with it the port, for ever.
 constexpr auto kLongestFarewell = std::chrono::milliseconds(200);
 
@@ -92,7 +95,12 @@ class Process {
     entries_[1] = {port_, static_cast<short>(guard_.output().empty() ? POLLIN : POLLIN | POLLOUT),
                    0};
     timespec timeout{};
-    const auto due = guard_.due();
+    auto due = guard_.due();
+    if (line_full_) {
+      entries_[1].events = POLLIN;
+      const Time again = now() + kLineAgain;
+      due = due ? std::min(*due, again) : again;
+    }
     if (due) {
       const auto rest = std::max<std::int64_t>(0, (*due - now()).count());
       timeout = {static_cast<time_t>(rest / 1'000'000'000),
@@ -114,7 +122,8 @@ class Process {
         guard_.gone(*gone_at_);
         return true;
       }
-      if (!guard_.heard({buffer_.data(), static_cast<std::size_t>(count)}, now()))
+      const auto kind = buffer_[0] == 0 ? Outbox::Kind::kEach : Outbox::Kind::kLatest;
+      if (!guard_.heard(kind, {buffer_.data() + 1, static_cast<std::size_t>(count) - 1}, now()))
         return complain("the port takes nothing");
     }
     return true;
@@ -135,7 +144,10 @@ class Process {
   }
 
   bool to_port() {
+    line_full_ = false;
     while (!guard_.output().empty()) {
+      line_full_ = line_full(port_);
+      if (line_full_) return true;
       const auto output = guard_.output();
       const ssize_t count = ::write(port_, output.data(), output.size());
       if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
@@ -154,8 +166,9 @@ class Process {
   const int port_;
   Guard guard_;
   std::optional<Time> gone_at_;
+  bool line_full_ = false;
   std::array<pollfd, 2> entries_{};
-  std::array<std::uint8_t, Guard::kMostWaiting> buffer_{};
+  std::array<std::uint8_t, Outbox::kMostBytes + 1> buffer_{};
 };
 
 int guard_main(int argc, char** argv) {

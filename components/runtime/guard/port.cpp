@@ -123,6 +123,12 @@ Result<StreamAddress> StreamAddress::parse(const std::string& uri) {
   return error;
 }
 
+bool line_full(int descriptor) {
+  constexpr int kMost = 64;  // bytes; 1.4 ms at 460800 baud, 5.6 ms at 115200
+  int unsent = 0;
+  return ::isatty(descriptor) == 1 && ::ioctl(descriptor, TIOCOUTQ, &unsent) == 0 && unsent > kMost;
+}
+
 int open_port(const StreamAddress& address) {
   switch (address.kind) {
     case StreamAddress::Kind::kTcp:

@@ -26,4 +26,9 @@ struct StreamAddress {
 /// under way (writable when it is decided), a listening one waits for accept().
 int open_port(const StreamAddress& address);
 
+/// A serial line whose driver holds more than two or three commands that are not sent yet. What is
+/// written now would wait behind them, and no poll() says when they are gone. False for any other
+/// port.
+bool line_full(int descriptor);
+
 }  // namespace usher::runtime

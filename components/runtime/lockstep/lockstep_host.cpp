@@ -15,6 +15,7 @@ class LockstepHost::DeadStream final : public Stream {
   void close() { sink_.closed("there are no devices in simulation: " + uri_); }
 
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
+  bool write_latest(std::span<const std::uint8_t> /*bytes*/) override { return false; }
   bool open() const override { return false; }
   void reopen(Duration delay) override {
     constexpr Duration kShortest = std::chrono::milliseconds(1);

@@ -104,8 +104,6 @@ Status to_scan(const ScanTelegram& telegram, Time stamp, Scan& scan) {
   scan.angle_increment = distances->angular_step * kRadiansPerUnit;
   scan.scan_time = 100.0 / telegram.scan_frequency;
   scan.time_increment = scan.scan_time * distances->angular_step / 3600000.0;
-  scan.counter = telegram.scan_counter;
-  scan.polluted = telegram.polluted();
 
   const float scale = distances->scale * 0.001F;
   const float offset = distances->offset * 0.001F;

@@ -1,11 +1,8 @@
 #include "drivers/lms100/device_real/component.hpp"
 
-namespace usher::lms100 {
+#include "drivers/lms100/shell/model.hpp"
 
-namespace {
-constexpr auto kTick = std::chrono::milliseconds(50);
-constexpr auto kReopen = std::chrono::seconds(1);
-}  // namespace
+namespace usher::lms100 {
 
 Session::Parameters Lms100Component::read_parameters(runtime::Parameters& parameters) {
   Session::Parameters p;
@@ -18,49 +15,14 @@ Session::Parameters Lms100Component::read_parameters(runtime::Parameters& parame
 }
 
 Lms100Component::Lms100Component(runtime::Host& host)
-    : host_(host),
-      publisher_(host),
-      session_(read_parameters(host.parameters())),
-      lost_(host.health().counter("scans: lost")),
-      rejected_(host.health().counter("telegrams: rejected")) {
-  const std::string address =
-      host.parameters().text("address", "tcp://192.168.0.1:2112", "Where the scanner listens.");
-  stream_ = &host.open_stream(
-      address, {.on_open =
-                    [this] {
-                      session_.opened(now());
-                      flush();
-                    },
-                .on_bytes =
-                    [this](std::span<const std::uint8_t> bytes) {
-                      session_.received(bytes, now(),
-                                        [this](const Scan& scan) { publisher_.publish(scan); });
-                      flush();
-                    },
-                .on_close =
-                    [this](const std::string& reason) {
-                      session_.closed();
-                      host_.health().set(runtime::HealthState::kDegraded, reason);
-                    }});
-  timer_ = host.timer("tick", kTick, [this](auto) {
-    session_.tick(now());
-    flush();
-    report();
-  });
-}
-
-void Lms100Component::flush() {
-  const auto output = session_.take_output();
-  if (!output.empty()) stream_->write(output);
-  if (session_.state() == Session::State::kFailed) stream_->reopen(kReopen);
-}
-
-void Lms100Component::report() {
-  lost_ = session_.lost_scans();
-  rejected_ = session_.rejected();
-  host_.health().set(
-      session_.healthy() ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
-      session_.reason());
-}
+    : lost_(host.health().counter("scans: lost")),
+      rejected_(host.health().counter("telegrams: rejected")),
+      line_(host, kModel, Session(read_parameters(host.parameters())),
+            {.address = "tcp://192.168.0.1:2112",
+             .text = "Where the scanner listens.",
+             .count = [this](const Session& session) {
+               lost_ = session.lost_scans();
+               rejected_ = session.rejected();
+             }}) {}
 
 }  // namespace usher::lms100

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/laser_scanner/shell/scanner_line.hpp"
 #include "drivers/lms100/core/session.hpp"
-#include "drivers/lms100/shell/scan_publisher.hpp"
 
 namespace usher::lms100 {
 
@@ -12,17 +12,10 @@ class Lms100Component final : public runtime::Component {
 
  private:
   static Session::Parameters read_parameters(runtime::Parameters& parameters);
-  Time now() const { return host_.now().time_since_epoch(); }
-  void flush();
-  void report();
 
-  runtime::Host& host_;
-  ScanPublisher publisher_;
-  Session session_;
-  runtime::Stream* stream_ = nullptr;
   std::uint64_t& lost_;
   std::uint64_t& rejected_;
-  runtime::Timer timer_;
+  laser_scanner::ScannerLine<Session> line_;
 };
 
 }  // namespace usher::lms100

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/lms100/shell/scan_publisher.hpp"
+#include "drivers/laser_scanner/shell/simulated_scanner.hpp"
 
 namespace usher::lms100 {
 
@@ -10,10 +10,7 @@ class Lms100SimComponent final : public runtime::Component {
   explicit Lms100SimComponent(runtime::Host& host);
 
  private:
-  runtime::Host& host_;
-  ScanPublisher publisher_;
-  Scan scan_;
-  runtime::Input<sensor_msgs::msg::LaserScan> input_;
+  laser_scanner::SimulatedScanner scanner_;
 };
 
 }  // namespace usher::lms100

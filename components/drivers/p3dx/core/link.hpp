@@ -75,6 +75,9 @@ class Link {
   void emergency_stop() { emergency_ = true; }
   void reset() { emergency_ = false; }
 
+  /// The next cycle says nothing that a later one would not say again: only the newest counts.
+  bool velocity_only() const { return state_ == State::kRunning && output_.empty(); }
+
   Mode mode(Time now) const;
   /// Why it does not drive; empty when all is well.
   const std::string& reason() const { return reason_; }

@@ -18,34 +18,21 @@ Link::Parameters P3dxComponent::read_parameters(runtime::Parameters& parameters)
 }
 
 P3dxComponent::P3dxComponent(runtime::Host& host)
-    : host_(host),
-      link_(read_parameters(host.parameters())),
-      damaged_(host.health().counter("packets: damaged")),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { wanted_ = twist; },
-                     .emergency_stop = [this] { link_.emergency_stop(); },
-                     .reset = [this] { link_.reset(); }}) {
-  const std::string line =
-      host.parameters().text("address", "serial:///dev/ttyUSB0?baud=9600", "The base's line.");
-  stream_ =
-      &host.open_stream(line, {.on_open = [this] { link_.opened(now()); },
-                               .on_bytes =
-                                   [this](std::span<const std::uint8_t> bytes) {
-                                     link_.received(bytes, now(), [this](const Feedback& feedback) {
-                                       driver_.warn(link_.reason());
-                                       driver_.take(feedback);
-                                     });
-                                     damaged_ = link_.decoder().damaged();
-                                   },
-                               .on_close =
-                                   [this](const std::string& reason) {
-                                     link_.closed();
-                                     driver_.disconnected(reason);
-                                   }});
-  timer_ = host.timer("line", kCycle, [this](auto) {
-    const auto bytes = link_.cycle(wanted_, now());
-    if (!bytes.empty()) stream_->write(bytes);
-    if (link_.mode(now()) == Mode::kDisconnected) driver_.disconnected(link_.reason());
-  });
+    : damaged_(host.health().counter("packets: damaged")),
+      line_(host, Link(read_parameters(host.parameters()))),
+      driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
+                     .emergency_stop = [this] { line_.link().emergency_stop(); },
+                     .reset = [this] { line_.link().reset(); }}) {
+  line_.open({.address = "serial:///dev/ttyUSB0?baud=9600",
+              .text = "The base's line.",
+              .cycle = kCycle,
+              .take =
+                  [this](const Feedback& feedback) {
+                    driver_.warn(line_.link().reason());
+                    driver_.take(feedback);
+                  },
+              .lost = [this](const std::string& reason) { driver_.disconnected(reason); },
+              .heard = [this] { damaged_ = line_.link().decoder().damaged(); }});
 }
 
 }  // namespace usher::p3dx

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/base_obedience/shell/base_line.hpp"
 #include "drivers/p3dx/core/link.hpp"
 #include "drivers/p3dx/shell/base_driver.hpp"
 
@@ -12,15 +13,10 @@ class P3dxComponent final : public runtime::Component {
 
  private:
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
-  Time now() const { return host_.now().time_since_epoch(); }
 
-  runtime::Host& host_;
-  Link link_;
-  geometry::Twist2 wanted_;
-  runtime::Stream* stream_ = nullptr;
   std::uint64_t& damaged_;
+  drive::BaseLine<Link, Feedback> line_;
   BaseDriver driver_;
-  runtime::Timer timer_;
 };
 
 }  // namespace usher::p3dx

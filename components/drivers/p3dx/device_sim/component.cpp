@@ -7,7 +7,6 @@
 namespace usher::p3dx {
 
 namespace {
-using namespace usher_sim_msgs::msg::BaseCommand_Constants;
 constexpr auto kSilence = std::chrono::milliseconds(150);
 constexpr double kLongestStep = 0.5;  // [m] between two reports; more is no way
 }  // namespace
@@ -16,33 +15,19 @@ P3dxSimComponent::P3dxSimComponent(runtime::Host& host)
     : wheels_{host.parameters().number("robot.track", "m", {0.1, 2}, 0.331,
                                        "Effective distance of the wheels, for turning.")},
       rejected_(host.health().counter("feedback: rejected")),
-      command_(host.output(topics::kSimBaseCommand)),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { send(pending_, twist); },
-                     .emergency_stop = [this] { send(pending_ = MODE_EMERGENCY_STOP, {}); },
-                     .reset = [this] { send(pending_ = MODE_RESET, {}); }}),
-      base_(host.input(
-          topics::kSimBaseFeedback,
-          {.max_age = kSilence, .on_loss = "reports the base as disconnected"},
-          [this](const auto& message, const auto&) { take(message); },
-          [this] { driver_.disconnected("the base is silent"); })),
+      base_(host),
+      driver_(host, base_.device()),
       sonar_(host.input(
           topics::kSimSensorBoard,
           {.max_age = kSilence, .on_loss = "publishes no sonar ranges", .optional = true},
           [this](const auto& message, const auto&) { take_sonar(message); },
           [this] { feedback_.sonar.fill(std::numeric_limits<float>::quiet_NaN()); })) {
   feedback_.sonar.fill(std::numeric_limits<float>::quiet_NaN());
-}
-
-void P3dxSimComponent::send(std::uint8_t mode, const geometry::Twist2& twist) {
-  usher_sim_msgs::msg::BaseCommand message;
-  message.mode(mode);
-  message.v(twist.v);
-  message.w(twist.w);
-  command_.publish(message);
+  base_.listen([this](const auto& message) { take(message); },
+               [this](const std::string& reason) { driver_.disconnected(reason); });
 }
 
 void P3dxSimComponent::take(const usher_sim_msgs::msg::BaseFeedback& message) {
-  if (pending_ == (message.emergency() ? MODE_EMERGENCY_STOP : MODE_RESET)) pending_ = MODE_DRIVE;
   const double sum = message.left_travel() + message.right_travel() + message.left_velocity() +
                      message.right_velocity();
   if (!std::isfinite(sum)) {

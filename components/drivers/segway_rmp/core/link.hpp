@@ -52,6 +52,8 @@ class Link {
   /// The settings were all sent.
   bool configured() const { return step_ >= kSteps * kRepeats; }
   bool emergency() const { return emergency_; }
+  /// The next cycle says nothing that a later one would not say again: only the newest counts.
+  bool velocity_only() const { return emergency_ || configured(); }
   Mode mode(Time now) const;
   /// Why it does not drive, or a warning; empty when all is well.
   const std::string& reason() const { return reason_; }

@@ -24,46 +24,32 @@ Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parame
 
 SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
     : host_(host),
-      link_(read_parameters(host.parameters())),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { wanted_ = twist; },
+      line_(host, Link(read_parameters(host.parameters()))),
+      driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
                      .emergency_stop = [this] { emergency(true); },
                      .reset = [this] { emergency(false); }}) {
-  const std::string line =
-      host.parameters().text("address", "serial:///dev/ttyUSB0?baud=460800", "The base's line.");
   const double silence =
       host.parameters().number("guard_silence", "s", {0.03, 0.3}, 0.1,
                                "The guard commands zero when the driver is silent for so long.");
   const auto zero = command({}, Calibration{});
   // Connecting sets the balance mode: a base that was switched off must stay so over a restart.
   if (const auto kept = host.kept(kEmergencyKey); kept && !kept->empty() && kept->front() != 0)
-    link_.emergency_stop();
-  stream_ = &host.open_stream(
-      line,
-      {.on_open = [this] { link_.opened(now()); },
-       .on_bytes =
-           [this](std::span<const std::uint8_t> bytes) {
-             link_.received(bytes, now(),
-                            [this](const SegwayFeedback& feedback) { driver_.take(feedback); });
-           },
-       .on_close =
-           [this](const std::string& reason) {
-             link_.closed();
-             driver_.disconnected(reason);
-           },
-       .guard = {.safe = {zero.begin(), zero.end()}, .silence = runtime::from_seconds(silence)}});
-  timer_ = host.timer("line", kCycle, [this](auto) {
-    const auto frames = link_.cycle(wanted_, now());
-    if (!frames.empty()) stream_->write(frames);
-    if (link_.mode(now()) == Mode::kDisconnected) driver_.disconnected(link_.reason());
-  });
+    line_.link().emergency_stop();
+  line_.open(
+      {.address = "serial:///dev/ttyUSB0?baud=460800",
+       .text = "The base's line.",
+       .cycle = kCycle,
+       .guard = {.safe = {zero.begin(), zero.end()}, .silence = runtime::from_seconds(silence)},
+       .take = [this](const SegwayFeedback& feedback) { driver_.take(feedback); },
+       .lost = [this](const std::string& reason) { driver_.disconnected(reason); }});
 }
 
 void SegwayRmpComponent::emergency(bool on) {
-  if (on == link_.emergency()) return;
+  if (on == line_.link().emergency()) return;
   if (on) {
-    link_.emergency_stop();
+    line_.link().emergency_stop();
   } else {
-    link_.reset();
+    line_.link().reset();
   }
   const std::uint8_t remembered = on ? 1 : 0;
   if (const auto status = host_.keep(kEmergencyKey, {&remembered, 1}); !status)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/base_obedience/shell/base_line.hpp"
 #include "drivers/segway_rmp/core/link.hpp"
 #include "drivers/segway_rmp/shell/base_driver.hpp"
 
@@ -13,14 +14,10 @@ class SegwayRmpComponent final : public runtime::Component {
  private:
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
   void emergency(bool on);
-  Time now() const { return host_.now().time_since_epoch(); }
 
   runtime::Host& host_;
-  Link link_;
-  geometry::Twist2 wanted_;
-  runtime::Stream* stream_ = nullptr;
+  drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
-  runtime::Timer timer_;
 };
 
 }  // namespace usher::segway_rmp

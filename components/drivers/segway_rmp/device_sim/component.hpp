@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/base_obedience/shell/simulated_base.hpp"
 #include "drivers/segway_rmp/shell/base_driver.hpp"
 
 namespace usher::segway_rmp {
@@ -10,14 +11,8 @@ class SegwayRmpSimComponent final : public runtime::Component {
   explicit SegwayRmpSimComponent(runtime::Host& host);
 
  private:
-  void send(std::uint8_t mode, const geometry::Twist2& twist);
-
-  /// What was asked besides driving, told with every command until the base shows it: the topic
-  /// keeps one sample only.
-  std::uint8_t pending_ = 0;
-  runtime::Output<usher_sim_msgs::msg::BaseCommand> command_;
+  drive::SimulatedBase base_;
   BaseDriver driver_;
-  runtime::Input<usher_sim_msgs::msg::BaseFeedback> feedback_;
 };
 
 }  // namespace usher::segway_rmp

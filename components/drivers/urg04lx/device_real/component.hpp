@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/laser_scanner/shell/scanner_line.hpp"
 #include "drivers/urg04lx/core/session.hpp"
-#include "drivers/urg04lx/shell/scan_publisher.hpp"
 
 namespace usher::urg04lx {
 
@@ -11,15 +11,8 @@ class Urg04lxComponent final : public runtime::Component {
   explicit Urg04lxComponent(runtime::Host& host);
 
  private:
-  Time now() const { return host_.now().time_since_epoch(); }
-  void flush();
-
-  runtime::Host& host_;
-  ScanPublisher publisher_;
-  Session session_;
-  runtime::Stream* stream_ = nullptr;
   std::uint64_t& rejected_;
-  runtime::Timer timer_;
+  laser_scanner::ScannerLine<Session> line_;
 };
 
 }  // namespace usher::urg04lx

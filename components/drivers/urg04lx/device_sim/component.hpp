@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/urg04lx/shell/scan_publisher.hpp"
+#include "drivers/laser_scanner/shell/simulated_scanner.hpp"
 
 namespace usher::urg04lx {
 
@@ -10,10 +10,7 @@ class Urg04lxSimComponent final : public runtime::Component {
   explicit Urg04lxSimComponent(runtime::Host& host);
 
  private:
-  runtime::Host& host_;
-  ScanPublisher publisher_;
-  Scan scan_;
-  runtime::Input<sensor_msgs::msg::LaserScan> input_;
+  laser_scanner::SimulatedScanner scanner_;
 };
 
 }  // namespace usher::urg04lx

@@ -307,6 +307,39 @@ TEST(Streams, ListenForOneCallerAfterTheOther) {
   EXPECT_TRUE(here.wait([&] { return here.opened == 2; }));
 }
 
+/// Fills the line until it takes no more, then 1000 velocities of which the newest is "now.", and
+/// reads what the device gets once the line moves again: how many velocities after the filling.
+std::string after_a_blocked_line(StreamSink sink, Log& log) {
+  int master = -1;
+  int slave = -1;
+  std::array<char, 128> name{};
+  EXPECT_EQ(::openpty(&master, &slave, name.data(), nullptr, nullptr), 0);
+  ::close(slave);
+  std::string heard;
+  {
+    Streams streams;
+    Stream& stream = streams.open("serial://" + std::string(name.data()) + "?baud=460800", sink);
+    EXPECT_TRUE(log.wait([&] { return log.opened == 1; }));
+    EXPECT_TRUE(stream.write(bytes(std::string(40000, '#'))));
+    for (int i = 0; i < 1000; ++i) EXPECT_TRUE(stream.write_latest(bytes("old.")));
+    EXPECT_TRUE(stream.write_latest(bytes("now.")));
+    pollfd entry{master, POLLIN, 0};
+    std::array<char, 4096> buffer{};
+    while (!heard.ends_with("now.") && ::poll(&entry, 1, 10000) == 1) {
+      const ssize_t count = ::read(master, buffer.data(), buffer.size());
+      if (count <= 0) break;
+      heard.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+  }
+  ::close(master);
+  return heard.substr(std::min<std::size_t>(heard.find_last_of('#') + 1, heard.size()));
+}
+
+TEST(Streams, TheNewestCommandReplacesWhatABlockedLineDidNotTake) {
+  Log log;
+  EXPECT_EQ(after_a_blocked_line(log.sink(), log), "now.");
+}
+
 /// A sink whose port belongs to a guard process.
 StreamSink guarded(Log& log, std::chrono::milliseconds silence) {
   StreamSink sink = log.sink();
@@ -325,6 +358,12 @@ TEST(GuardedStreams, PassBytesBothWays) {
   EXPECT_EQ(server.read(5), "drive");
   server.send("moving");
   EXPECT_TRUE(log.wait([&] { return log.received == "moving"; }));
+}
+
+TEST(GuardedStreams, TheNewestCommandReplacesWhatABlockedLineDidNotTake) {
+  Log log;
+  const std::string heard = after_a_blocked_line(guarded(log, 10s), log);
+  EXPECT_EQ(heard, "now.");
 }
 
 TEST(GuardedStreams, AreSafeWhenTheDriverIsGone) {

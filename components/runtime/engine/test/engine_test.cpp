@@ -31,6 +31,7 @@ class FakePlatform final : public Platform {
   class FakeStream final : public Stream {
    public:
     bool write(std::span<const std::uint8_t> bytes) override { return !bytes.empty(); }
+    bool write_latest(std::span<const std::uint8_t> bytes) override { return write(bytes); }
     bool open() const override { return true; }
     void reopen(Duration /*delay*/) override {}
   };

@@ -19,7 +19,8 @@ Time at(int ms) { return milliseconds(1000 + ms); }
 struct Bench {
   Guard guard{std::vector<std::uint8_t>(kSafe.begin(), kSafe.end()), milliseconds(100)};
   bool hear(std::string_view text, int ms) {
-    return guard.heard({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, at(ms));
+    return guard.heard(Outbox::Kind::kEach,
+                       {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, at(ms));
   }
   std::string take(std::size_t most = 100) {
     const auto output = guard.output();
@@ -113,6 +114,18 @@ TEST(Guard, DropsWhatWaitsWhenNothingIsUnderWay) {
   EXPECT_EQ(bench.take(), "0.");
 }
 
+TEST(Guard, TheNewestVelocityTakesThePlaceOfTheOlder) {
+  Bench bench;
+  const auto latest = [&](std::string_view text, int ms) {
+    bench.guard.heard(Outbox::Kind::kLatest,
+                      {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, at(ms));
+  };
+  bench.hear("setting ", 0);
+  for (int ms = 0; ms < 90; ++ms) latest("fast ", ms);
+  latest("slow ", 90);
+  EXPECT_EQ(bench.take(), "setting slow ") << "the port was blocked meanwhile";
+}
+
 TEST(Guard, RefusesMoreThanItsBounds) {
   Bench bench;
   const std::string big(30000, 'x');
@@ -120,7 +133,7 @@ TEST(Guard, RefusesMoreThanItsBounds) {
   EXPECT_TRUE(bench.hear(big, 0));
   EXPECT_FALSE(bench.hear(big, 0));
   Bench many;
-  for (std::size_t i = 0; i < Guard::kMostMessages; ++i) EXPECT_TRUE(many.hear("x", 0));
+  for (std::size_t i = 0; i < Outbox::kMostMessages; ++i) EXPECT_TRUE(many.hear("x", 0));
   EXPECT_FALSE(many.hear("x", 0));
 }
 

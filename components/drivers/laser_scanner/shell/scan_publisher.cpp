@@ -1,21 +1,21 @@
-#include "drivers/urg04lx/shell/scan_publisher.hpp"
+#include "drivers/laser_scanner/shell/scan_publisher.hpp"
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
-namespace usher::urg04lx {
+namespace usher::laser_scanner {
 
 namespace {
 constexpr const char* kFrame = "laser";
 }
 
-ScanPublisher::ScanPublisher(runtime::Host& host)
-    : host_(host), scan_(host.output(topics::kScan)), mount_(host.output(topics::kTfStatic)) {
+ScanPublisher::ScanPublisher(runtime::Host& host, const Model& model)
+    : scan_(host.output(topics::kScan)), mount_(host.output(topics::kTfStatic)) {
   auto& parameters = host.parameters();
-  range_min_ = static_cast<float>(
-      parameters.number("range_min", "m", {0, 5}, 0.06, "Nearer readings are not valid."));
-  range_max_ = static_cast<float>(
-      parameters.number("range_max", "m", {1, 100}, 4.0, "Farther readings are not valid."));
+  range_min_ = static_cast<float>(parameters.number("range_min", "m", {0, 5}, model.range_min,
+                                                    "Nearer readings are not valid."));
+  range_max_ = static_cast<float>(parameters.number("range_max", "m", {1, 100}, model.range_max,
+                                                    "Farther readings are not valid."));
   geometry::Pose3 base_T_laser;
   base_T_laser.translation.x() =
       parameters.number("robot.laser.mount_x", "m", {-2, 2}, "Laser ahead of the axle's middle.");
@@ -39,7 +39,8 @@ void ScanPublisher::publish(const Scan& scan) {
   message.range_min(range_min_);
   message.range_max(range_max_);
   message.ranges(scan.ranges);
+  message.intensities(scan.intensities);
   scan_.publish(message);
 }
 
-}  // namespace usher::urg04lx
+}  // namespace usher::laser_scanner

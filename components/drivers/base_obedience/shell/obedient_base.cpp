@@ -1,0 +1,162 @@
+#include "drivers/base_obedience/shell/obedient_base.hpp"
+
+#include <cmath>
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::drive {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+
+/// Silence of command or grant is noticed within this; the base is told again in every cycle.
+constexpr auto kCycle = milliseconds(10);
+constexpr auto kSilence = milliseconds(120);
+constexpr const char* kOnLoss = "commands zero to the base";
+
+BaseObedience::Limits read_limits(runtime::Parameters& parameters) {
+  BaseObedience::Limits limits;
+  limits.linear = parameters.number("robot.limits.linear", "m/s", {0.1, 3}, limits.linear,
+                                    "Faster commands are refused.");
+  limits.angular = parameters.number("robot.limits.angular", "rad/s", {0.1, 5}, limits.angular,
+                                     "Faster commands are refused.");
+  return limits;
+}
+
+}  // namespace
+
+ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_radius,
+                           std::function<void()> cycled)
+    : host_(host),
+      device_(std::move(device)),
+      cycled_(std::move(cycled)),
+      obedience_(read_limits(host.parameters())),
+      wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
+                                             "Of the driven wheels; also the axle's height.")),
+      foreign_(host.health().counter("commands: foreign writer")) {
+  grant_ = host.input(
+      topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
+      [this](const auto& message, const auto& info) {
+        const auto valid_for = std::chrono::duration<double>(
+            std::isfinite(message.valid_for()) ? static_cast<double>(message.valid_for()) : 0.0);
+        obedience_.grant(
+            {message.granted() ? message.writer() : kNobody, message.epoch(), info.writer,
+             host_.now() - info.effective, std::chrono::duration_cast<Time>(valid_for)},
+            host_.now().time_since_epoch());
+      },
+      [this] { cycle(); });
+  command_ = host.input(
+      topics::kDriveCommand, {.max_age = kSilence, .on_loss = kOnLoss},
+      [this](const auto& message, const auto& info) {
+        decision_ = obedience_.permitted({info.writer,
+                                          message.epoch(),
+                                          message.number(),
+                                          {message.v(), message.w()},
+                                          host_.now() - info.effective},
+                                         host_.now().time_since_epoch());
+        foreign_ = obedience_.count(Reason::kForeignWriter);
+        device_.drive(decision_.twist);
+      },
+      [this] { cycle(); });
+  request_ = host.input(topics::kBaseRequest, {.optional = true},
+                        [this](const auto& request, const auto&) { take_request(request); });
+  status_ = host.output(topics::kBaseStatus);
+  odom_ = host.output(topics::kOdom);
+  transforms_ = host.output(topics::kTf);
+  battery_ = host.output(topics::kBattery);
+  cycle_timer_ = host.timer("cycle", kCycle, [this](auto) { cycle(); });
+  battery_timer_ = host.timer("battery", milliseconds(1000), [this](auto) { publish_battery(); });
+}
+
+void ObedientBase::cycle() {
+  decision_ = obedience_.permitted(host_.now().time_since_epoch());
+  device_.drive(decision_.twist);
+  cycled_();
+}
+
+void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request) {
+  using namespace usher_msgs::msg::BaseRequest_Constants;
+  if (request.id() == last_request_) return;
+  last_request_ = request.id();
+  if (request.command() == COMMAND_EMERGENCY_STOP) device_.emergency_stop();
+  if (request.command() == COMMAND_RESET) device_.reset();
+}
+
+void ObedientBase::report(const BaseReport& report) {
+  report_ = report;
+  disconnected_.clear();
+  publish_status();
+}
+
+void ObedientBase::disconnected(const std::string& reason) {
+  disconnected_ = reason;
+  report_ = {.stamp = host_.now().time_since_epoch(),
+             .state = usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED};
+  host_.health().set(HealthState::kDegraded, reason);
+  publish_status();
+}
+
+void ObedientBase::publish_odometry(Time at, const geometry::Pose2& pose,
+                                    const geometry::Twist2& twist, double pitch) {
+  const runtime::Time stamp(at);
+  nav_msgs::msg::Odometry message;
+  message.header(wire::header(stamp, frames::kOdom));
+  message.child_frame_id(frames::kBaseFootprint);
+  message.pose().pose(wire::to_message(pose));
+  message.twist().twist(wire::to_message(stamp, twist).twist());
+  odom_.publish(message);
+
+  geometry::Pose3 footprint_T_base;
+  footprint_T_base.translation.z() = wheel_radius_;
+  footprint_T_base.rotation = geometry::from_roll_pitch_yaw(0.0, pitch, 0.0);
+  tf2_msgs::msg::TFMessage frames;
+  frames.transforms().push_back(
+      wire::transform(stamp, frames::kOdom, frames::kBaseFootprint, geometry::to_space(pose)));
+  frames.transforms().push_back(
+      wire::transform(stamp, frames::kBaseFootprint, frames::kBaseLink, footprint_T_base));
+  transforms_.publish(frames);
+}
+
+void ObedientBase::publish_status() {
+  usher_msgs::msg::BaseStatus message;
+  message.header(wire::header(runtime::Time(report_.stamp), frames::kBaseLink));
+  message.state(report_.state);
+  message.pitch(report_.pitch);
+  message.pitch_rate(report_.pitch_rate);
+  message.v(report_.twist.v);
+  message.w(report_.twist.w);
+  message.v_commanded(decision_.twist.v);
+  message.w_commanded(decision_.twist.w);
+  message.battery_percent(static_cast<float>(report_.battery_percent));
+  message.epoch(obedience_.highest_epoch());
+  message.obedience(static_cast<std::uint8_t>(decision_.reason));
+  const bool obeys = decision_.reason == Reason::kObeyed;
+  message.reason(!disconnected_.empty() ? disconnected_
+                 : obeys                ? ""
+                                        : std::string(text(decision_.reason)));
+  status_.publish(message);
+}
+
+void ObedientBase::publish_battery() {
+  if (!connected()) {
+    disconnected(disconnected_);
+    return;
+  }
+  sensor_msgs::msg::BatteryState message;
+  message.header(wire::header(runtime::Time(report_.stamp), frames::kBaseLink));
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  message.voltage(unknown);
+  message.temperature(unknown);
+  message.current(unknown);
+  message.charge(unknown);
+  message.capacity(unknown);
+  message.design_capacity(unknown);
+  message.percentage(static_cast<float>(report_.battery_percent / 100.0));
+  message.present(true);
+  battery_.publish(message);
+}
+
+}  // namespace usher::drive

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "drivers/base_obedience/core/base_obedience.hpp"
+#include "foundation/geometry/pose2.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+
+namespace usher::drive {
+
+/// What a base can be told, real or simulated.
+struct BaseDevice {
+  std::function<void(const geometry::Twist2&)> drive;
+  std::function<void()> emergency_stop;
+  std::function<void()> reset;
+};
+
+/// What a base says of itself.
+struct BaseReport {
+  Time stamp{};             ///< on the host's clock
+  std::uint8_t state = 0;   ///< BaseStatus_Constants STATE_*
+  double pitch = 0.0;       ///< [rad] positive leans forward; 0 for a base that cannot lean
+  double pitch_rate = 0.0;  ///< [rad/s]
+  geometry::Twist2 twist;   ///< measured, over the floor
+  double battery_percent = std::numeric_limits<double>::quiet_NaN();  ///< {0..100, NaN unknown}
+};
+
+/// What every base driver has in common: it obeys drive/command under drive/grant and nothing else
+/// (BaseObedience decides), passes requests on, reports status, odometry, frames and battery.
+class ObedientBase {
+ public:
+  /// The device is told what to drive at every command, every loss of one and every 10 ms.
+  /// `wheel_radius` [m] is the default of robot.wheel_radius. `cycled` is called after each of
+  /// these cycles.
+  ObedientBase(
+      runtime::Host& host, BaseDevice device, double wheel_radius,
+      std::function<void()> cycled = [] {});
+
+  /// The base is heard.
+  void report(const BaseReport& report);
+  /// The base is not heard; why. Said again every second.
+  void disconnected(const std::string& reason);
+  bool connected() const { return disconnected_.empty(); }
+
+  /// `pose` of base_footprint in odom.
+  void publish_odometry(Time stamp, const geometry::Pose2& pose, const geometry::Twist2& twist,
+                        double pitch = 0.0);
+
+  double wheel_radius() const { return wheel_radius_; }  ///< [m]
+
+ private:
+  void cycle();
+  void take_request(const usher_msgs::msg::BaseRequest& request);
+  void publish_status();
+  void publish_battery();
+
+  runtime::Host& host_;
+  BaseDevice device_;
+  std::function<void()> cycled_;
+  BaseObedience obedience_;
+  double wheel_radius_;
+  Decision decision_;
+  BaseReport report_;
+  std::string disconnected_ = "not heard yet";
+  std::uint64_t last_request_ = 0;
+  std::uint64_t& foreign_;
+
+  runtime::Input<usher_msgs::msg::DriveGrant> grant_;
+  runtime::Input<usher_msgs::msg::DriveCommand> command_;
+  runtime::Input<usher_msgs::msg::BaseRequest> request_;
+  runtime::Output<usher_msgs::msg::BaseStatus> status_;
+  runtime::Output<nav_msgs::msg::Odometry> odom_;
+  runtime::Output<tf2_msgs::msg::TFMessage> transforms_;
+  runtime::Output<sensor_msgs::msg::BatteryState> battery_;
+  runtime::Timer cycle_timer_;
+  runtime::Timer battery_timer_;
+};
+
+}  // namespace usher::drive
