@@ -53,11 +53,23 @@ void DiscoveryBook::participant_seen(const Guid& guid, const Identity& identity,
                                      std::string address) {
   const std::scoped_lock event_lock(event_mutex_);
   ParticipantInfo info{guid, identity, std::move(address), clock_()};
+  std::vector<EndpointInfo> known;
   {
     const std::scoped_lock lock(mutex_);
     if (!participants_.emplace(prefix_of(guid), info).second) return;
+    const auto waits = [&](const EndpointInfo& endpoint) {
+      return prefix_of(endpoint.guid) == prefix_of(guid);
+    };
+    for (EndpointInfo& endpoint : nameless_) {
+      if (!waits(endpoint)) continue;
+      endpoint.participant = identity.name;
+      endpoint.host = identity.host;
+      if (endpoints_.emplace(endpoint.guid, endpoint).second) known.push_back(endpoint);
+    }
+    std::erase_if(nameless_, waits);
   }
   for (const auto& event : participant_events_) event(info, true);
+  for (const EndpointInfo& endpoint : known) notify(endpoint, true);
 }
 
 void DiscoveryBook::participant_gone(const Guid& guid) {
@@ -71,6 +83,9 @@ void DiscoveryBook::participant_gone(const Guid& guid) {
       info = std::move(found->second);
       participants_.erase(found);
     }
+    std::erase_if(nameless_, [&](const EndpointInfo& endpoint) {
+      return prefix_of(endpoint.guid) == prefix_of(guid);
+    });
     std::erase_if(endpoints_, [&](const auto& entry) {
       if (prefix_of(entry.first) != prefix_of(guid)) return false;
       lost.push_back(entry.second);
@@ -88,10 +103,15 @@ void DiscoveryBook::endpoint_seen(EndpointInfo endpoint) {
   {
     const std::scoped_lock lock(mutex_);
     const auto owner = participants_.find(prefix_of(endpoint.guid));
-    if (owner != participants_.end()) {
-      endpoint.participant = owner->second.identity.name;
-      endpoint.host = owner->second.identity.host;
+    if (owner == participants_.end()) {
+      // Told by another thread than its participant is, and first: without a name it would look
+      // foreign to whoever watches the writers.
+      std::erase_if(nameless_, [&](const auto& other) { return other.guid == endpoint.guid; });
+      if (nameless_.size() < kMaxNameless) nameless_.push_back(std::move(endpoint));
+      return;
     }
+    endpoint.participant = owner->second.identity.name;
+    endpoint.host = owner->second.identity.host;
     if (!endpoints_.emplace(endpoint.guid, endpoint).second) return;
   }
   notify(endpoint, true);
@@ -102,6 +122,7 @@ void DiscoveryBook::endpoint_gone(const Guid& guid) {
   EndpointInfo endpoint;
   {
     const std::scoped_lock lock(mutex_);
+    std::erase_if(nameless_, [&](const auto& other) { return other.guid == guid; });
     const auto found = endpoints_.find(guid);
     if (found == endpoints_.end()) return;
     endpoint = std::move(found->second);

@@ -73,6 +73,7 @@ class DiscoveryBook {
   void participant_seen(const Guid& guid, const Identity& identity, std::string address = {});
   /// With everything that it owned.
   void participant_gone(const Guid& guid);
+  /// Reported once its participant is known too, with its name.
   void endpoint_seen(EndpointInfo endpoint);
   void endpoint_gone(const Guid& guid);
   /// A participant that could not prove who it is: no longer listed, but among the refusals.
@@ -89,6 +90,7 @@ class DiscoveryBook {
   /// last one.
   std::vector<Refusal> refusals() const;
   static constexpr std::size_t kMaxRefusals = 64;
+  static constexpr std::size_t kMaxNameless = 1024;
   /// A writer that has just been matched may not be in the book yet: then only its guid is known.
   WriterInfo writer(const Guid& guid) const;
   /// Whether the writer's stamps are on this host's clock: its participant names the same host. A
@@ -110,6 +112,7 @@ class DiscoveryBook {
   mutable std::mutex mutex_;  // the maps; never held while somebody is called
   std::map<Prefix, ParticipantInfo> participants_;
   std::map<Guid, EndpointInfo> endpoints_;
+  std::vector<EndpointInfo> nameless_;  ///< whose participants were not seen yet
   std::vector<Refusal> refusals_;
 };
 

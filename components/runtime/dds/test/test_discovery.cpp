@@ -70,6 +70,28 @@ TEST_F(Book, JoinsWritersWithTheNamesOfTheirParticipants) {
   EXPECT_TRUE(info.alive);
 }
 
+TEST_F(Book, NamesAWriterThatWasSeenBeforeItsParticipant) {
+  observe();
+  book.endpoint_seen(writer(guid(7, 3)));
+  EXPECT_THAT(events, IsEmpty()) << "nobody takes it for a foreign one";
+  EXPECT_THAT(book.endpoints(), IsEmpty());
+  book.participant_seen(guid(8, 0xc1), {"amcl", "nuc", 1});
+  book.participant_seen(guid(7, 0xc1), {"lms100", "nuc", 1});
+  EXPECT_THAT(events, ElementsAre("+amcl", "+lms100", "+lms100:rt/scan"));
+  EXPECT_EQ(book.writer(guid(7, 3)).participant, "lms100");
+}
+
+TEST_F(Book, ForgetsAWriterThatEndsBeforeItsParticipantIsSeen) {
+  observe();
+  book.endpoint_seen(writer(guid(7, 3)));
+  book.endpoint_gone(guid(7, 3));
+  book.endpoint_seen(writer(guid(8, 3)));
+  book.participant_gone(guid(8, 0xc1));
+  book.participant_seen(guid(7, 0xc1), {"lms100", "nuc", 1});
+  book.participant_seen(guid(8, 0xc1), {"amcl", "nuc", 1});
+  EXPECT_THAT(events, ElementsAre("+lms100", "+amcl"));
+}
+
 TEST_F(Book, TellsLateObserversWhatIsThere) {
   book.participant_seen(guid(7, 0xc1), {"lms100", "nuc", 1});
   book.endpoint_seen(writer(guid(7, 3)));
@@ -146,11 +168,12 @@ TEST_F(Book, RemembersABoundedNumberOfRefusals) {
 TEST_F(Book, MayBeAskedFromItsEvents) {
   std::size_t seen = 99;
   book.observe({}, [&](const EndpointInfo&, bool) { seen = book.endpoints().size(); });
+  book.participant_seen(guid(7, 0xc1), {"lms100", "nuc", 1});
   book.endpoint_seen(writer(guid(7, 3)));
   EXPECT_EQ(seen, 1U);
   book.endpoint_gone(guid(7, 3));
   EXPECT_EQ(seen, 0U);
-  EXPECT_THAT(book.participants(), IsEmpty());
+  EXPECT_EQ(book.participants().size(), 1U);
 }
 
 }  // namespace
