@@ -28,6 +28,66 @@ class LockstepHost::DeadStream final : public Stream {
   std::function<void(Duration, std::function<void()>)> later_;
 };
 
+/// A line to a scripted device.
+class LockstepHost::LiveStream final : public Stream {
+ public:
+  LiveStream(LockstepDevice& device, StreamSink sink, std::function<Time()> now,
+             std::function<void(Duration, std::function<void()>)> later)
+      : device_(device), sink_(std::move(sink)), now_(std::move(now)), later_(std::move(later)) {}
+
+  void run() {
+    later_(kAsk, [this] {
+      ask();
+      run();
+    });
+  }
+  bool write(std::span<const std::uint8_t> bytes) override {
+    if (!open_) return false;
+    if (Bytes answer = device_.answer(bytes); !answer.empty()) {
+      later_(kWay, [this, answer = std::move(answer)] {
+        if (open_) static_cast<void>(sink_.received(answer));
+      });
+    }
+    return true;
+  }
+  bool write_latest(std::span<const std::uint8_t> bytes) override { return write(bytes); }
+  bool open() const override { return open_; }
+  void reopen(Duration delay) override {
+    const bool was_open = std::exchange(open_, false);
+    open_at_ = now_() + delay;
+    if (was_open) later_(kWay, [this] { sink_.closed("reopened by the component"); });
+  }
+
+ private:
+  static constexpr auto kAsk = std::chrono::milliseconds(10);
+  static constexpr auto kWay = std::chrono::milliseconds(1);
+  static constexpr auto kAgain = std::chrono::seconds(1);
+
+  void ask() {
+    if (open_ && !device_.plugged) {
+      open_ = false;
+      open_at_ = now_() + kAgain;
+      sink_.closed("unplugged");
+    } else if (!device_.plugged) {
+      open_at_ = now_() + kAgain;
+    } else if (!open_ && now_() >= open_at_) {
+      open_ = true;
+      device_.opened();
+      sink_.opened();
+    } else if (open_) {
+      if (const Bytes said = device_.speak(now_()); !said.empty())
+        static_cast<void>(sink_.received(said));
+    }
+  }
+
+  LockstepDevice& device_;
+  StreamSink sink_;
+  std::function<Time()> now_;
+  std::function<void(Duration, std::function<void()>)> later_;
+  bool open_ = false;
+  Time open_at_{};
+};
+
 /// Everything that a kill -9 takes away.
 class LockstepHost::Life final : public Platform, public Transport {
  public:
@@ -54,6 +114,12 @@ class LockstepHost::Life final : public Platform, public Transport {
     auto later = [this](Duration delay, std::function<void()> action) {
       add_action(host_.schedule_.now() + delay, std::move(action));
     };
+    if (host_.options_.device) {
+      LiveStream& live = lines_.emplace_back(
+          *host_.options_.device, std::move(sink), [this] { return now(); }, std::move(later));
+      live.run();
+      return live;
+    }
     DeadStream& stream = streams_.emplace_back(uri, std::move(sink), std::move(later));
     stream.close();
     return stream;
@@ -117,6 +183,7 @@ class LockstepHost::Life final : public Platform, public Transport {
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);
   std::deque<LeavingWriter> writers_;
   std::deque<DeadStream> streams_;
+  std::deque<LiveStream> lines_;
   Time worker_free_{};
   mutable std::int64_t asked_ = 0;
   std::int64_t asked_at_turn_ = 0;

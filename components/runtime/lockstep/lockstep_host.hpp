@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/engine/engine.hpp"
+#include "runtime/lockstep/device.hpp"
 #include "runtime/lockstep/network.hpp"
 #include "runtime/lockstep/schedule.hpp"
 
@@ -19,8 +20,9 @@ namespace usher::runtime {
 class LockstepHost {
  public:
   struct Options {
-    Duration handler_cost{};                ///< how long each handler takes
-    std::optional<Duration> restart_after;  ///< after a fault or a kill; nothing = stays dead
+    Duration handler_cost{};                   ///< how long each handler takes
+    std::optional<Duration> restart_after;     ///< after a fault or a kill; nothing = stays dead
+    std::shared_ptr<LockstepDevice> device{};  ///< at the end of every stream; null = there is none
   };
 
   LockstepHost(std::uint32_t index, Schedule& schedule, Network& network, ComponentFactory factory,
@@ -54,6 +56,7 @@ class LockstepHost {
  private:
   class Life;
   class DeadStream;
+  class LiveStream;
 
   Time earliest() const;
   void plan_turn(Time at);

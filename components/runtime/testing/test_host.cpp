@@ -26,6 +26,19 @@ Result<ParameterFile> test_parameters(const std::string& component, const std::s
 
 TestHost::TestHost(ComponentFactory factory, const std::string& parameters, std::uint64_t seed)
     : name_(factory.type), world_(std::make_unique<LockstepWorld>(options(seed))) {
+  start(std::move(factory), parameters, seed, {});
+}
+
+TestHost::TestHost(ComponentFactory factory, const std::string& parameters,
+                   std::shared_ptr<LockstepDevice> device)
+    : name_(factory.type), world_(std::make_unique<LockstepWorld>(options(1))) {
+  LockstepHost::Options with_device;
+  with_device.device = std::move(device);
+  start(std::move(factory), parameters, 1, with_device);
+}
+
+void TestHost::start(ComponentFactory factory, const std::string& parameters, std::uint64_t seed,
+                     const LockstepHost::Options& host_options) {
   world_->observe_all([this](const WrittenSample& sample) {
     if (world_->participant_of(sample.writer) != name_) return;
     auto message = sample.type.deserialize(sample.cdr);
@@ -35,7 +48,7 @@ TestHost::TestHost(ComponentFactory factory, const std::string& parameters, std:
   auto file = test_parameters(name_, parameters);
   if (!file) throw std::runtime_error(file.error());
   file->seed = seed;
-  const Status status = world_->add(std::move(factory), std::move(*file));
+  const Status status = world_->add(std::move(factory), std::move(*file), host_options);
   if (!status.ok()) throw std::runtime_error(status.error());
   world_->run_for(Duration::zero());
 }

@@ -26,6 +26,9 @@ class TestHost {
  public:
   explicit TestHost(ComponentFactory factory, const std::string& parameters = {},
                     std::uint64_t seed = 1);
+  /// The same with a device at the end of its stream.
+  TestHost(ComponentFactory factory, const std::string& parameters,
+           std::shared_ptr<LockstepDevice> device);
   /// The same component and parameters without a world: the error that a wrong parameter gives.
   static Status try_make(ComponentFactory factory, const std::string& parameters);
 
@@ -70,6 +73,8 @@ class TestHost {
  private:
   using Samples = std::vector<std::shared_ptr<const void>>;
   const Samples& samples(std::string_view topic) const;
+  void start(ComponentFactory factory, const std::string& parameters, std::uint64_t seed,
+             const LockstepHost::Options& options);
 
   std::string name_;
   std::map<std::string, Samples, std::less<>> written_;

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include "drivers/segway_rmp/core/emulated_base.hpp"
+#include "drivers/segway_rmp/device_real/component.hpp"
+#include "support/right_to_drive.hpp"
+
+namespace usher::segway_rmp {
+namespace {
+
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg::BaseStatus_Constants;
+using Wish = EmulatedBase::Wish;
+
+/// A base that does at once what it is ordered.
+class Device final : public runtime::LockstepDevice {
+ public:
+  runtime::Bytes answer(std::span<const std::uint8_t> bytes) override {
+    base_.received(bytes, [this](const EmulatedBase::Order& order) {
+      if (order.wish == Wish::kDrive) twist = order.twist;
+      if (order.wish == Wish::kShutdown) state_.mode = Mode::kStandby, twist = {}, ++shutdowns;
+      if (order.wish == Wish::kBalance) state_.mode = Mode::kBalancing, ++balances;
+    });
+    return {};
+  }
+  runtime::Bytes speak(runtime::Time now) override {
+    if (silent) return {};
+    state_.stamp = now.time_since_epoch();
+    state_.left_velocity = twist.v;
+    state_.right_velocity = twist.v;
+    state_.left_travel += 0.01 * twist.v;
+    state_.right_travel += 0.01 * twist.v;
+    const auto said = base_.feedback(state_);
+    return {said.begin(), said.end()};
+  }
+
+  geometry::Twist2 twist;  ///< last ordered
+  int shutdowns = 0, balances = 0;
+  bool silent = false;
+
+ private:
+  EmulatedBase base_{Calibration{}};
+  SegwayFeedback state_;
+};
+
+class DeviceReal : public testing::Test {
+ protected:
+  std::uint8_t state() const { return host.last(topics::kBaseStatus)->state(); }
+  void request(std::uint8_t command) {
+    usher_msgs::msg::BaseRequest message;
+    message.id(++id);
+    message.command(command);
+    host.publish(topics::kBaseRequest, message);
+  }
+  std::shared_ptr<Device> device = std::make_shared<Device>();
+  runtime::TestHost host{runtime::component_factory<SegwayRmpComponent>("segway_rmp"), "", device};
+  test::RightToDrive right{host};
+  std::uint64_t id = 0;
+};
+
+TEST_F(DeviceReal, ConfiguresTheBaseAndDrivesWhatIsGranted) {
+  right.v = 0.5;
+  right.run(2000);
+  EXPECT_EQ(state(), STATE_BALANCING) << host.heartbeat().reason();
+  EXPECT_GE(device->balances, 1);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+  EXPECT_NEAR(host.last(topics::kOdom)->twist().twist().linear().x(), 0.5, 0.02);
+  EXPECT_GT(host.last(topics::kOdom)->pose().pose().position().x(), 0.2);
+}
+
+TEST_F(DeviceReal, StandsWhenCommandOrGrantFallSilent) {
+  right.v = 0.5;
+  right.run(2000);
+  right.commands = false;
+  right.run(160);
+  EXPECT_EQ(device->twist.v, 0.0) << "no command";
+  right.commands = true;
+  right.run(200);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+  right.grants = false;
+  right.run(160);
+  EXPECT_EQ(device->twist.v, 0.0) << "no grant";
+}
+
+TEST_F(DeviceReal, ObeysNobodyElse) {
+  right.v = 0.5;
+  right.commander = "intruder";
+  right.run(2000);
+  EXPECT_EQ(device->twist.v, 0.0);
+  EXPECT_GT(host.counter("commands: foreign writer"), 0U);
+}
+
+TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndReturnsByItself) {
+  right.v = 0.5;
+  right.run(2000);
+  device->plugged = false;
+  right.run(200);
+  EXPECT_EQ(state(), STATE_DISCONNECTED);
+  EXPECT_EQ(host.last(topics::kBaseStatus)->v(), 0.0);
+  device->plugged = true;
+  right.run(3000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+  device->silent = true;
+  right.run(1200);
+  EXPECT_EQ(state(), STATE_DISCONNECTED) << "the line is open, the base says nothing";
+  device->silent = false;
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+}
+
+TEST_F(DeviceReal, RemembersAnEmergencyStopOverARestart) {
+  right.run(2000);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  right.run(200);
+  EXPECT_GT(device->shutdowns, 0);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  host.world().kill(host.name());
+  host.run_for(milliseconds(20));
+  const int balances = device->balances;
+  host.world().start(host.name());
+  right.run(2000);
+  EXPECT_EQ(device->balances, balances) << "a new driver does not balance it again";
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_RESET);
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+}
+
+}  // namespace
+}  // namespace usher::segway_rmp
