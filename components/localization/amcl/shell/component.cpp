@@ -2,8 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <sstream>
 
+#include "foundation/grid/fingerprint.hpp"
+#include "localization/amcl/core/kept_pose.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -131,6 +132,7 @@ void AmclComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
     return;
   }
   map_known_ = true;
+  map_fingerprint_ = grid::fingerprint(*map);
 }
 
 void AmclComponent::take_initial_pose(
@@ -149,13 +151,16 @@ void AmclComponent::take_initial_pose(
 void AmclComponent::start(const geometry::Pose2& odom_T_base) {
   started_ = true;
   if (const auto bytes = host_.kept(kPoseKey); bytes && !bytes->empty()) {
-    std::istringstream text(std::string(bytes->begin(), bytes->end()));
-    geometry::Pose2 map, odom;
-    text >> map.x >> map.y >> map.yaw >> odom.x >> odom.y >> odom.yaw;
-    if (text && map.finite() && odom.finite()) {
+    const auto kept = read_kept_pose(std::string(bytes->begin(), bytes->end()), map_fingerprint_);
+    if (kept) {
+      const geometry::Pose2& map = kept->map_T_base;
+      const geometry::Pose2& odom = kept->odom_T_base;
       const bool continues = geometry::distance(odom, odom_T_base) < kOdometryContinues;
       const geometry::Pose2 pose = continues ? map * geometry::inverse(odom) * odom_T_base : map;
       if (core_.set_initial_pose(pose, spread(initial_position_sigma_, initial_yaw_sigma_))) return;
+    } else {
+      refused_memory_ = kept.error();
+      ++host_.health().counter("pose: not taken up");
     }
   }
   if (site_pose_ &&
@@ -184,7 +189,7 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
     ++rejected_scans_;
     return;
   }
-  if (!started_) start(odom_T_base);
+  if (!started_ && map_known_) start(odom_T_base);
   const LaserBeams beams{*base_T_laser,    scan.angle_min(), scan.angle_increment(),
                          scan.range_min(), scan.range_max(), scan.ranges()};
   const UpdateResult result = core_.update(odom_T_base, beams);
@@ -245,6 +250,7 @@ void AmclComponent::publish_status() {
     confidence = Confidence::kLost;
     reason = scan_.fresh() ? "no scan that can be used" : "no scan";
   }
+  if (!refused_memory_.empty()) reason += (reason.empty() ? "" : "; ") + refused_memory_;
   message.state(static_cast<std::uint8_t>(confidence));
   message.reason(reason);
   status_.publish(message);
@@ -265,19 +271,15 @@ void AmclComponent::publish_cloud() {
 void AmclComponent::keep() {
   const auto& estimate = core_.estimate();
   if (keeping_ || !estimate || estimate->quality.confidence != Confidence::kGood) return;
-  std::ostringstream text;
-  text.precision(17);
-  const auto& map = estimate->map_T_base;
-  const auto& odom = estimate->odom_T_base;
-  text << map.x << ' ' << map.y << ' ' << map.yaw << ' ' << odom.x << ' ' << odom.y << ' '
-       << odom.yaw;
+  refused_memory_.clear();
   // Beside the handlers: a busy disk takes longer than the heartbeat may be silent. A robot that
   // cannot write its disk still localizes; it only starts at the site's pose the next time.
   keeping_ = true;
   const auto done = std::make_shared<bool>(false);
   host_.offload(
       kKeeping,
-      [&host = host_, kept = text.str(), done] {
+      [&host = host_,
+       kept = to_text({map_fingerprint_, estimate->map_T_base, estimate->odom_T_base}), done] {
         const auto status =
             host.keep(kPoseKey, {reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()});
         *done = static_cast<bool>(status);

@@ -36,7 +36,9 @@ class AmclComponent final : public runtime::Component {
   double initial_position_sigma_ = 0.5, initial_yaw_sigma_ = 0.25;
   bool started_ = false;
   bool map_known_ = false;
-  bool keeping_ = false;  ///< the last pose is on its way to the disk
+  std::uint64_t map_fingerprint_ = 0;
+  std::string refused_memory_;  ///< why the kept pose was not taken up; until there is a good one
+  bool keeping_ = false;        ///< the last pose is on its way to the disk
   runtime::Time last_scan_{};
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_odometry_;

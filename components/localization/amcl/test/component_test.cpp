@@ -1,0 +1,180 @@
+#include "localization/amcl/shell/component.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "runtime/testing/test_host.hpp"
+#include "sim_robot.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::amcl {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using namespace usher_msgs::msg::LocalizationStatus_Constants;
+
+/// A robot that stands in the small building; everything that it says can be left out.
+class Component : public testing::Test {
+ protected:
+  Component() {
+    geometry::Pose3 mount;
+    tf2_msgs::msg::TFMessage fixed;
+    fixed.transforms().push_back(
+        wire::transform(host.now(), frames::kBaseFootprint, "laser", mount));
+    host.publish(topics::kTfStatic, fixed);
+  }
+  void give_map(const grid::OccupancyGrid& given) {
+    host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, given));
+    host.run_for(milliseconds(5));
+  }
+  sensor_msgs::msg::LaserScan scan() const {
+    sensor_msgs::msg::LaserScan message;
+    message.header(wire::header(host.now(), "laser"));
+    constexpr int kBeams = 181;
+    const double increment = 2.0 * geometry::kPi / kBeams;
+    message.angle_min(0.0F);
+    message.angle_increment(static_cast<float>(increment));
+    message.angle_max(static_cast<float>(increment * (kBeams - 1)));
+    message.range_min(0.1F);
+    message.range_max(20.0F);
+    for (int i = 0; i < kBeams; ++i)
+      message.ranges().push_back(static_cast<float>(range(stands.yaw + increment * i)));
+    return message;
+  }
+  /// Walks along the beam: slow, and surely right.
+  double range(double angle) const {
+    for (double r = 0.0; r < 20.0; r += 0.01) {
+      const auto cell =
+          map.geometry().cell_at(stands.x + r * std::cos(angle), stands.y + r * std::sin(angle));
+      if (map.value_or(cell, grid::kFree) == grid::kOccupied) return r;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+  void run(int ms, bool scans = true, bool odometry = true) {
+    for (int at = 0; at < ms; at += 100) {
+      if (odometry) {
+        tf2_msgs::msg::TFMessage moving;
+        moving.transforms().push_back(
+            wire::transform(host.now(), frames::kOdom, frames::kBaseFootprint, {}));
+        host.publish(topics::kTf, moving);
+      }
+      if (scans) host.publish(topics::kScanFiltered, scan());
+      host.run_for(milliseconds(100));
+    }
+  }
+  usher_msgs::msg::LocalizationStatus status() const {
+    return host.last(topics::kLocalizationStatus).value();
+  }
+
+  grid::OccupancyGrid map = small_building();
+  geometry::Pose2 stands{0.5, 5.0, 0.3};
+  runtime::TestHost host{runtime::component_factory<AmclComponent>("amcl"),
+                         "site.initial_pose: [0.5, 5.0, 0.3]"};
+};
+
+TEST_F(Component, KnowsWhereItStands) {
+  give_map(map);
+  run(2000);
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+  ASSERT_TRUE(host.last(topics::kAmclPose));
+  const auto pose = wire::to_planar(host.last(topics::kAmclPose)->pose().pose());
+  ASSERT_TRUE(pose);
+  EXPECT_LT(geometry::distance(*pose, stands), 0.1);
+}
+
+TEST_F(Component, IsLostWithoutScansAndBackWithThem) {
+  give_map(map);
+  run(2000);
+  run(700, false);
+  EXPECT_EQ(status().state(), STATE_LOST);
+  EXPECT_EQ(status().reason(), "no scan");
+  run(500);
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+}
+
+TEST_F(Component, DropsAndCountsScansWhosePlaceIsNotKnown) {
+  give_map(map);
+  run(1500, true, false);
+  EXPECT_EQ(status().state(), STATE_LOST);
+  EXPECT_EQ(status().reason(), "no scan that can be used");
+  EXPECT_GE(host.counter("tf: dropped"), 10U);
+}
+
+TEST_F(Component, SaysThatThereIsNoMap) {
+  run(1000);
+  EXPECT_EQ(status().state(), STATE_LOST);
+  EXPECT_THAT(status().reason(), HasSubstr("no map"));
+  EXPECT_FALSE(host.last(topics::kAmclPose));
+  give_map(map);
+  run(2000);
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+}
+
+TEST_F(Component, RejectsAndCountsNonsenseAndKeepsItsBelief) {
+  give_map(map);
+  run(2000);
+  auto nonsense = scan();
+  nonsense.angle_increment(std::numeric_limits<float>::quiet_NaN());
+  host.publish(topics::kScanFiltered, nonsense);
+  nonsense = scan();
+  nonsense.ranges().clear();
+  host.publish(topics::kScanFiltered, nonsense);
+  auto no_map = wire::to_message(host.now(), frames::kMap, map);
+  no_map.info().resolution(-1.0F);
+  host.publish(topics::kMap, no_map);
+  geometry_msgs::msg::PoseWithCovarianceStamped no_pose;
+  no_pose.header(wire::header(host.now(), frames::kMap));
+  no_pose.pose().pose().position().x(std::numeric_limits<double>::quiet_NaN());
+  host.publish(topics::kInitialPose, no_pose);
+  run(1000);
+  EXPECT_GE(host.counter("scan: rejected"), 1U);
+  EXPECT_EQ(host.counter("map: rejected"), 1U);
+  EXPECT_EQ(host.counter("initialpose: rejected"), 1U);
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+}
+
+TEST_F(Component, TakesUpItsPoseAfterARestart) {
+  give_map(map);
+  stands = {3.0, 5.1, 0.0};  // not where the site starts it
+  geometry_msgs::msg::PoseWithCovarianceStamped hint;
+  hint.header(wire::header(host.now(), frames::kMap));
+  hint.pose().pose(wire::to_message(stands));
+  hint.pose().covariance(wire::to_covariance(Eigen::Vector3d(0.04, 0.04, 0.02).asDiagonal()));
+  host.publish(topics::kInitialPose, hint);
+  run(3000);
+  ASSERT_EQ(status().state(), STATE_GOOD) << status().reason();
+  host.world().kill(host.name());
+  host.run_for(milliseconds(10));
+  host.clear();
+  host.world().start(host.name());
+  run(2000);
+  ASSERT_TRUE(host.last(topics::kAmclPose));
+  const auto pose = wire::to_planar(host.last(topics::kAmclPose)->pose().pose());
+  ASSERT_TRUE(pose);
+  EXPECT_LT(geometry::distance(*pose, stands), 0.1);
+  EXPECT_EQ(host.counter("pose: not taken up"), 0U);
+}
+
+TEST_F(Component, RefusesAPoseThatWasKeptOnAnotherMap) {
+  give_map(map);
+  run(3000);
+  ASSERT_EQ(status().state(), STATE_GOOD) << status().reason();
+  host.world().kill(host.name());
+  host.run_for(milliseconds(10));
+  host.clear();
+  map.at({200, 50}) = map.at({200, 50}) == grid::kFree ? grid::kOccupied : grid::kFree;
+  give_map(map);
+  host.world().start(host.name());
+  run(300);
+  EXPECT_EQ(host.counter("pose: not taken up"), 1U);
+  bool told = false;
+  for (const auto& each : host.written(topics::kLocalizationStatus))
+    told = told || each.reason().find("it was kept on another map") != std::string::npos;
+  EXPECT_TRUE(told);
+}
+
+}  // namespace
+}  // namespace usher::amcl
