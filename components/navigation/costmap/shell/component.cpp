@@ -185,6 +185,7 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
     }
   }
   global_.static_known = true;
+  global_.newest = wire::from_message(message.header().stamp());
   publish_global();
 }
 
@@ -301,9 +302,9 @@ void CostmapComponent::publish_global() {
     if (passing_[i] >= kInscribedCost && passing_[i] != kUnknownCost && mapped[i] < kInscribedCost)
       passing_[i] = kPassingCost;
   }
-  global_costs_.publish(wire::to_message(host_.now(), global_.frame, passing_));
+  global_costs_.publish(wire::to_message(global_.newest, global_.frame, passing_));
   if (global_view_.reader_count() > 0) {
-    global_view_.publish(wire::to_message(host_.now(), global_.frame, viewed(costs)));
+    global_view_.publish(wire::to_message(global_.newest, global_.frame, viewed(costs)));
   }
 }
 

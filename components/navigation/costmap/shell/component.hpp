@@ -25,7 +25,7 @@ class CostmapComponent final : public runtime::Component {
     std::optional<Costmap> costs;
     Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0;
     bool static_known = false;
-    runtime::Time newest{};  ///< stamp of the newest observation
+    runtime::Time newest{};  ///< stamp of the newest data in it: an observation, or the map
   };
   /// Beam directions of one scanner, computed when its angles change.
   struct Beams {

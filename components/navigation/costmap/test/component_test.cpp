@@ -1,0 +1,160 @@
+#include "navigation/costmap/shell/component.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "navigation/costmap/core/costs.hpp"
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::costmap {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr const char* kFootprint = "robot.footprint: [0.3, 0.3, -0.3, 0.3, -0.3, -0.3, 0.3, -0.3]";
+
+/// A robot in the middle of a room of 8 m with a wall 2 m ahead that only the laser knows; each of
+/// its senses can be left out.
+class Component : public testing::Test {
+ protected:
+  Component() {
+    tf2_msgs::msg::TFMessage fixed;
+    fixed.transforms().push_back(
+        wire::transform(host.now(), frames::kBaseFootprint, "laser", geometry::Pose3{}));
+    fixed.transforms().push_back(
+        wire::transform(host.now(), frames::kBaseFootprint, "ultrasonic", geometry::Pose3{}));
+    host.publish(topics::kTfStatic, fixed);
+  }
+  void give_map() {
+    map_stamp = host.now();
+    host.publish(topics::kMap, wire::to_message(map_stamp, frames::kMap, map));
+    host.run_for(milliseconds(5));
+  }
+  sensor_msgs::msg::LaserScan scan(const char* frame = "laser", float range = 2.0F) const {
+    sensor_msgs::msg::LaserScan message;
+    message.header(wire::header(host.now(), frame));
+    message.angle_min(-0.2F);
+    message.angle_increment(0.02F);
+    message.angle_max(0.2F);
+    message.range_min(0.1F);
+    message.range_max(20.0F);
+    message.ranges().assign(21, range);
+    return message;
+  }
+  void run(int ms, bool scans = true, bool localized = true) {
+    for (int at = 0; at < ms; at += 20) {
+      tf2_msgs::msg::TFMessage moving;
+      moving.transforms().push_back(
+          wire::transform(host.now(), frames::kOdom, frames::kBaseFootprint, geometry::Pose3{}));
+      if (localized)
+        moving.transforms().push_back(
+            wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
+      host.publish(topics::kTf, moving);
+      if (scans) {
+        host.publish(topics::kScanFiltered, scan());
+        last_scan = host.now();
+      }
+      host.run_for(milliseconds(20));
+    }
+  }
+  std::string reason() const { return host.heartbeat().reason(); }
+  /// The highest cost within a cell's width: points lie on the borders of cells.
+  int local_cost(double x, double y) const {
+    const auto costs = wire::from_message(host.last(topics::kLocalCosts).value());
+    int highest = 0;
+    for (const double dx : {-0.04, 0.0, 0.04}) {
+      for (const double dy : {-0.04, 0.0, 0.04})
+        highest = std::max(highest, int{costs->at(costs->geometry().cell_at(x + dx, y + dy))});
+    }
+    return highest;
+  }
+
+  grid::OccupancyGrid map{{160, 160, 0.05, -4.0, -4.0}, grid::kFree};
+  runtime::TestHost host{runtime::component_factory<CostmapComponent>("costmap"), kFootprint};
+  runtime::Time map_stamp{}, last_scan{};
+};
+
+TEST_F(Component, MarksWhatTheLaserSees) {
+  give_map();
+  run(1500);
+  EXPECT_EQ(reason(), "");
+  EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost);
+  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost);
+}
+
+TEST_F(Component, SaysNothingNewWithoutScansAndReturnsWithThem) {
+  give_map();
+  run(1500);
+  run(600, false);
+  EXPECT_EQ(reason(), "no scan");
+  host.clear();
+  run(600, false);
+  EXPECT_TRUE(host.written(topics::kLocalCosts).empty()) << "old costs are not made new";
+  run(1000);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(Component, StampsTheGlobalCostsWithTheNewestDataInThem) {
+  give_map();
+  run(100, false);
+  EXPECT_EQ(wire::from_message(host.last(topics::kGlobalCosts)->header().stamp()), map_stamp);
+  run(2500);
+  host.run_for(milliseconds(1500));
+  const auto stamp = wire::from_message(host.last(topics::kGlobalCosts)->header().stamp());
+  EXPECT_LE(stamp, last_scan);
+  EXPECT_GE(stamp, last_scan - milliseconds(100));
+  EXPECT_GT(host.now() - stamp, milliseconds(1400)) << "and not with the time of writing";
+}
+
+TEST_F(Component, SaysThatThereIsNoMap) {
+  run(1000);
+  EXPECT_EQ(reason(), "no map");
+  EXPECT_FALSE(host.last(topics::kGlobalCosts));
+  EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost) << "what the laser sees counts all the same";
+}
+
+TEST_F(Component, SaysThatTheRobotIsNotLocalized) {
+  give_map();
+  run(1000, true, false);
+  EXPECT_EQ(reason(), "robot not localized");
+}
+
+TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
+  give_map();
+  run(1500);
+  EXPECT_EQ(reason(), "") << "neither was ever heard";
+}
+
+TEST_F(Component, KeepsTheLastContactsOfWhiskersThatFallSilent) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  whiskers.header(wire::header(host.now(), frames::kBaseLink));
+  whiskers.front_left(true);
+  run(20);
+  whiskers.header(wire::header(last_scan, frames::kBaseLink));
+  host.publish(topics::kWhiskers, whiskers);
+  run(1000);
+  EXPECT_EQ(local_cost(0.4, 0.3), kLethalCost);
+}
+
+TEST_F(Component, RejectsAndCountsNonsense) {
+  give_map();
+  run(500);
+  auto nonsense = scan();
+  nonsense.angle_increment(std::numeric_limits<float>::quiet_NaN());
+  host.publish(topics::kScanFiltered, nonsense);
+  auto no_map = wire::to_message(host.now(), frames::kMap, map);
+  no_map.info().resolution(-1.0F);
+  host.publish(topics::kMap, no_map);
+  run(1000);
+  EXPECT_EQ(host.counter("scan: rejected"), 1U);
+  EXPECT_EQ(host.counter("map: rejected"), 1U);
+  EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost);
+}
+
+}  // namespace
+}  // namespace usher::costmap
