@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include "drivers/p3dx/device_real/component.hpp"
+#include "support/right_to_drive.hpp"
+
+namespace usher::p3dx {
+namespace {
+
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg::BaseStatus_Constants;
+constexpr const char* kRing = "robot.ultrasonic.mount_x: 0.2 m\nrobot.ultrasonic.mount_z: 0.1 m";
+
+/// The controller: echoes the handshake, then reports ten times a second and does what it is told.
+class Device final : public runtime::LockstepDevice {
+ public:
+  void opened() override { running = motors = false; }
+  runtime::Bytes answer(std::span<const std::uint8_t> bytes) override {
+    runtime::Bytes said;
+    decoder_.feed(bytes, [&](std::span<const std::uint8_t> packet) {
+      const auto command = packet[0];
+      const int value = packet.size() < 4   ? 0
+                        : packet[1] == 0x1B ? -(packet[2] | packet[3] << 8)
+                                            : (packet[2] | packet[3] << 8);
+      if (!running && command <= 2) {
+        const Frame echo = encode(static_cast<Command>(command));
+        said.insert(said.end(), echo.span().begin(), echo.span().end());
+        running = command == 2;
+      } else if (command == static_cast<std::uint8_t>(Command::kEnable)) {
+        motors = value != 0;
+      } else if (command == static_cast<std::uint8_t>(Command::kVelocity)) {
+        velocity = value;
+      } else if (command == static_cast<std::uint8_t>(Command::kEmergencyStop)) {
+        velocity = 0;
+        ++emergency_stops;
+      }
+    });
+    return said;
+  }
+  runtime::Bytes speak(runtime::Time /*now*/) override {
+    if (!running || silent || ++asked_ % 10 != 0) return {};
+    x_ += velocity / 10;
+    runtime::Bytes b = {0x32};
+    const auto u16 = [&](int v) {
+      b.push_back(static_cast<std::uint8_t>(v & 0xFF));
+      b.push_back(static_cast<std::uint8_t>(v >> 8 & 0xFF));
+    };
+    for (const int v : {x_, 0, 0, velocity, velocity}) u16(v);
+    b.push_back(120);
+    for (const int v : {0, 0, motors ? 1 : 0}) u16(v);
+    b.insert(b.end(), {0, 1, 3});
+    u16(1500);
+    for (int i = 0; i < 5; ++i) b.push_back(0);
+    runtime::Bytes packet = {0xFA, 0xFB, static_cast<std::uint8_t>(b.size() + 2)};
+    packet.insert(packet.end(), b.begin(), b.end());
+    const std::uint16_t sum = checksum(b);
+    packet.push_back(static_cast<std::uint8_t>(sum >> 8));
+    packet.push_back(static_cast<std::uint8_t>(sum & 0xFF));
+    return packet;
+  }
+
+  bool running = false, motors = false, silent = false;
+  int velocity = 0;  ///< [mm/s] last ordered
+  int emergency_stops = 0;
+
+ private:
+  Decoder decoder_;
+  int asked_ = 0, x_ = 0;
+};
+
+class DeviceReal : public testing::Test {
+ protected:
+  std::uint8_t state() const { return host.last(topics::kBaseStatus)->state(); }
+  std::shared_ptr<Device> device = std::make_shared<Device>();
+  runtime::TestHost host{runtime::component_factory<P3dxComponent>("p3dx"), kRing, device};
+  test::RightToDrive right{host};
+};
+
+TEST_F(DeviceReal, WakesTheBaseAndDrivesWhatIsGranted) {
+  right.v = 0.3;
+  right.run(4000);
+  EXPECT_TRUE(device->motors);
+  EXPECT_EQ(device->velocity, 300);
+  EXPECT_EQ(state(), STATE_BALANCING) << host.heartbeat().reason();
+  EXPECT_GT(host.last(topics::kOdom)->pose().pose().position().x(), 0.3);
+  const auto sonar = host.last(topics::kUltrasonic);
+  ASSERT_TRUE(sonar);
+  EXPECT_EQ(sonar->ranges().size(), kSonarSlots);
+  host.clear();
+  right.run(1000);
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kOdom).size()), 100.0, 5.0)
+      << "ten reports a second are predicted to 100";
+}
+
+TEST_F(DeviceReal, StandsWhenCommandOrGrantFallSilent) {
+  right.v = 0.3;
+  right.run(4000);
+  right.commands = false;
+  right.run(220);
+  EXPECT_EQ(device->velocity, 0) << "no command";
+  right.commands = true;
+  right.run(300);
+  EXPECT_EQ(device->velocity, 300);
+  right.grants = false;
+  right.run(220);
+  EXPECT_EQ(device->velocity, 0) << "no grant";
+}
+
+TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndWakesItAnew) {
+  right.v = 0.3;
+  right.run(4000);
+  device->plugged = false;
+  right.run(200);
+  EXPECT_EQ(state(), STATE_DISCONNECTED);
+  device->plugged = true;
+  right.run(5000);
+  EXPECT_EQ(state(), STATE_BALANCING) << host.heartbeat().reason();
+  EXPECT_EQ(device->velocity, 300);
+  device->silent = true;
+  right.run(1500);
+  EXPECT_EQ(state(), STATE_DISCONNECTED) << "the line is open, the base says nothing";
+}
+
+TEST_F(DeviceReal, StopsAtOnceInAnEmergency) {
+  right.v = 0.3;
+  right.run(4000);
+  usher_msgs::msg::BaseRequest request;
+  request.id(1);
+  request.command(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  host.publish(topics::kBaseRequest, request);
+  right.run(300);
+  EXPECT_GT(device->emergency_stops, 0);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+}
+
+}  // namespace
+}  // namespace usher::p3dx
