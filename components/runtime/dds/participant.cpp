@@ -14,7 +14,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <sstream>
 
 #include "runtime/dds/bytes_type.hpp"
@@ -152,7 +151,7 @@ Status use_server(const ParticipantOptions& options, dds::DomainParticipantQos& 
 }
 
 Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& options,
-                                                  std::function<void(const std::string&)> refused) {
+                                                  GuardOptions guard) {
   dds::DomainParticipantQos qos;
   qos.name(options.name.c_str());
   const std::string user_data = Identity{options.name, options.host, USHER_IDL_DIGEST}.user_data();
@@ -163,11 +162,11 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = kPeerRange;
   qos.transport().use_builtin_transports = false;
-  const bool secure = !options.identity.empty();
-  if (secure) {
+  guard.only_signed = !options.identity.empty();
+  if (guard.only_signed) {
     if (auto status = apply_identity(options.identity, qos); !status) return Error{status.error()};
   }
-  qos.transport().user_transports.push_back(guarded_transport(udp, secure, std::move(refused)));
+  qos.transport().user_transports.push_back(guarded_transport(udp, std::move(guard)));
   qos.transport().send_socket_buffer_size = kSocketBuffer;
   qos.transport().listen_socket_buffer_size = kSocketBuffer;
 
@@ -268,9 +267,13 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
     return Error{"a DDS domain is 0..232, found " + std::to_string(options.domain)};
   isolate_library();
   std::unique_ptr<Participant> self(new Participant(options, clock));
-  const auto qos = participant_qos(options, [book = &self->book_](const std::string& address) {
+  const auto open = std::make_shared<std::atomic<bool>>(false);
+  GuardOptions guard;
+  guard.refused = [book = &self->book_](const std::string& address) {
     book->message_refused(address);
-  });
+  };
+  guard.open = open;
+  const auto qos = participant_qos(options, std::move(guard));
   if (!qos) return Error{qos.error()};
   auto* factory = dds::DomainParticipantFactory::get_instance();
   self->participant_ = factory->create_participant(options.domain, *qos, self->listener_.get(),
@@ -284,6 +287,7 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
                             " (it needs a network interface, free UDP ports, and keys that are "
                             "valid in this domain)")};
   }
+  open->store(true);
   self->guid_ = to_guid(self->participant_->guid());
   self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});
   self->publisher_ = self->participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <utility>
 
 #include "runtime/dds/rtps_message.hpp"
@@ -26,9 +27,8 @@ using eprosima::fastdds::rtps::TransportReceiverInterface;
 
 class GuardedTransport final : public ChainingTransport {
  public:
-  GuardedTransport(const ChainingTransportDescriptor& descriptor, bool only_signed,
-                   std::function<void(const std::string&)> refused)
-      : ChainingTransport(descriptor), only_signed_(only_signed), refused_(std::move(refused)) {}
+  GuardedTransport(const ChainingTransportDescriptor& descriptor, GuardOptions options)
+      : ChainingTransport(descriptor), options_(std::move(options)) {}
 
   TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
@@ -37,39 +37,42 @@ class GuardedTransport final : public ChainingTransport {
   bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
+    if (!options_.open->load()) return true;
+    if (options_.only_signed && is_for_somebody_else({bytes, size})) return true;
     return below->send(bytes, size, begin, end, timeout);
   }
   void receive(TransportReceiverInterface* next, const rtps::octet* bytes, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     const MessageKind kind = classify({bytes, size});
     const bool welcome =
-        only_signed_ ? kind <= MessageKind::kHandshake : kind != MessageKind::kMalformed;
+        options_.only_signed ? kind <= MessageKind::kHandshake : kind != MessageKind::kMalformed;
     if (!welcome) {
-      if (kind != MessageKind::kFarewell) refused_(rtps::IPLocator::toIPv4string(remote));
+      if (kind != MessageKind::kFarewell) options_.refused(rtps::IPLocator::toIPv4string(remote));
       return;
     }
+    // Fast DDS 2.9.1 forgets how far the authentication of a participant got when its announcement
+    // and its handshake arrive on two sockets at once; the two then never authenticate.
+    std::unique_lock one_at_a_time(authentication_, std::defer_lock);
+    if (options_.only_signed && kind != MessageKind::kSigned) one_at_a_time.lock();
     next->OnDataReceived(bytes, size, local, remote);
   }
 
  private:
-  const bool only_signed_;
-  const std::function<void(const std::string&)> refused_;
+  const GuardOptions options_;
+  std::mutex authentication_;
 };
 
 class GuardedTransportDescriptor final : public ChainingTransportDescriptor {
  public:
-  GuardedTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below, bool only_signed,
-                             std::function<void(const std::string&)> refused)
-      : ChainingTransportDescriptor(std::move(below)),
-        only_signed_(only_signed),
-        refused_(std::move(refused)) {}
+  GuardedTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below,
+                             GuardOptions options)
+      : ChainingTransportDescriptor(std::move(below)), options_(std::move(options)) {}
   TransportInterface* create_transport() const override {
-    return new GuardedTransport(*this, only_signed_, refused_);  // NOLINT: the library takes it
+    return new GuardedTransport(*this, options_);  // NOLINT: the library takes it
   }
 
  private:
-  const bool only_signed_;
-  const std::function<void(const std::string&)> refused_;
+  const GuardOptions options_;
 };
 
 /// The library says nothing useful about a file that it cannot use.
@@ -118,10 +121,8 @@ Status apply_identity(const std::string& folder,
 }
 
 std::shared_ptr<TransportDescriptorInterface> guarded_transport(
-    std::shared_ptr<TransportDescriptorInterface> below, bool only_signed,
-    std::function<void(const std::string& address)> refused) {
-  return std::make_shared<GuardedTransportDescriptor>(std::move(below), only_signed,
-                                                      std::move(refused));
+    std::shared_ptr<TransportDescriptorInterface> below, GuardOptions options) {
+  return std::make_shared<GuardedTransportDescriptor>(std::move(below), std::move(options));
 }
 
 }  // namespace usher::runtime

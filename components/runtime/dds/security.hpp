@@ -5,6 +5,7 @@
 #include <fastdds/rtps/transport/TransportDescriptorInterface.h>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,11 +19,21 @@ namespace usher::runtime {
 /// them). Fails when a file cannot be read or others may read the key.
 Status apply_identity(const std::string& folder, eprosima::fastdds::dds::DomainParticipantQos& qos);
 
+struct GuardOptions {
+  bool only_signed = false;
+  /// Gets the address that a malformed or unsigned message came from, on the thread that received
+  /// it.
+  std::function<void(const std::string& address)> refused;
+  /// Nothing is sent before this is set. Fast DDS announces a participant before it listens: the
+  /// answers of others, the first step of their authentication among them, would be lost and come
+  /// again a second later.
+  std::shared_ptr<const std::atomic<bool>> open;
+};
+
 /// A transport that passes on from `below` no malformed message and, with `only_signed`, nothing
-/// that classify() calls unsigned and no farewell (the lease ends who has left). `refused` gets the
-/// address that a malformed or unsigned message came from, on the thread that received it.
+/// that classify() calls unsigned and no farewell (the lease ends who has left).
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> guarded_transport(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, bool only_signed,
-    std::function<void(const std::string& address)> refused);
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below,
+    GuardOptions options);
 
 }  // namespace usher::runtime

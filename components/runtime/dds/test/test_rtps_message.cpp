@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace usher::runtime {
@@ -93,6 +95,24 @@ TEST(RtpsMessage, MayAnnounceAndAuthenticateInTheClear) {
       << "a signed submessage may not hide one that Fast DDS takes for itself";
 }
 
+TEST(RtpsMessage, IsForSomebodyElseWhenTheAddresseeIsAnother) {
+  const auto step = [](std::uint8_t addressee, const Bytes& writer) {
+    Bytes bytes = data(writer);
+    bytes.resize(4 + 24 + 48);
+    append(bytes, Bytes(12, addressee));
+    append(bytes, Bytes(8, 0));
+    bytes[2] = static_cast<std::uint8_t>(bytes.size() - 4);
+    return bytes;
+  };
+  const Bytes to = submessage(0x0e, 0, Bytes(12, 5));
+  EXPECT_FALSE(is_for_somebody_else(message({to, step(5, kAuthenticator)})));
+  EXPECT_TRUE(is_for_somebody_else(message({to, step(6, kAuthenticator), statistics()})));
+  EXPECT_FALSE(is_for_somebody_else(message({to, step(6, kUserWriter)}))) << "no authentication";
+  EXPECT_FALSE(is_for_somebody_else(message({step(6, kAuthenticator)}))) << "to everybody";
+  EXPECT_FALSE(is_for_somebody_else(message({to, data(kAuthenticator)}))) << "too short";
+  EXPECT_FALSE(is_for_somebody_else({}));
+}
+
 TEST(RtpsMessage, IsAFarewellHoweverItSaysSo) {
   EXPECT_EQ(classify(message({data(kAnnouncer, kWithQos, joined(kDisposed, kEnd))})),
             MessageKind::kFarewell);
@@ -112,6 +132,81 @@ TEST(RtpsMessage, IsMalformedWhenFastDdsWouldNotSurviveIt) {
   Bytes other_vendor = message({submessage(0x80, 0, Bytes(12, 0)), data(kUserWriter)});
   other_vendor[7] = 16;
   EXPECT_EQ(classify(other_vendor), MessageKind::kUnsigned) << "there it means something else";
+}
+
+/// Of a user's writer, with little endian numbers.
+bool is_malformed(const Bytes& part, const Bytes& next = {}) {
+  return classify(message({part, next})) == MessageKind::kMalformed;
+}
+Bytes changed(Bytes bytes, std::size_t at, const Bytes& by) {
+  std::ranges::copy(by, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  return bytes;
+}
+
+TEST(RtpsMessage, IsMalformedWhenTheNextPartWouldBeSoughtElsewhere) {
+  EXPECT_FALSE(is_malformed(submessage(0x01, 0, Bytes(4, 0)), data(kUserWriter)));
+  EXPECT_TRUE(is_malformed(submessage(0x01, 0, Bytes(3, 0)), data(kUserWriter)));
+  EXPECT_FALSE(is_malformed(submessage(0x01, 0, Bytes(3, 0)))) << "nothing follows";
+}
+
+TEST(RtpsMessage, IsMalformedWhenASampleDoesNotFitIntoItsPart) {
+  constexpr std::size_t kOffsetAt = 6;
+  const Bytes good = data(kUserWriter);
+  EXPECT_FALSE(is_malformed(good));
+  EXPECT_FALSE(is_malformed(changed(good, kOffsetAt, {20, 0}))) << "with something before it";
+  for (const Bytes& offset : {Bytes{15, 0}, Bytes{21, 0}, Bytes{0, 4}, Bytes{0xf0, 0xff}})
+    EXPECT_TRUE(is_malformed(changed(good, kOffsetAt, offset))) << int{offset[0]};
+  EXPECT_TRUE(is_malformed(submessage(kData, kWithData, Bytes(19, 0))));
+  EXPECT_TRUE(is_malformed(data(kUserWriter, kWithData | 0x08))) << "sample and key";
+  EXPECT_FALSE(is_malformed(data(kUserWriter, kWithData | kWithQos, joined(kRelated, kEnd))));
+  const Bytes endless{0x0f, 0x80, 0x04, 0x00, 0, 0, 0, 0};
+  EXPECT_TRUE(is_malformed(data(kUserWriter, kWithData | kWithQos, endless)));
+  EXPECT_TRUE(is_malformed(data(kUserWriter, kWithData | kWithQos, {0x0f, 0x80, 0xff, 0x7f})));
+  EXPECT_TRUE(is_malformed(data(kUserWriter, kWithData | kWithQos,
+                                {0x0f, 0x80, 0x02, 0x00, 0, 0, 0x01, 0x00, 0x00, 0x00})));
+}
+
+TEST(RtpsMessage, IsMalformedWhenFragmentsDoNotMakeUpTheirSample) {
+  // Fragments 3 and 4, of 8 bytes each, of a sample of 30 bytes.
+  Bytes body(20, 0);
+  body[2] = 28;
+  append(body, {3, 0, 0, 0, 2, 0, 8, 0, 30, 0, 0, 0});
+  append(body, Bytes(14, 1));
+  const Bytes good = submessage(0x16, 0, body);
+  EXPECT_FALSE(is_malformed(good));
+  EXPECT_TRUE(is_malformed(changed(good, 24, {0}))) << "the first is 1";
+  EXPECT_TRUE(is_malformed(changed(good, 24, {4}))) << "there is no fifth";
+  EXPECT_TRUE(is_malformed(changed(good, 28, {0}))) << "none";
+  EXPECT_TRUE(is_malformed(changed(good, 30, {0}))) << "of no length";
+  EXPECT_TRUE(is_malformed(changed(good, 30, {10}))) << "then there are three";
+  EXPECT_TRUE(is_malformed(changed(good, 32, {32}))) << "more than is there";
+  EXPECT_TRUE(is_malformed(changed(good, 24, {0, 0, 0, 0x80})));
+  EXPECT_TRUE(is_malformed(changed(good, 32, {0, 0, 0, 0x80}))) << "2 GB";
+  EXPECT_TRUE(is_malformed(changed(good, 1, {0x05}))) << "key only";
+}
+
+TEST(RtpsMessage, IsMalformedWhenNumbersAreMissing) {
+  const auto set = [](std::size_t before, std::uint8_t bits, std::size_t after) {
+    Bytes body(before, 0);
+    append(body, {bits, 0, 0, 0});
+    append(body, Bytes(after, 0));
+    return body;
+  };
+  EXPECT_FALSE(is_malformed(submessage(0x06, 0, set(16, 33, 8 + 4))));
+  EXPECT_TRUE(is_malformed(submessage(0x06, 0, set(16, 33, 8))));
+  EXPECT_TRUE(is_malformed(submessage(0x06, 0, Bytes(20, 0))));
+  EXPECT_FALSE(is_malformed(submessage(0x08, 0, set(24, 32, 4))));
+  EXPECT_TRUE(is_malformed(submessage(0x08, 0, set(24, 33, 4))));
+  EXPECT_FALSE(is_malformed(submessage(0x12, 0, set(20, 32, 4 + 4))));
+  EXPECT_TRUE(is_malformed(submessage(0x12, 0, set(20, 33, 4 + 4))));
+  const Bytes many = changed(submessage(0x06, 0, set(16, 0, 120)), 20, {1, 1});
+  EXPECT_TRUE(is_malformed(many)) << "257 bits";
+  for (const auto& [id, size] : std::vector<std::pair<std::uint8_t, std::size_t>>{
+           {0x07, 28}, {0x13, 24}, {0x0e, 12}, {0x0c, 20}, {0x09, 8}}) {
+    EXPECT_FALSE(is_malformed(submessage(id, 0, Bytes(size, 0)))) << int{id};
+    EXPECT_TRUE(is_malformed(submessage(id, 0, Bytes(size - 4, 0)))) << int{id};
+  }
+  EXPECT_FALSE(is_malformed(submessage(0x09, 0x02, {}), data(kUserWriter))) << "no time";
 }
 
 TEST(RtpsMessage, IsMalformedWhenItIsNone) {
@@ -134,6 +229,7 @@ TEST(RtpsMessage, SurvivesAnyBytes) {
     }
     bytes.resize(random() % (bytes.size() + 1));
     classify(std::vector<std::uint8_t>(bytes));
+    is_for_somebody_else(std::vector<std::uint8_t>(bytes));
   }
 }
 
