@@ -1,6 +1,8 @@
 // The whole simulated robot as processes: it starts, survives the death of its parts, ends.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -107,12 +109,25 @@ TEST_F(Robot, TakesItsPartsAlongWhenTheLauncherIsKilled) {
       << robot_->components().begin()->first;
 }
 
-TEST_F(Robot, CanBeLaunchedAgainAndEndsOnCtrlC) {
+// The simulated world ends after the robot's movement was ended and before the base driver: what it
+// says last is what the robot did when the others were taken away.
+TEST_F(Robot, CanBeLaunchedAgainAndStandsOnCtrlCBeforeAnythingElseEnds) {
+  std::atomic<double> speed{0.0};
+  const auto truth = robot_->observer().reader(
+      topics::kSimGroundTruth,
+      [&](const auto& message, const auto&) { speed = std::abs(message.v()); });
+  ASSERT_TRUE(truth) << truth.error();
   robot_->launch();
-  ASSERT_TRUE(robot_->wait_for([] { return !robot_->components().empty(); }, Seconds(30)))
-      << robot_->launcher().errors();
+  ASSERT_TRUE(booted()) << robot_->complaints();
+  const auto drive = robot_->command({"goto", "kitchen", "--no-wait"});
+  EXPECT_EQ(drive->wait(), 0) << drive->errors();
+  ASSERT_TRUE(robot_->wait_for([&] { return speed > 0.3; }, Seconds(60)));
   robot_->launcher().signal(SIGINT);
   EXPECT_EQ(robot_->launcher().wait(std::chrono::seconds(20)), 0) << robot_->launcher().output();
+  EXPECT_NE(robot_->launcher().output().find("stopping: first the robot"), std::string::npos);
+  EXPECT_EQ(robot_->launcher().output().find("was not seen to stand"), std::string::npos)
+      << robot_->launcher().output();
+  EXPECT_LT(speed, 0.1);
   EXPECT_TRUE(robot_->components().empty());
 }
 

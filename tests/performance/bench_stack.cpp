@@ -210,11 +210,11 @@ class Measurement {
 
     const auto run_until = [&](auto condition, auto patience) {
       const auto until = steady_clock::now() + patience;
-      while (!condition() && !launcher->broken() && steady_clock::now() < until) {
+      while (!condition() && !launcher->incomplete() && steady_clock::now() < until) {
         launcher->poll();
         std::this_thread::sleep_for(milliseconds(20));
       }
-      return condition() && !launcher->broken();
+      return condition() && !launcher->incomplete();
     };
     std::fprintf(stderr, "starts %zu processes in domain %u\n",
                  deployment->manifest.components.size(), domain);

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -130,6 +131,29 @@ class Heartbeats {
   std::map<std::string, Entry> newest_;
 };
 
+/// Whether the base was last heard to stand.
+class Standing {
+ public:
+  void take(const usher_msgs::msg::BaseStatus& message) {
+    constexpr double kSlow = 0.02;  // [m/s], [rad/s]; a balancing base never stands quite still
+    const bool powered = message.state() == usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING;
+    const std::lock_guard lock(mutex_);
+    stands_ = !powered || (std::abs(message.v()) < kSlow && std::abs(message.w()) < kSlow &&
+                           message.v_commanded() == 0.0 && message.w_commanded() == 0.0);
+    at_ = std::chrono::steady_clock::now();
+  }
+  /// A base that is not heard any more has nobody to wait for: its guard stops it.
+  bool stands() const {
+    const std::lock_guard lock(mutex_);
+    return stands_ || std::chrono::steady_clock::now() - at_ > milliseconds(300);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  bool stands_ = true;
+  std::chrono::steady_clock::time_point at_{};
+};
+
 std::string state_of(const Process& process, const Heartbeats::Entry* heartbeat) {
   switch (process.state) {
     case Process::State::kWaiting:
@@ -237,9 +261,13 @@ int launch(const LaunchArguments& arguments) {
   const auto reader = (*observer)->reader(
       topics::kHeartbeat, [&](const auto& message, const auto&) { heartbeats.take(message); });
   if (!reader) return fail(reader.error());
+  Standing standing;
+  const auto base = (*observer)->reader(
+      topics::kBaseStatus, [&](const auto& message, const auto&) { standing.take(message); });
+  if (!base) return fail(base.error());
 
   std::cout << "launching " << deployment->manifest.name << "; logs in " << options.run_directory
-            << "; Ctrl-C stops\n"
+            << "; Ctrl-C stops the robot, then everything\n"
             << std::flush;
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   auto next_table = std::chrono::steady_clock::now() + milliseconds(1000);
@@ -267,9 +295,10 @@ int launch(const LaunchArguments& arguments) {
   }
   const bool broken = launcher->broken();
   service.stopping();
-  std::cout << (broken ? "a component cannot be kept running; stopping all\n" : "stopping\n")
+  std::cout << (broken ? "a component cannot be kept running; " : "")
+            << "stopping: first the robot, then everything in reverse order, the base driver last\n"
             << std::flush;
-  launcher->stop();
+  launcher->stop([&] { return standing.stands(); });
   for (const auto& event : launcher->events()) std::cout << event << "\n";
   return broken ? 1 : 0;
 }

@@ -46,7 +46,7 @@ class ProcessRobot final : public CommandedRobot {
                                                  std::chrono::duration<double>(longest));
     auto next_step = steady_clock::now();
     bool over = false;
-    while (!over && !launcher_.broken() && steady_clock::now() < until) {
+    while (!over && !launcher_.incomplete() && steady_clock::now() < until) {
       launcher_.poll();
       {
         const std::lock_guard lock(mutex_);
@@ -59,7 +59,7 @@ class ProcessRobot final : public CommandedRobot {
       std::this_thread::sleep_for(kPoll);
     }
     set(nullptr);
-    if (launcher_.broken())
+    if (launcher_.incomplete())
       return Error{"a component cannot be kept running; its log is in " +
                    launcher_.run_directory()};
     return arrival(errand, longest);

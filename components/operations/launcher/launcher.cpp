@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -28,6 +29,9 @@ constexpr auto kBudgetWindow = seconds(60);
 constexpr auto kShortestPause = milliseconds(100);
 constexpr auto kLongestPause = seconds(5);
 constexpr auto kGrace = seconds(2);
+/// The next one's turn comes after this though the one before is not gone.
+constexpr auto kTurn = milliseconds(250);
+constexpr std::uintmax_t kLargestLog = 4'000'000;  // bytes; and one generation before
 constexpr auto kLongestPollPause = milliseconds(500);
 constexpr const char* kOperator = "operator";
 constexpr const char* kDiscoveryServer = "discovery_server";
@@ -82,14 +86,31 @@ Status write_parameters(const runtime::ParameterFile& file, const std::string& p
   return {};
 }
 
+bool directory_of_mine(const std::string& path) {
+  struct stat facts {};
+  return lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();
+}
+
 /// Where this user's deployments keep their locks and, by default, their run directories.
 std::string runtime_directory() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  const std::filesystem::path base =
-      runtime != nullptr && *runtime != '\0'
-          ? std::filesystem::path(runtime) / "usher"
-          : std::filesystem::temp_directory_path() / ("usher-" + std::to_string(getuid()));
-  return base.string();
+  if (runtime != nullptr && *runtime != '\0') return std::string(runtime) + "/usher";
+  const std::string user = std::to_string(geteuid());
+  if (directory_of_mine("/run/user/" + user)) return "/run/user/" + user + "/usher";
+  return "/tmp/usher-" + user;
+}
+
+/// Makes it for this user alone. Where anybody may write beside it (/tmp), one that was there and
+/// is not ours, or is open to others, could hold somebody else's memory of our robot.
+Status make_runtime_directory(const std::string& path) {
+  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
+    return Error{"cannot write " + path + ": " + std::strerror(errno)};
+  struct stat facts {};
+  if (lstat(path.c_str(), &facts) != 0 || !directory_of_mine(path))
+    return Error{path + " must be a directory of this user, and is not"};
+  if (path.starts_with("/tmp/") && (facts.st_mode & 077) != 0)
+    return Error{path + " must be open to this user alone (mode 0700), and is open to others"};
+  return {};
 }
 
 }  // namespace
@@ -161,11 +182,10 @@ Launcher::~Launcher() {
 }
 
 Status Launcher::lock(const Deployment& deployment) {
+  if (auto status = make_runtime_directory(runtime_directory()); !status) return status;
   std::error_code error;
-  for (const auto& directory : {options_.run_directory, runtime_directory()}) {
-    std::filesystem::create_directories(directory, error);
-    if (error) return Error{"cannot write " + directory + ": " + error.message()};
-  }
+  std::filesystem::create_directories(options_.run_directory, error);
+  if (error) return Error{"cannot write " + options_.run_directory + ": " + error.message()};
   if (auto status = lock_file(options_.run_directory + "/lock"); !status) return status;
   for (const auto& host : deployment.manifest.hosts) {
     if (!options_.host.empty() && host.name != options_.host) continue;
@@ -227,9 +247,13 @@ Status Launcher::prepare(const Deployment& deployment) {
       process->restart = component.restart;
       process->budget = component.restart_budget;
       process->log = options_.run_directory + "/" + name + ".log";
-      std::error_code ignored;
-      std::filesystem::remove(process->log, ignored);
+      std::error_code ignored;  // the former launch's, one generation
+      std::filesystem::rename(process->log, process->log + ".1", ignored);
     }
+    process->criticality = std::min(process->criticality, component.criticality);
+    if (const auto found = deployment.movement.find(component.name);
+        found != deployment.movement.end())
+      process->movement = std::max(process->movement, found->second);
     process->components.push_back(component.name);
     process->arguments.push_back("--parameters");
     process->arguments.push_back(path);
@@ -272,6 +296,7 @@ Status Launcher::add_discovery_server(const Deployment& deployment, std::int64_t
                        path};
   process.components = {kDiscoveryServer};
   process.budget = 1000;  // nothing finds anything without it
+  process.criticality = Criticality::kStop;
   process.log = options_.run_directory + "/" + kDiscoveryServer + ".log";
   return {};
 }
@@ -329,6 +354,7 @@ void Launcher::ended(Process& process, int status) {
   } else if (static_cast<int>(process.recent_starts.size()) > process.budget) {
     process.state = Process::State::kGaveUp;
     event += ", more than " + std::to_string(process.budget) + " starts within a minute: given up";
+    if (process.criticality == Criticality::kNotify) event += "; the robot goes on without it";
   } else {
     // At once the first time; each further end within the window doubles the pause.
     const auto repeats = static_cast<int>(process.recent_starts.size()) - 1;
@@ -382,40 +408,80 @@ void Launcher::kill_what_hangs() {
 void Launcher::poll() {
   for (auto& process : processes_) reap(process);
   kill_what_hangs();
+  bound_logs();
   for (auto& process : processes_) {
     if (process.state == Process::State::kWaiting && Clock::now() >= process.start_at)
       start(process);
   }
 }
 
-void Launcher::stop() {
-  for (auto process = processes_.rbegin(); process != processes_.rend(); ++process) {
-    if (process->pid == 0) {
-      if (process->state == Process::State::kWaiting) process->state = Process::State::kStopped;
-      continue;
-    }
-    process->state = Process::State::kStopping;
-    kill(process->pid, SIGCONT);  // a stopped process would not hear the next one
-    kill(process->pid, SIGTERM);
+/// A component writes at the end of its log, wherever that is: so it may be cut under its hands.
+void Launcher::bound_logs() {
+  const auto now = Clock::now();
+  if (now - logs_bounded_ < seconds(1)) return;
+  logs_bounded_ = now;
+  for (const auto& process : processes_) {
+    std::error_code error;
+    if (std::filesystem::file_size(process.log, error) <= kLargestLog || error) continue;
+    std::filesystem::copy_file(process.log, process.log + ".1",
+                               std::filesystem::copy_options::overwrite_existing, error);
+    std::filesystem::resize_file(process.log, 0, error);
   }
-  const auto deadline = Clock::now() + kGrace;
-  const auto running = [this] {
-    return std::any_of(processes_.begin(), processes_.end(),
-                       [](const Process& p) { return p.pid != 0; });
-  };
-  bool killed = false;
-  while (running()) {
-    for (auto& process : processes_) reap(process);
-    if (!killed && Clock::now() > deadline) {
-      killed = true;
-      for (const auto& process : processes_) {
-        if (process.pid == 0) continue;
-        events_.push_back(process.name + ": did not stop within 2 s, killed");
-        kill(process.pid, SIGKILL);
-      }
+}
+
+void Launcher::end(Process& process) {
+  if (process.pid == 0) {
+    if (process.state == Process::State::kWaiting) process.state = Process::State::kStopped;
+    return;
+  }
+  process.state = Process::State::kStopping;
+  process.kill_at = Clock::now() + kGrace;
+  kill(process.pid, SIGCONT);  // a stopped process would not hear the next one
+  kill(process.pid, SIGTERM);
+}
+
+void Launcher::wait_until_gone(const std::function<bool(const Process&)>& which,
+                               Clock::duration patience) {
+  const auto until = Clock::now() + patience;
+  const auto runs = [&](const Process& p) { return p.pid != 0 && which(p); };
+  while (std::any_of(processes_.begin(), processes_.end(), runs) && Clock::now() < until) {
+    for (auto& process : processes_) {
+      if (reap(process) || process.state != Process::State::kStopping || process.pid == 0 ||
+          Clock::now() < process.kill_at)
+        continue;
+      events_.push_back(process.name + ": did not stop within 2 s, killed");
+      kill(process.pid, SIGKILL);
+      process.kill_at = Clock::time_point::max();
     }
     std::this_thread::sleep_for(milliseconds(5));
   }
+}
+
+void Launcher::stop(const std::function<bool()>& stands) {
+  constexpr auto kForGood = std::chrono::hours(1);  // SIGKILL ends each long before
+  const auto all = [](Movement movement) {
+    return [movement](const Process& p) { return p.movement == movement; };
+  };
+  const auto in_reverse = [&](Movement movement) {
+    for (auto process = processes_.rbegin(); process != processes_.rend(); ++process) {
+      if (process->movement != movement) continue;
+      end(*process);
+      wait_until_gone([&](const Process& p) { return &p == &*process; }, kTurn);
+    }
+  };
+  const bool moves = std::any_of(processes_.begin(), processes_.end(), [](const Process& p) {
+    return p.movement == Movement::kHolds && p.state == Process::State::kRunning;
+  });
+  in_reverse(Movement::kAsks);
+  if (stands && moves) {
+    const auto until = Clock::now() + kLongestStanding;
+    while (!stands() && Clock::now() < until) std::this_thread::sleep_for(milliseconds(5));
+    if (Clock::now() >= until) events_.push_back("the robot was not seen to stand within 5 s");
+  }
+  in_reverse(Movement::kNone);
+  wait_until_gone([](const Process& p) { return p.movement != Movement::kHolds; }, kForGood);
+  in_reverse(Movement::kHolds);
+  wait_until_gone(all(Movement::kHolds), kForGood);
 }
 
 const Process* Launcher::find(const std::string& component) const {
@@ -455,6 +521,12 @@ std::string Launcher::summary() const {
 }
 
 bool Launcher::broken() const {
+  return std::any_of(processes_.begin(), processes_.end(), [](const Process& p) {
+    return p.state == Process::State::kGaveUp && p.criticality != Criticality::kNotify;
+  });
+}
+
+bool Launcher::incomplete() const {
   return std::any_of(processes_.begin(), processes_.end(),
                      [](const Process& p) { return p.state == Process::State::kGaveUp; });
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,7 +37,9 @@ struct Process {
   std::vector<std::string> components;  ///< names
   std::vector<std::string> arguments;   ///< program first
   RestartPolicy restart = RestartPolicy::kAlways;
-  int budget = 0;  ///< starts within a minute
+  int budget = 0;                                  ///< starts within a minute
+  Criticality criticality = Criticality::kNotify;  ///< the highest of its components
+  Movement movement = Movement::kNone;
   std::string log;
 
   State state = State::kWaiting;
@@ -44,6 +47,7 @@ struct Process {
   int starts = 0;
   std::string last_end;  ///< how it ended the last time, in words; empty before the first
   std::chrono::steady_clock::time_point start_at{};
+  std::chrono::steady_clock::time_point kill_at{};  ///< while it is stopping
   std::deque<std::chrono::steady_clock::time_point> recent_starts;
   /// When its components were last heard, since this start; by name.
   std::map<std::string, std::chrono::steady_clock::time_point> heard_at;
@@ -51,7 +55,7 @@ struct Process {
 
 /// Runs one host's part of a deployment as child processes: starts them in the manifest's order,
 /// restarts the ones that end (the first time at once, then with growing pauses inside a budget),
-/// stops them in reverse order. Not thread-safe.
+/// stops them in order. Not thread-safe.
 class Launcher {
  public:
   /// Writes the parameter files. Fails when the deployment has findings, the host is unknown, a
@@ -72,15 +76,22 @@ class Launcher {
   /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.
   /// What happened since the last call is in events().
   void poll();
-  /// SIGTERM in reverse order, SIGKILL after two seconds. Blocks until all are gone.
-  void stop();
+  /// Stops what asks for movement, waits until `stands` says that the robot stands (at most
+  /// `kLongestStanding`; without it nobody waits), then stops the others in reverse order of their
+  /// start, what holds the base last. Each gets SIGTERM, SIGKILL after two seconds; the next one's
+  /// turn comes when it is gone, or is slow; that of the base when all others are gone. Blocks
+  /// until all are.
+  void stop(const std::function<bool()>& stands = {});
+  static constexpr auto kLongestStanding = std::chrono::seconds(5);
 
   const std::vector<Process>& processes() const { return processes_; }
   const Process* find(const std::string& component) const;
   /// Sentences for an operator, in order; cleared by the call.
   std::vector<std::string> events();
-  /// A process gave up: the deployment is not what the manifest says.
+  /// A process gave up whose loss the robot does not merely report (criticality stop or degrade).
   bool broken() const;
+  /// A process gave up, whatever it means: the deployment is not what the manifest says.
+  bool incomplete() const;
   /// Nothing has given up and nothing waits longer than it should for its start.
   bool healthy() const;
   /// "14 of 15 processes run: amcl is waiting"
@@ -98,6 +109,10 @@ class Launcher {
   void ended(Process& process, int status);
   bool reap(Process& process);
   void kill_what_hangs();
+  void bound_logs();
+  void end(Process& process);
+  void wait_until_gone(const std::function<bool(const Process&)>& which,
+                       std::chrono::steady_clock::duration patience);
 
   LaunchOptions options_;
   std::vector<Process> processes_;
@@ -106,9 +121,12 @@ class Launcher {
   std::vector<int> locks_;  ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
+  std::chrono::steady_clock::time_point logs_bounded_{};
 };
 
-/// Where a deployment runs on this machine by default: one place for each user and DDS domain.
+/// Where a deployment runs on this machine by default: one place for each user and DDS domain, in
+/// XDG_RUNTIME_DIR/usher, else in /run/user/UID/usher, else in /tmp/usher-UID, which the launcher
+/// takes only when it belongs to this user alone.
 std::string default_run_directory(std::uint32_t domain, const std::string& host);
 
 /// Where a launcher leaves how its robot is reached (a parameter file without parameters), and

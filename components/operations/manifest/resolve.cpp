@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "idl/topics.hpp"
 #include "operations/manifest/wiring.hpp"
 #include "runtime/parameters/interpret.hpp"
 
@@ -25,6 +26,15 @@ struct Layer {
   std::map<std::string, std::map<std::string, ParameterValue>>
       components;  ///< by component name, then parameter
 };
+
+Movement movement_of(const Contract& contract) {
+  Movement movement = Movement::kNone;
+  for (const auto& output : contract.outputs) {
+    if (output.topic == topics::kBaseStatus.name) return Movement::kHolds;
+    if (output.topic.starts_with("cmd_vel/")) movement = Movement::kAsks;
+  }
+  return movement;
+}
 
 /// Who alone may set a parameter of this name; empty = anybody.
 std::string owner_of(const std::string& name) {
@@ -286,6 +296,11 @@ Deployment resolve(const Manifest& manifest, const Contracts& contracts,
   deployment.findings = manifest.findings;
   Resolver(manifest, contracts, deployment).run(overrides);
   judge_wiring(manifest, contracts, deployment.findings);
+  for (const auto& component : manifest.components) {
+    const auto contract = contracts.find(component.type);
+    if (contract != contracts.end())
+      deployment.movement[component.name] = movement_of(contract->second);
+  }
   return deployment;
 }
 

@@ -22,10 +22,18 @@ struct Override {
   std::string value;
 };
 
+/// What a component has to do with the robot's movement, from its contract.
+enum class Movement {
+  kNone,
+  kAsks,   ///< writes cmd_vel/*: without it nobody wants the robot to move
+  kHolds,  ///< writes base/status: it keeps the base standing, and is the last to be stopped
+};
+
 /// A manifest with every component's parameters in place, and everything that is wrong with it.
 struct Deployment {
   Manifest manifest;
   std::vector<runtime::ParameterFile> files;  ///< in the order of manifest.components
+  std::map<std::string, Movement> movement;   ///< by component name; kNone where it is missing
   std::vector<Finding> findings;
 };
 

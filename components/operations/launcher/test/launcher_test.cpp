@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -189,7 +190,7 @@ TEST_F(Launching, PutsAGroupIntoOneProcess) {
   EXPECT_EQ(words.at(4), folder_.path() + "/run/depth_pipeline.yaml");
 }
 
-TEST_F(Launching, StopsInReverseOrderAndKillsWhatDoesNotListen) {
+TEST_F(Launching, StopsWhatListensAndKillsWhatDoesNot) {
   const std::string order = folder_.path() + "/order";
   program("polite", "trap 'echo polite >> " + order + "; exit 0' TERM\ntouch " + folder_.path() +
                         "/ready\nwhile :; do sleep 0.01; done");
@@ -211,6 +212,94 @@ TEST_F(Launching, StopsInReverseOrderAndKillsWhatDoesNotListen) {
   EXPECT_EQ(test::content_of(order), "polite\n");
   EXPECT_EQ(made.find("polite")->state, Process::State::kStopped);
   EXPECT_THAT(made.events(), Contains("deaf: did not stop within 2 s, killed"));
+}
+
+TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
+  const std::string order = folder_.path() + "/order";
+  // Each writes its name when it is asked to end, and the base what the robot did then.
+  for (const std::string name : {"base", "supervisor", "planner", "screen"}) {
+    program(name, "trap 'echo " + name + " >> " + order + "; exit 0' TERM\ntouch " +
+                      folder_.path() + "/ready_" + name + "\nwhile :; do sleep 0.01; done");
+    component(name, name);
+  }
+  deployment_.movement = {{"base", Movement::kHolds}, {"planner", Movement::kAsks}};
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] {
+    return std::filesystem::exists(folder_.path() + "/ready_base") &&
+           std::filesystem::exists(folder_.path() + "/ready_supervisor") &&
+           std::filesystem::exists(folder_.path() + "/ready_planner") &&
+           std::filesystem::exists(folder_.path() + "/ready_screen");
+  }));
+  std::string when_asked;
+  int asked = 0;
+  made.stop([&] {
+    when_asked = test::content_of(order);
+    return ++asked == 20;
+  });
+  EXPECT_EQ(asked, 20) << "nobody else is stopped before the robot stands";
+  EXPECT_EQ(when_asked, "planner\n");
+  EXPECT_EQ(test::content_of(order), "planner\nscreen\nsupervisor\nbase\n");
+}
+
+TEST_F(Launching, DoesNotWaitForEverForARobotThatDoesNotStand) {
+  component("legs", "sleeper");
+  deployment_.movement = {{"legs", Movement::kHolds}};
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
+  const auto start = std::chrono::steady_clock::now();
+  made.stop([] { return false; });
+  EXPECT_GE(std::chrono::steady_clock::now() - start, Launcher::kLongestStanding);
+  EXPECT_EQ(made.find("legs")->state, Process::State::kStopped);
+  EXPECT_THAT(made.events(), Contains("the robot was not seen to stand within 5 s"));
+}
+
+TEST_F(Launching, GoesOnWithoutWhatIsMerelyReported) {
+  program("crash", "exit 3");
+  component("screen", "crash").restart_budget = 1;
+  deployment_.manifest.components.back().criticality = Criticality::kNotify;
+  component("legs", "sleeper");
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.incomplete(); }));
+  EXPECT_FALSE(made.broken());
+  EXPECT_THAT(events_, Contains(HasSubstr("given up; the robot goes on without it")));
+  EXPECT_TRUE(alive(made.find("legs")->pid));
+  EXPECT_THAT(made.summary(), HasSubstr("screen is given up"));
+}
+
+TEST_F(Launching, BoundsTheLogsAndKeepsTheFormerOne) {
+  program("chatter", "while :; do head -c 200000 /dev/zero; sleep 0.02; done");
+  component("legs", "chatter");
+  folder_.file("run/legs.log", "the former launch\n");
+  const std::string log = folder_.path() + "/run/legs.log";
+  auto made = launcher();
+  EXPECT_EQ(test::content_of(log + ".1"), "the former launch\n");
+  ASSERT_TRUE(wait_for(made, [&] {
+    std::error_code error;
+    return std::filesystem::file_size(log + ".1", error) > 4'000'000;
+  }));
+  const auto chatter = made.find("legs")->pid;
+  ::kill(chatter, SIGSTOP);
+  made.poll();
+  EXPECT_EQ(made.find("legs")->starts, 1) << "its log was cut under its hands";
+}
+
+TEST_F(Launching, KeepsItsFilesWhereNobodyElseCanPutAny) {
+  component("legs", "sleeper");
+  const std::string runtime = folder_.path() + "/runtime";
+  std::filesystem::create_directory(runtime);
+  ::setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+  EXPECT_EQ(refusal(), "launched");
+  struct stat facts {};
+  ASSERT_EQ(::stat((runtime + "/usher").c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0700U);
+  std::filesystem::remove_all(runtime + "/usher");
+  std::filesystem::create_directory_symlink(folder_.path(), runtime + "/usher");
+  EXPECT_EQ(refusal(), runtime + "/usher must be a directory of this user, and is not");
+  ::unsetenv("XDG_RUNTIME_DIR");
+  const std::string user = std::to_string(::geteuid());
+  const std::string found = default_run_directory(7, "nuc");
+  EXPECT_THAT(found, testing::AnyOf("/run/user/" + user + "/usher/domain-7-nuc",
+                                    "/tmp/usher-" + user + "/domain-7-nuc"));
 }
 
 TEST_F(Launching, StopsWhatIsHalted) {
