@@ -13,6 +13,7 @@
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/run_record.hpp"
+#include "operations/host/machine_load.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/results/result_sheet.hpp"
 #include "runtime/dds/observer.hpp"
@@ -44,6 +45,8 @@ struct Watch {
   RunRecord record;
   std::optional<grid::OccupancyGrid> map;
   bool succeeded = false;
+  MachineLoad load;
+  bool granted = false;  ///< the robot has the right to drive
 
   template <class Message>
   void take(const Message& message) {
@@ -55,6 +58,12 @@ struct Watch {
     }
   }
 };
+
+void take_grant(Watch& watch, const usher_msgs::msg::SupervisorStatus& status) {
+  const std::lock_guard lock(watch.mutex);
+  if (watch.granted && !status.granted()) watch.load.stopped(status.reason());
+  watch.granted = status.granted();
+}
 
 /// Where the dialogue is, in one line; empty when nothing is new.
 std::string progress_line(Watch& watch, std::string& last_state) {
@@ -117,7 +126,9 @@ ResultSheet judge(Watch& watch, const std::string& input) {
                    {"visitor_distance_m", visitor_off},
                    {"contacts", summary.contacts},
                    {"touches", summary.touches},
-                   {"worst_lag_s", summary.worst_lag}};
+                   {"worst_lag_s", summary.worst_lag},
+                   {"machine_tasks_per_core", watch.load.per_core()},
+                   {"grants_lost", watch.load.stops()}};
   sheet.published = {{"localization_error_mean_m", 0.019}, {"mean_speed_m_s", 0.72}};
   sheet.targets = {{"contacts", {Bound::kAtMost, 0.0}}};
   return sheet;
@@ -166,6 +177,9 @@ int demo(const DemoArguments& arguments) {
   const auto plan = (*observer)->reader(topics::kPlan, take);
   const auto status = (*observer)->reader(topics::kNavigateStatus, take);
   const auto screen = (*observer)->reader(topics::kDialogueScreen, take);
+  const auto supervisor =
+      (*observer)->reader(topics::kSupervisorStatus,
+                          [&](const auto& message, const auto&) { take_grant(watch, message); });
   auto map = (*observer)->reader(topics::kMap, [&](const auto& message, const auto&) {
     if (auto grid = wire::from_message(message)) {
       const std::lock_guard lock(watch.mutex);
@@ -180,7 +194,7 @@ int demo(const DemoArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   auto next_line = start;
   std::string state;
-  while (!stop_asked && !launcher->broken() && !over(watch) &&
+  while (!stop_asked && !launcher->incomplete() && !over(watch) &&
          std::chrono::steady_clock::now() - start < kLongestRun) {
     launcher->poll();
     for (const auto& event : launcher->events()) {
@@ -188,17 +202,25 @@ int demo(const DemoArguments& arguments) {
     }
     if (std::chrono::steady_clock::now() >= next_line) {
       next_line += milliseconds(1000);
+      {
+        const std::lock_guard lock(watch.mutex);
+        watch.load.sample();
+      }
       const auto line = progress_line(watch, state);
       if (!line.empty()) std::cout << line << "\n";
     }
     std::cout << std::flush;
     std::this_thread::sleep_for(milliseconds(20));
   }
-  const bool broken = launcher->broken();
+  const bool broken = launcher->incomplete();
   launcher->stop();
   if (stop_asked) return fail("stopped before the end");
-  if (broken)
-    return fail("a component cannot be kept running; its log is in " + launcher->run_directory());
+  if (broken) {
+    const std::lock_guard lock(watch.mutex);
+    const std::string load = watch.load.verdict();
+    return fail("a component cannot be kept running; its log is in " + launcher->run_directory() +
+                (load.empty() ? "" : "\nusher: " + load));
+  }
 
   const ResultSheet sheet =
       judge(watch, "deploy/demo.yaml, seed " + std::to_string(arguments.seed));
@@ -215,6 +237,7 @@ int demo(const DemoArguments& arguments) {
                              : "the visitor did not get there as promised")
             << "; picture, table, result.json and the tablet's screens are in " << arguments.out
             << "\n";
+  if (!sheet.pass() && watch.load.too_busy()) return fail(watch.load.verdict());
   return sheet.pass() ? 0 : 1;
 }
 
