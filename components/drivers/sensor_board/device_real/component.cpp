@@ -16,8 +16,8 @@ Link::Parameters SensorBoardComponent::read_parameters(runtime::Parameters& para
 
 SensorBoardComponent::SensorBoardComponent(runtime::Host& host)
     : host_(host),
-      publisher_(host),
       link_(read_parameters(host.parameters())),
+      publisher_(host, [this](double tilt) { link_.set_tilt(tilt); }),
       lost_(host.health().counter("messages: lost")),
       damaged_(host.health().counter("frames: damaged")) {
   const std::string line =

@@ -16,8 +16,8 @@ class SensorBoardComponent final : public runtime::Component {
   void tick();
 
   runtime::Host& host_;
-  BoardPublisher publisher_;
   Link link_;
+  BoardPublisher publisher_;
   runtime::Stream* stream_ = nullptr;
   std::uint64_t& lost_;
   std::uint64_t& damaged_;

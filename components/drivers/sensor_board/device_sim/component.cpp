@@ -12,13 +12,20 @@ constexpr auto kSilence = std::chrono::milliseconds(200);
 
 SensorBoardSimComponent::SensorBoardSimComponent(runtime::Host& host)
     : host_(host),
-      publisher_(host),
+      command_(host.output(topics::kSimSensorBoardCommand)),
+      publisher_(host, [this](double tilt) { set_tilt(tilt); }),
       rejected_(host.health().counter("readings: rejected")),
       input_(host.input(
           topics::kSimSensorBoard,
           {.max_age = kSilence, .on_loss = "publishes nothing and says so"},
           [this](const auto& message, const auto&) { take(message); },
           [this] { host_.health().set(runtime::HealthState::kDegraded, "the board is silent"); })) {
+}
+
+void SensorBoardSimComponent::set_tilt(double tilt) {
+  usher_sim_msgs::msg::SensorBoardCommand command;
+  command.tilt(tilt);
+  command_.publish(command);
 }
 
 void SensorBoardSimComponent::take(const usher_sim_msgs::msg::SensorBoardReading& message) {
@@ -31,6 +38,7 @@ void SensorBoardSimComponent::take(const usher_sim_msgs::msg::SensorBoardReading
   std::copy(message.ranges().begin(), message.ranges().end(), reading.ranges.begin());
   reading.whiskers = {message.front_left(), message.front_right(), message.back_left(),
                       message.back_right()};
+  reading.tilt = message.tilt();
   publisher_.publish(reading);
   host_.health().set(runtime::HealthState::kOk);
 }

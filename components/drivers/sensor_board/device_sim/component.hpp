@@ -10,9 +10,11 @@ class SensorBoardSimComponent final : public runtime::Component {
   explicit SensorBoardSimComponent(runtime::Host& host);
 
  private:
+  void set_tilt(double tilt);
   void take(const usher_sim_msgs::msg::SensorBoardReading& message);
 
   runtime::Host& host_;
+  runtime::Output<usher_sim_msgs::msg::SensorBoardCommand> command_;
   BoardPublisher publisher_;
   std::uint64_t& rejected_;
   runtime::Input<usher_sim_msgs::msg::SensorBoardReading> input_;

@@ -1,5 +1,8 @@
 #include "drivers/sensor_board/shell/board_publisher.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -12,10 +15,21 @@ constexpr std::uint64_t kScanShare =
 constexpr float kReadingPeriod = 0.02F;  // [s]
 }  // namespace
 
-BoardPublisher::BoardPublisher(runtime::Host& host)
-    : ultrasonic_(host.output(topics::kUltrasonic)),
+BoardPublisher::BoardPublisher(runtime::Host& host, std::function<void(double)> set_tilt)
+    : rejected_tilts_(host.health().counter("tilt commands: rejected")),
+      ultrasonic_(host.output(topics::kUltrasonic)),
       whiskers_(host.output(topics::kWhiskers)),
-      mount_(host.output(topics::kTfStatic)) {
+      mount_(host.output(topics::kTfStatic)),
+      tilt_(host.output(topics::kKinectTilt)),
+      tilt_command_(
+          host.input(topics::kKinectTiltCommand, {.optional = true},
+                     [this, set_tilt = std::move(set_tilt)](const auto& command, const auto&) {
+                       if (std::isfinite(command.servo())) {
+                         set_tilt(command.servo());
+                       } else {
+                         ++rejected_tilts_;
+                       }
+                     })) {
   auto& p = host.parameters();
   ring_radius_ =
       static_cast<float>(p.number("robot.ultrasonic.mount_x", "m", {-2, 2},
@@ -45,6 +59,11 @@ void BoardPublisher::publish(const Reading& reading) {
   whiskers.back_right(reading.whiskers.back_right);
   whiskers_.publish(whiskers);
   if (++readings_ % kScanShare != 0) return;
+
+  usher_msgs::msg::CameraTilt tilt;
+  tilt.header(wire::header(stamp, frames::kBaseLink));
+  tilt.servo(reading.tilt);
+  tilt_.publish(tilt);
 
   sensor_msgs::msg::LaserScan scan;
   scan.header(wire::header(stamp, kFrame));

@@ -24,6 +24,7 @@ constexpr auto kCommandHold = milliseconds(400);
 /// More than this in one go would be a jump for the robot; the rest is time that the simulation
 /// loses.
 constexpr std::uint64_t kMostStepsAtOnce = 5;
+constexpr double kLargestTilt = 0.349;  // [rad] of the camera's servo, as the board clips it
 constexpr double kBehind = 0.1;  // [s] of lag from which the simulation says that it is behind
 
 /// The defaults are MARVIN's SICK LMS100.
@@ -147,6 +148,11 @@ WorldComponent::WorldComponent(runtime::Host& host)
       });
   person_goal_ = host.input(topics::kSimPersonGoal, {.optional = true},
                             [this](const auto& goal, const auto&) { take_person_goal(goal); });
+  tilt_command_ = host.input(
+      topics::kSimSensorBoardCommand, {.optional = true}, [this](const auto& command, const auto&) {
+        if (std::isfinite(command.tilt()))
+          board_.tilt(std::clamp(command.tilt(), -kLargestTilt, kLargestTilt));
+      });
   feedback_ = host.output(topics::kSimBaseFeedback);
   scans_ = host.output(topics::kSimScan);
   boards_ = host.output(topics::kSimSensorBoard);

@@ -39,6 +39,7 @@ class WorldComponent final : public runtime::Component {
 
   runtime::Input<usher_sim_msgs::msg::BaseCommand> command_;
   runtime::Input<usher_sim_msgs::msg::PersonGoal> person_goal_;
+  runtime::Input<usher_sim_msgs::msg::SensorBoardCommand> tilt_command_;
   runtime::Output<usher_sim_msgs::msg::BaseFeedback> feedback_;
   runtime::Output<sensor_msgs::msg::LaserScan> scans_;
   runtime::Output<usher_sim_msgs::msg::SensorBoardReading> boards_;

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "drivers/sensor_board/device_real/component.hpp"
+#include "foundation/geometry/angle.hpp"
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::sensor_board {
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+constexpr const char* kRing =
+    "robot.ultrasonic.mount_x: 0.2 m\nrobot.ultrasonic.mount_z: 0.1 m\n"
+    "robot.ultrasonic.spacing: 22.5 deg";
+
+/// The board: greets, then says twenty times a second what its sensors see and where its servo is.
+class Device final : public runtime::LockstepDevice {
+ public:
+  Device() { sensors.ranges_mm.fill(2000); }
+  void opened() override { greeted_ = false; }
+  runtime::Bytes answer(std::span<const std::uint8_t> bytes) override {
+    runtime::Bytes said;
+    decoder_.feed(bytes, [&](std::span<const std::uint8_t> content) {
+      if (content[0] == 0x01) append(said, {sequence_++, Hello{1, {1, 0, 0}, 42, 5, 8}});
+      if (content[0] == 0x01) greeted_ = true;
+      if (content[0] == 0x20)
+        sensors.tilt = static_cast<std::int16_t>(content[2] | (content[3] << 8));
+    });
+    return said;
+  }
+  runtime::Bytes speak(runtime::Time /*now*/) override {
+    runtime::Bytes said;
+    if (greeted_ && !silent && ++asked_ % 5 == 0) append(said, {sequence_++, sensors});
+    return said;
+  }
+
+  Sensors sensors;
+  bool silent = false;
+
+ private:
+  static void append(runtime::Bytes& bytes, const BoardMessage& message) {
+    const Frame frame = to_frame(message);
+    bytes.insert(bytes.end(), frame.span().begin(), frame.span().end());
+  }
+  FrameDecoder decoder_;
+  std::uint8_t sequence_ = 0;
+  bool greeted_ = false;
+  int asked_ = 0;
+};
+
+class DeviceReal : public testing::Test {
+ protected:
+  std::uint8_t health() const { return host.heartbeat().state(); }
+  void tilt(double servo) {
+    usher_msgs::msg::CameraTilt command;
+    command.header(wire::header(host.now(), "base_link"));
+    command.servo(servo);
+    host.publish(topics::kKinectTiltCommand, command);
+    host.run_for(milliseconds(300));
+  }
+  std::shared_ptr<Device> device = std::make_shared<Device>();
+  runtime::TestHost host{runtime::component_factory<SensorBoardComponent>("sensor_board"), kRing,
+                         device};
+};
+
+TEST_F(DeviceReal, PublishesRangesAndWhiskers) {
+  host.run_for(milliseconds(4000));
+  const auto scan = host.last(topics::kUltrasonic);
+  ASSERT_TRUE(scan) << host.heartbeat().reason();
+  ASSERT_EQ(scan->ranges().size(), 5U);
+  EXPECT_FLOAT_EQ(scan->ranges()[2], 2.2F) << "from the middle of the ring";
+  EXPECT_FALSE(host.last(topics::kWhiskers)->front_left());
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+  device->sensors.whisker_mask = 0x01;
+  host.run_for(milliseconds(100));
+  EXPECT_TRUE(host.last(topics::kWhiskers)->front_left());
+}
+
+TEST_F(DeviceReal, TurnsTheCameraWhereItIsTold) {
+  host.run_for(milliseconds(4000));
+  tilt(geometry::radians(-10.0));
+  EXPECT_EQ(device->sensors.tilt, -100);
+  EXPECT_NEAR(host.last(topics::kKinectTilt)->servo(), geometry::radians(-10.0), 1e-3);
+  tilt(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(device->sensors.tilt, -100) << "nonsense moves nothing";
+  EXPECT_EQ(host.counter("tilt commands: rejected"), 1U);
+  tilt(1.0);
+  EXPECT_EQ(device->sensors.tilt, 200) << "clipped to what the servo can";
+}
+
+TEST_F(DeviceReal, NoticesASilentBoardAndOneThatIsUnplugged) {
+  host.run_for(milliseconds(4000));
+  tilt(0.1);
+  device->silent = true;
+  host.run_for(milliseconds(500));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kDegraded));
+  device->silent = false;
+  host.run_for(milliseconds(500));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+  device->plugged = false;
+  host.run_for(milliseconds(100));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kDegraded));
+  device->sensors.tilt = 0;  // it was without power
+  device->plugged = true;
+  host.run_for(milliseconds(6000));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+  EXPECT_EQ(device->sensors.tilt, 57) << "the tilt is set again";
+}
+
+}  // namespace
+}  // namespace usher::sensor_board
