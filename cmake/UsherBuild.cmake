@@ -26,6 +26,13 @@ if(USHER_SANITIZE)
   add_compile_options(-fsanitize=${USHER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${USHER_SANITIZE})
 endif()
+# So much longer a test may take with a sanitizer (tests/support/sanitizer.hpp).
+set(USHER_SANITIZER_FACTOR 1)
+if(USHER_SANITIZE MATCHES thread)
+  set(USHER_SANITIZER_FACTOR 15)
+elseif(USHER_SANITIZE)
+  set(USHER_SANITIZER_FACTOR 6)
+endif()
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::test {
@@ -178,7 +179,8 @@ std::string RunningRobot::complaints() const {
 }
 
 bool RunningRobot::wait_for(const std::function<bool()>& condition, Seconds limit) const {
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(limit * kSanitizerFactor);
   while (!condition()) {
     if (Clock::now() >= deadline) return false;
     std::unique_lock lock(mutex_);

@@ -71,7 +71,8 @@ class RunningRobot {
   /// Who is not, in words.
   std::string complaints() const;
 
-  /// Asks the condition after each message and now and then; false when the limit passes.
+  /// Asks the condition after each message and now and then; false when the limit passes, which is
+  /// longer with a sanitizer.
   bool wait_for(const std::function<bool()>& condition, Seconds limit) const;
 
  private:

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "support/folder.hpp"
+#include "support/sanitizer.hpp"
 
 namespace usher::test {
 
@@ -52,12 +53,14 @@ class Process {
   void signal(int number) const {
     if (pid_ > 0) ::kill(pid_, number);
   }
-  /// Exit code; 128 + signal when a signal ended it; -1 when it does not end in time.
+  /// Exit code; 128 + signal when a signal ended it; -1 when it does not end in time (longer with a
+  /// sanitizer).
   int wait(std::chrono::milliseconds limit = std::chrono::seconds(30)) {
     if (pid_ <= 0) return -1;
     const int handle = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
     pollfd entry{handle, POLLIN, 0};
-    const int ready = ::poll(&entry, 1, static_cast<int>(limit.count()));
+    const int ready =
+        ::poll(&entry, 1, static_cast<int>(static_cast<double>(limit.count()) * kSanitizerFactor));
     ::close(handle);
     if (ready <= 0) return -1;
     int status = 0;

@@ -519,7 +519,12 @@ TEST(Observer, EndsSubscriptionsWhileSamplesArrive) {
   ASSERT_TRUE(writer.ok());
   std::atomic<bool> stop{false};
   std::thread flood([&] {
-    while (!stop) writer->write(geometry_msgs::msg::TwistStamped{});
+    while (!stop) {
+      writer->write(geometry_msgs::msg::TwistStamped{});
+      // The writer's mutex is not fair: with a sanitizer on a busy machine the discovery of the next
+      // reader would never get it.
+      std::this_thread::yield();
+    }
   });
   for (int i = 0; i < 20; ++i) {
     std::atomic<int> count{0};
