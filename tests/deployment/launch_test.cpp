@@ -95,6 +95,20 @@ TEST_F(Launch, WithoutManifestIsAWrongCall) {
   EXPECT_EQ(launch.wait(), 2);
 }
 
+TEST(Measuring, HandsItsOptionsToTheProgramThatMeasures) {
+  Process list({usher_program(), "experiment", "--list"});
+  EXPECT_EQ(list.wait(), 0) << list.errors();
+  EXPECT_NE(list.output().find("guide: "), std::string::npos) << list.output();
+  Process experiment({usher_program(), "experiment", "nothing", "--seeds", "2", "--out", "/tmp"});
+  EXPECT_NE(experiment.wait(), 0);
+  EXPECT_NE(experiment.errors().find("unknown experiment 'nothing'"), std::string::npos)
+      << experiment.errors();
+  Process bench({usher_program(), "bench", "nothing", "--json", "--instructions"});
+  EXPECT_NE(bench.wait(), 0);
+  EXPECT_NE(bench.errors().find("nothing"), std::string::npos) << bench.errors();
+  EXPECT_EQ(bench.errors().find("not expected"), std::string::npos) << bench.errors();
+}
+
 TEST(SecondLaunch, IsRefusedAndTheFirstGoesOn) {
   RunningRobot robot;
   ASSERT_TRUE(robot.wait_for([&] { return robot.may_drive(); }, Seconds(60)))

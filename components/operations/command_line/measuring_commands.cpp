@@ -65,6 +65,7 @@ void add_measuring_commands(CLI::App& app, int& exit_code) {
   bench_command->add_option("name", *name, "Which one");
   bench_command->add_flag("--list", *list, "Name them all");
   bench_command->allow_extras();
+  bench_command->fallthrough(false);  // what it does not know is for the other program
   bench_command->callback(
       [=, &exit_code] { exit_code = bench(*name, *list, bench_command->remaining()); });
 
@@ -72,6 +73,7 @@ void add_measuring_commands(CLI::App& app, int& exit_code) {
       "experiment",
       "Run an experiment: usher experiment NAME [--seeds N] [--out DIR]; --list names them all");
   experiment_command->prefix_command();
+  experiment_command->fallthrough(false);
   experiment_command->callback([=, &exit_code] {
     exit_code = become(Installation::of_this_program().programs + "/usher-experiment",
                        experiment_command->remaining());
