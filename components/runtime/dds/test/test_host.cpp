@@ -8,6 +8,7 @@
 #include "echo_component.hpp"
 #include "runtime/dds/dds_host.hpp"
 #include "runtime/dds/observer.hpp"
+#include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::runtime {
@@ -17,7 +18,8 @@ using namespace std::chrono_literals;
 using geometry_msgs::msg::TwistStamped;
 using testing::HasSubstr;
 
-constexpr Duration kLong = 10s;
+constexpr Duration kLong =
+    std::chrono::duration_cast<Duration>(10s * usher::test::kSanitizerFactor);
 
 ParameterFile file(const std::string& name) {
   ParameterFile result;

@@ -13,6 +13,7 @@
 #include "runtime/dds/message_types.hpp"
 #include "runtime/dds/observer.hpp"
 #include "runtime/dds/participant.hpp"
+#include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::runtime {
@@ -21,7 +22,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr Duration kLong = 10s;
+constexpr Duration kLong =
+    std::chrono::duration_cast<Duration>(10s * usher::test::kSanitizerFactor);
 
 std::unique_ptr<DdsTransport> transport(const std::string& name, const std::string& host = "nuc") {
   auto made = DdsTransport::create({name, host, test_domain(), {}}, MonotonicClock(0));
@@ -521,8 +523,8 @@ TEST(Observer, EndsSubscriptionsWhileSamplesArrive) {
   std::thread flood([&] {
     while (!stop) {
       writer->write(geometry_msgs::msg::TwistStamped{});
-      // The writer's mutex is not fair: with a sanitizer on a busy machine the discovery of the next
-      // reader would never get it.
+      // The writer's mutex is not fair: with a sanitizer on a busy machine the discovery of the
+      // next reader would never get it.
       std::this_thread::yield();
     }
   });
