@@ -2,10 +2,10 @@
 
 namespace usher::test {
 
-/// How much longer things may take in a program that is built with a sanitizer: what the sanitizers'
-/// documentation calls typical (address 2, undefined behavior 1.2, thread 5 to 15), times 2.5 since
-/// these presets compile at -O1. 1 without. Bounds of wall time are multiplied with it, as ctest's
-/// are in cmake/UsherBuild.cmake.
+/// How much longer things may take in a program that is built with a sanitizer: what the
+/// sanitizers' documentation calls typical (address 2, undefined behavior 1.2, thread 5 to 15),
+/// times 2.5 since these presets compile at -O1. 1 without. Bounds of wall time are multiplied with
+/// it, as ctest's are in cmake/UsherBuild.cmake.
 #if defined(__SANITIZE_THREAD__)
 inline constexpr double kSanitizerFactor = 15.0;
 #elif defined(__SANITIZE_ADDRESS__)
