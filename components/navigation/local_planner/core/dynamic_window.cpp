@@ -466,7 +466,9 @@ Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Po
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   if (!pose.finite()) return refused();
   const double turn = trail_.turn_rate_back(pose, speed);
-  return recover({costs, pose, measured, last_command, seconds, {}}, {-speed, turn});
+  const Input input{costs, pose, measured, last_command, seconds, {}};
+  const Decision back = recover(input, {-speed, turn});
+  return back.blocked ? recover(input, {-speed, 0.0}) : back;
 }
 
 Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,

@@ -154,23 +154,26 @@ float Sonar::nearest_echo() const {
 
 WhiskerContacts Whiskers::touch(const Scene& scene, std::span<const Mover> movers,
                                 const Pose2& robot) {
-  // Bent outward so far, by a wall ahead, its tip is still this far ahead of its root.
+  // Bent outward so far, by a wall ahead, its tip is still this far ahead of its root; bent inward
+  // so far, by a wall beside, it lies along this angle.
   const double reach = config_.length * std::cos(config_.outward + config_.trigger_bend);
-  const auto bent = [&](double x, double y, double angle) {
-    const Pose2 root = robot * Pose2{x, y, angle};
-    caster_.cast(scene, beam_, {{root.x, root.y, config_.z}, geometry::to_space(root).rotation},
-                 {.max_range = reach}, movers, hits_);
+  const double angle = config_.outward - config_.trigger_bend;
+  // From inside of the outline, since the root may stand in what the robot is about to touch.
+  constexpr double kInside = 0.85;
+  const auto bent = [&](double front, double left) {
+    const geometry::Point2 root(kInside * front * config_.x, kInside * left * config_.y);
+    const geometry::Point2 tip(front * (config_.x + reach * std::cos(angle)),
+                               left * (config_.y + reach * std::sin(angle)));
+    const geometry::Point2 way = tip - root;
+    const Pose2 from = robot * Pose2{root.x(), root.y(), std::atan2(way.y(), way.x())};
+    caster_.cast(scene, beam_, {{from.x, from.y, config_.z}, geometry::to_space(from).rotation},
+                 {.max_range = way.norm()}, movers, hits_);
     return hits_.what[0] != kNothing;
   };
-  const double x = config_.x;
-  const double y = config_.y;
-  // Bent inward so far, by a wall beside, it lies along this angle.
-  const double outward = config_.outward - config_.trigger_bend;
-  const double back = geometry::kPi - outward;
-  return {.front_left = bent(x, y, outward),
-          .front_right = bent(x, -y, -outward),
-          .back_left = bent(-x, y, back),
-          .back_right = bent(-x, -y, -back)};
+  return {.front_left = bent(1.0, 1.0),
+          .front_right = bent(1.0, -1.0),
+          .back_left = bent(-1.0, 1.0),
+          .back_right = bent(-1.0, -1.0)};
 }
 
 }  // namespace usher::world

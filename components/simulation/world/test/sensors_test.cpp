@@ -162,6 +162,14 @@ TEST(Whiskers, BendWhereSomethingCrossesThem) {
   EXPECT_FALSE(none.front_left || none.front_right || none.back_left || none.back_right);
 }
 
+TEST(Whiskers, StayBentByAWallThatTheOutlineAlmostTouches) {
+  Whiskers whiskers(WhiskerConfig{});
+  const WhiskerContacts beside =
+      whiskers.touch(Scene({box("wall", {0.0, 0.44, 0.0}, 4.0, 0.2, 0.0, 2.0)}, 2.7), {}, {});
+  EXPECT_TRUE(beside.front_left && beside.back_left);
+  EXPECT_FALSE(beside.front_right || beside.back_right);
+}
+
 TEST(Whiskers, BendAtPeople) {
   Whiskers whiskers(WhiskerConfig{});
   const Mover person{.center = {0.8, -0.5}};
