@@ -10,6 +10,10 @@ namespace usher::world {
 namespace {
 
 constexpr double kArrived = 0.25;    // [m]
+constexpr double kSway = 0.15;       // [m] a balancing robot that stands moves by less
+constexpr double kStands = 2.0;      // [s] after which people believe that it stands
+constexpr double kSqueeze = 0.05;    // [m] of gap that is enough past a robot that stands
+constexpr double kRetreat = 6.0;     // [s] that somebody walks away who cannot pass it
 constexpr double kTrailStep = 0.1;   // [m]
 constexpr double kLookPeriod = 0.2;  // [s] between looks for the way to follow
 constexpr std::size_t kTrailLength = 400;
@@ -104,7 +108,7 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     if (!walks && push.norm() < kStandsFirm) push.setZero();
     const bool by_a_wall = wall.distance < config_.radius + 0.1;
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
-    lose_patience(person, mind);
+    lose_patience(person, mind, robot);
     hold(person, mind, movers_[i]);
   }
 }
@@ -130,6 +134,11 @@ void Crowd::hold(Person& person, const Mind& mind, Mover& mover) const {
 void Crowd::remember_robot(const RobotView& robot) {
   if (robot.footprint.empty()) return;
   const Point2 here = robot.pose.position();
+  robot_stands_ += kStep;
+  if ((here - robot_stood_at_).norm() > kSway) {
+    robot_stood_at_ = here;
+    robot_stands_ = 0.0;
+  }
   if (!trail_.empty() && (trail_.back() - here).norm() < kTrailStep) return;
   trail_.push_back(here);
   if (trail_.size() > kTrailLength) trail_.pop_front();
@@ -178,6 +187,9 @@ void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const Ro
   mind.pause_left = std::max(0.0, mind.pause_left - kStep);
   mind.goal = mind.loop[mind.next];
   mind.has_goal = true;
+  mind.retreat_left = std::max(0.0, mind.retreat_left - kStep);
+  if (mind.retreat_left > 0.0)
+    mind.goal = person.position + 2.0 * unit(person.position - robot.pose.position());
   if ((mind.goal - person.position).norm() < kArrived) {
     const std::size_t count = mind.loop.size();
     mind.next = (mind.next + (mind.reversed ? count - 1 : 1)) % count;
@@ -191,7 +203,7 @@ void Crowd::turn_round(Mind& mind) const {
   mind.next = (mind.next + (mind.reversed ? count - 1 : 1)) % count;
 }
 
-void Crowd::lose_patience(Person& person, Mind& mind) {
+void Crowd::lose_patience(Person& person, Mind& mind, const RobotView& robot) {
   if (mind.loop.empty() || mind.pause_left > 0.0) {
     mind.stuck = 0.0;
     return;
@@ -203,6 +215,11 @@ void Crowd::lose_patience(Person& person, Mind& mind) {
   } else if (mind.stuck > config_.patience) {
     mind.stuck = 0.0;
     turn_round(mind);
+    // Pushed off the loop, both ways along it may lead past the robot.
+    const Point2 to_robot = robot.pose.position() - person.position;
+    const bool met = !robot.footprint.empty() && to_robot.norm() < config_.robot_see;
+    if (met && unit(to_robot).dot(unit(mind.loop[mind.next] - person.position)) > 0.5)
+      mind.retreat_left = kRetreat;
   }
 }
 
@@ -225,9 +242,9 @@ Point2 Crowd::wanted_velocity(const Person& person, const Mind& mind,
   const Point2 to_robot = unit(body.center() - person.position);
   const bool ahead = to_robot.dot(direction) > 0.5;
   if (!ahead) return speed * direction;
-  if (gap.distance < config_.robot_stop) return Point2::Zero();
-  const double caution =
-      std::min(1.0, (gap.distance - config_.robot_stop) / (0.5 * config_.robot_see));
+  const double stop = robot_stands_ > kStands ? kSqueeze : config_.robot_stop;
+  if (gap.distance < stop) return Point2::Zero();
+  const double caution = std::min(1.0, (gap.distance - stop) / (0.5 * config_.robot_see));
   return speed * (0.3 + 0.7 * caution) * direction;
 }
 
@@ -257,13 +274,17 @@ Point2 Crowd::push_of_robot(const Person& person, bool walks, const RobotView& r
   const double apart = away.norm();
   if (apart > body.radius() + config_.radius + config_.robot_see) return Point2::Zero();
   const double gap = body.gap_to_disc(person.position, config_.radius).distance;
-  Point2 push = config_.robot_push * std::exp(-gap / config_.robot_reach) * unit(away);
+  const bool stands = robot_stands_ > kStands;
+  Point2 push = (stands ? 0.25 : 1.0) * config_.robot_push * std::exp(-gap / config_.robot_reach) *
+                unit(away);
 
   const Point2 looking(std::cos(person.yaw), std::sin(person.yaw));
   const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));
   if (walks && -unit(away).dot(looking) > 0.7) {
-    // Meets the robot: passes on the right.
-    push += 1.5 * std::exp(-gap / 1.2) * Point2(looking.y(), -looking.x());
+    // Meets the robot: passes on the right, unless already on its other side.
+    constexpr double kBeside = 0.3;  // [m]
+    const Point2 right(looking.y(), -looking.x());
+    push += 1.5 * std::exp(-gap / 1.2) * (away.dot(right) < -kBeside ? Point2(-right) : right);
   } else if (!walks && unit(away).dot(heading) > 0.7 && gap < 0.8) {
     // Stands in its way: steps out of it, to the side where the person already is.
     const Point2 left(-heading.y(), heading.x());

@@ -51,9 +51,10 @@ struct CrowdConfig {
 };
 
 /// People who walk between points and mind each other, walls and the robot: the social force model
-/// [helbing1995social] with two habits on top. Who meets the robot keeps to the right; who is
-/// blocked stops, waits and in the end turns round. Nobody walks into a wall or, by own will, into
-/// the robot. Deterministic for the seed.
+/// [helbing1995social] with habits on top. Who meets the robot keeps to the right; who is blocked
+/// stops, waits and in the end turns round, or walks away from a robot that bars both ways; past
+/// one that stands still people squeeze. Nobody walks into a wall or, by own will, into the robot.
+/// Deterministic for the seed.
 class Crowd {
  public:
   /// Walkers start somewhere on their loop, at least 2 m from `robot` when they find such a place.
@@ -85,7 +86,8 @@ class Crowd {
     bool reversed = false;
     double pause = 0.0;
     double pause_left = 0.0;
-    double stuck = 0.0;  // s
+    double stuck = 0.0;         // s
+    double retreat_left = 0.0;  // s, of walking away from a robot that cannot be passed
     Point2 stuck_at = Point2::Zero();
   };
 
@@ -93,7 +95,7 @@ class Crowd {
   Point2 point_to_follow(const Point2& here, const Scene& scene) const;
   void choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot);
   void turn_round(Mind& mind) const;
-  void lose_patience(Person& person, Mind& mind);
+  void lose_patience(Person& person, Mind& mind, const RobotView& robot);
   void hold(Person& person, const Mind& mind, Mover& mover) const;
   Point2 wanted_velocity(const Person& person, const Mind& mind, const RobotView& robot) const;
   Point2 push_of_people(std::size_t index) const;
@@ -107,6 +109,8 @@ class Crowd {
   std::vector<Mind> minds_;
   std::vector<Mover> movers_;
   std::deque<Point2> trail_;  // of the robot, newest last
+  Point2 robot_stood_at_ = Point2::Zero();
+  double robot_stands_ = 0.0;  // s
 };
 
 }  // namespace usher::world
