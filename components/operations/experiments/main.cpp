@@ -51,6 +51,10 @@ const std::vector<Experiment>& experiments() {
        "Foreign writers on every topic that moves the robot (real processes): samples executed, "
        "time until they are named",
        run_monopoly_experiment},
+      {"depth-pipeline",
+       "Thesis 4.4: figures 4.11 to 4.21, table 4.2 over DDS processes, scans against the truth; "
+       "--only images without processes",
+       run_depth_pipeline_experiment},
   };
   return all;
 }

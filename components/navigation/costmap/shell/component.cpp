@@ -14,6 +14,7 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(300);
+constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr double kWhiskerReach = 0.1;       // [m]
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
@@ -80,6 +81,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   ultrasonic_settings_.persistence = parameters.number("ultrasonic_persistence", "s", {0, 600}, 5.0,
                                                        "The same for the ultrasonic sensors.");
 
+  read_depth_settings(parameters);
   echo_half_cone_ =
       parameters.number("echo_half_cone", "rad", {0, 0.8}, 0.21,
                         "Half of an ultrasonic cone, where the laser explains echoes.");
@@ -109,6 +111,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                            [this](const auto&, const auto&) {
                              take_scan(ultrasonic_.share(), ultrasonic_beams_, &Map::ultrasonic);
                            });
+  read_depth();
   whiskers_ =
       host.input(topics::kWhiskers,
                  {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
@@ -135,6 +138,37 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   });
 }
 
+void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
+  depth_settings_.name = "depth";
+  depth_settings_.max_obstacle_range =
+      parameters.number("depth_obstacle_range", "m", {0.5, 8}, 4.0,
+                        "Farther obstacles of depth cameras mark nothing.");
+  depth_settings_.max_raytrace_range =
+      parameters.number("depth_clear_range", "m", {0.5, 8}, 4.5, "Depth cameras clear no farther.");
+  depth_settings_.overrules_static_map = false;
+  depth_settings_.persistence = laser_settings_.persistence;
+  depth_blind_range_ = parameters.number(
+      "depth_blind_range", "m", {0, 4}, 1.8,
+      "Nearer than this the Kinect looks over low things: what is marked there stays.");
+}
+
+void CostmapComponent::read_depth() {
+  const auto read = [this](const topics::Topic<sensor_msgs::msg::LaserScan>& topic,
+                           runtime::Input<sensor_msgs::msg::LaserScan>& input, Beams& beams,
+                           Costmap::LayerId Map::*layer) {
+    input = host_.input(topic,
+                        {.max_age = kDepthAge,
+                         .on_loss = "keeps what this camera saw, goes on with the others",
+                         .optional = true},
+                        [this, &input, &beams, layer](const auto&, const auto&) {
+                          take_scan(input.share(), beams, layer);
+                        });
+  };
+  read(topics::kKinectScan, depth_, depth_beams_, &Map::depth);
+  read(topics::kKinectScanLow, low_, low_beams_, &Map::low);
+  read(topics::kRearScan, rear_, rear_beams_, &Map::rear);
+}
+
 Costmap CostmapComponent::make(bool rolling, const grid::GridGeometry& window) {
   CostmapConfig config = settings_;
   config.window = window;
@@ -157,6 +191,16 @@ void CostmapComponent::add_layers(Map& map) {
   if (&map == &local_) laser.persistence = local_persistence_;
   map.laser = add(laser);
   map.ultrasonic = add(ultrasonic_settings_);
+  // What leaves the Kinect's image near the robot is kept in a layer that is cleared from afar
+  // only.
+  ObstacleLayerConfig depth = depth_settings_;
+  if (&map == &local_) depth.persistence = local_persistence_;
+  map.depth = add(depth);
+  depth.name = "rear";
+  map.rear = add(depth);
+  depth.name = "low";
+  depth.min_raytrace_range = depth_blind_range_;
+  map.low = add(depth);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
@@ -214,13 +258,15 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
   if (!odom_T_base) return;
   const bool is_laser = layer == &Map::laser;
-  const std::span<const float> ranges =
-      is_laser ? std::span<const float>(scan.ranges()) : unexplained(scan, odom_T_sensor);
+  const std::span<const float> ranges = layer == &Map::ultrasonic
+                                            ? unexplained(scan, odom_T_sensor)
+                                            : std::span<const float>(scan.ranges());
   if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
   observe(local_, local_.*layer, odom_T_sensor, beams, ranges, stamp);
 
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
-  if (map_T_odom && global_.costs && (!is_laser || ++global_share_ % kGlobalShare == 0)) {
+  if (map_T_odom && global_.costs &&
+      (layer == &Map::ultrasonic || ++global_share_ % kGlobalShare == 0)) {
     if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
     observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
   }

@@ -23,7 +23,7 @@ class CostmapComponent final : public runtime::Component {
   struct Map {
     const char* frame = "";
     std::optional<Costmap> costs;
-    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0;
+    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, low = 0, rear = 0;
     bool static_known = false;
     runtime::Time newest{};  ///< stamp of the newest data in it: an observation, or the map
   };
@@ -35,6 +35,8 @@ class CostmapComponent final : public runtime::Component {
 
   Costmap make(bool rolling, const grid::GridGeometry& window);
   void add_layers(Map& map);
+  void read_depth_settings(runtime::Parameters& parameters);
+  void read_depth();
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan, Beams& beams,
                  Costmap::LayerId Map::*layer);
@@ -53,7 +55,8 @@ class CostmapComponent final : public runtime::Component {
   runtime::Host& host_;
   std::vector<geometry::Point2> footprint_;
   CostmapConfig settings_;  ///< what both maps share
-  ObstacleLayerConfig laser_settings_, ultrasonic_settings_;
+  ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
+  double depth_blind_range_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;
   runtime::Duration local_period_;
@@ -66,7 +69,7 @@ class CostmapComponent final : public runtime::Component {
   Map local_, global_;
   std::optional<Costmap> static_costs_;  ///< of the map alone, like global_
   grid::Grid<std::uint8_t> passing_;     ///< the global costs as published
-  Beams laser_beams_, ultrasonic_beams_;
+  Beams laser_beams_, ultrasonic_beams_, depth_beams_, low_beams_, rear_beams_;
   runtime::Time local_published_{};
   std::uint64_t last_request_ = 0;
   int global_share_ = 0;
@@ -75,6 +78,7 @@ class CostmapComponent final : public runtime::Component {
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
   runtime::Input<sensor_msgs::msg::LaserScan> ultrasonic_;
+  runtime::Input<sensor_msgs::msg::LaserScan> depth_, low_, rear_;
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
   runtime::Input<usher_msgs::msg::CostmapRequest> request_;
   runtime::Output<usher_msgs::msg::Costmap> local_costs_;

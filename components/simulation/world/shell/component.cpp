@@ -24,7 +24,6 @@ constexpr auto kCommandHold = milliseconds(400);
 /// More than this in one go would be a jump for the robot; the rest is time that the simulation
 /// loses.
 constexpr std::uint64_t kMostStepsAtOnce = 5;
-constexpr double kLargestTilt = 0.349;  // [rad] of the camera's servo, as the board clips it
 constexpr double kBehind = 0.1;  // [s] of lag from which the simulation says that it is behind
 
 /// The defaults are MARVIN's SICK LMS100.
@@ -119,7 +118,7 @@ std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
     people = std::move(loaded).value();
   }
   const Pose2 robot{start[0], start[1], start[2]};
-  const std::uint64_t seed = host.random("world").next();
+  const std::uint64_t seed = seed_ = host.random("world").next();
   if (!building_file.empty()) {
     auto building = load_building(building_file);
     if (!building) host.fault(building.error());
@@ -148,11 +147,10 @@ WorldComponent::WorldComponent(runtime::Host& host)
       });
   person_goal_ = host.input(topics::kSimPersonGoal, {.optional = true},
                             [this](const auto& goal, const auto&) { take_person_goal(goal); });
-  tilt_command_ = host.input(
-      topics::kSimSensorBoardCommand, {.optional = true}, [this](const auto& command, const auto&) {
-        if (std::isfinite(command.tilt()))
-          board_.tilt(std::clamp(command.tilt(), -kLargestTilt, kLargestTilt));
-      });
+  depth_ = std::make_unique<DepthOutput>(host, world_.get(), seed_);
+  tilt_command_ =
+      host.input(topics::kSimSensorBoardCommand, {.optional = true},
+                 [this](const auto& command, const auto&) { depth_->set_tilt(command.tilt()); });
   feedback_ = host.output(topics::kSimBaseFeedback);
   scans_ = host.output(topics::kSimScan);
   boards_ = host.output(topics::kSimSensorBoard);
@@ -196,6 +194,7 @@ void WorldComponent::advance(std::uint64_t skipped) {
   for (std::uint64_t i = 0; i < due; ++i) {
     world_->step();
     ++steps_;
+    depth_->step(host_.now());
     scan = scan || steps_ % scan_every_ == 0;
     board = board || steps_ % kBoardEvery == 0;
     truth = truth || steps_ % kTruthEvery == 0;
@@ -248,6 +247,7 @@ void WorldComponent::publish_sensor_board() {
   board_.front_right(contacts.front_right);
   board_.back_left(contacts.back_left);
   board_.back_right(contacts.back_right);
+  board_.tilt(depth_->tilt());
   boards_.publish(board_);
 }
 
@@ -275,6 +275,8 @@ void WorldComponent::publish_truth() {
     entry.y(person.position.y());
     entry.yaw(person.yaw);
     entry.v(person.velocity.norm());
+    entry.height(person.height);
+    entry.posture(static_cast<std::uint8_t>(person.posture));
   }
   truth_.publish(message);
 }

@@ -6,6 +6,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "simulation/world/core/world.hpp"
+#include "simulation/world/shell/depth_output.hpp"
 
 namespace usher::world {
 
@@ -27,11 +28,13 @@ class WorldComponent final : public runtime::Component {
   void publish_truth();
 
   runtime::Host& host_;
+  std::uint64_t seed_ = 0;
   std::unique_ptr<World> world_;  ///< null while the component is only described
   runtime::Time start_{};
   std::int64_t steps_ = 0;
   std::int64_t scan_every_ = 2;  ///< [steps]
   double range_min_ = 0.5;       ///< [m]
+  std::unique_ptr<DepthOutput> depth_;
   sensor_msgs::msg::LaserScan scan_;
   usher_sim_msgs::msg::SensorBoardReading board_;
   std::uint64_t& rejected_;

@@ -1,0 +1,108 @@
+#include "drivers/kinect/device_real/component.hpp"
+
+#include <algorithm>
+
+namespace usher::kinect {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+
+constexpr auto kTick = milliseconds(5);
+constexpr auto kReading = milliseconds(10);  // of a frame, for simulation
+
+}  // namespace
+
+void KinectComponent::Job::run() {
+  error.clear();
+  const auto frame = recording->read(index);
+  if (!frame) {
+    error = frame.error();
+    return;
+  }
+  if (const auto status = rectifier->rectify(*frame, rectified); !status) error = status.error();
+}
+
+KinectComponent::KinectComponent(runtime::Host& host)
+    : host_(host), publisher_(host), rejected_(host.health().counter("frames: rejected")) {
+  auto& p = host.parameters();
+  const bool v1 = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
+                           "Kinect v2 (512 x 424) or v1 (640 x 480).") == "v1";
+  intrinsics_ = v1 ? kinect_v1() : kinect_v2();
+  const auto lens = p.numbers("robot.kinect.intrinsics", "-", {0, 5000}, 0, 4, {},
+                              "fx, fy, cx, cy in pixels; none: the model's usual ones.");
+  if (lens.size() == 4) {
+    intrinsics_.fx = lens[0], intrinsics_.fy = lens[1];
+    intrinsics_.cx = lens[2], intrinsics_.cy = lens[3];
+  }
+  const auto given = p.numbers("robot.kinect.distortion", "-", {-10, 10}, 0, 5, {},
+                               "k1, k2, p1, p2, k3; none: the recording is rectified already.");
+  Distortion distortion{};
+  std::copy_n(given.begin(), std::min(given.size(), distortion.size()), distortion.begin());
+  const bool mirrored =
+      p.flag("mirrored", false, "Whether the images are mirrored, as a Kinect v2 delivers them.");
+  folder_ = p.file("recording", "", "Folder with recorded depth images (*.pgm, INDEX.txt).");
+  values_ = p.choice("values", {"millimeters", "raw_11_bit"}, "millimeters",
+                     "What the recorded values are.") == "raw_11_bit"
+                ? Values::kRaw11
+                : Values::kMillimeters;
+  repeat_ = p.flag("repeat", true, "Begins anew at the end of the recording.");
+  auto rectifier = Rectifier::make(intrinsics_, distortion, mirrored);
+  if (!rectifier) host.fault(rectifier.error());
+  job_->rectifier.emplace(std::move(rectifier).value());
+  timer_ = host.timer("frame", kTick, [this](auto) {
+    if (!job_->recording) open();
+    start_reading();
+    take_frame();
+  });
+}
+
+void KinectComponent::open() {
+  if (folder_.empty()) {
+    host_.health().set(HealthState::kDegraded, "no recording is set");
+    return;
+  }
+  auto recording = Recording::open(folder_, values_);
+  if (!recording) {
+    host_.health().set(HealthState::kDegraded, recording.error());
+    return;
+  }
+  job_->recording.emplace(std::move(recording).value());
+  publisher_.publish_info(host_.now(), intrinsics_);
+  started_ = host_.now();
+}
+
+void KinectComponent::start_reading() {
+  if (!job_->recording || reading_ || ready_) return;
+  if (job_->index == job_->recording->size()) {
+    if (!repeat_) return;
+    job_->index = 0;
+    started_ = host_.now();
+  }
+  reading_ = true;
+  host_.offload(
+      kReading, [job = job_] { job->run(); },
+      [this] {
+        reading_ = false;
+        ready_ = true;
+      });
+}
+
+/// Publishes the frame that was read, when its time has come.
+void KinectComponent::take_frame() {
+  if (!ready_) return;
+  const double due = job_->recording->time(job_->index);
+  if (runtime::seconds(host_.now() - started_) < due) return;
+  ready_ = false;
+  ++job_->index;
+  if (!job_->error.empty()) {
+    ++rejected_;
+    host_.health().set(HealthState::kDegraded, job_->error);
+    return;
+  }
+  publisher_.publish(host_.now(), job_->rectified);
+  host_.health().set(HealthState::kOk);
+}
+
+}  // namespace usher::kinect

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "drivers/kinect/core/camera_model.hpp"
+#include "drivers/kinect/core/recording.hpp"
+#include "drivers/kinect/shell/camera_publisher.hpp"
+
+namespace usher::kinect {
+
+/// The driver over recorded frames, as they were recorded or round and round. Reading and decoding
+/// happen beside the handlers.
+class KinectComponent final : public runtime::Component {
+ public:
+  explicit KinectComponent(runtime::Host& host);
+
+ private:
+  /// What the job beside the handlers works on.
+  struct Job {
+    std::optional<Recording> recording;
+    std::optional<Rectifier> rectifier;
+    std::size_t index = 0;
+    Frame rectified;
+    std::string error;
+    void run();
+  };
+  void open();
+  void start_reading();
+  void take_frame();
+
+  runtime::Host& host_;
+  CameraPublisher publisher_;
+  imaging::Intrinsics intrinsics_;
+  std::string folder_;
+  Values values_ = Values::kMillimeters;
+  bool repeat_ = true;
+  std::shared_ptr<Job> job_ = std::make_shared<Job>();
+  runtime::Time started_{};
+  bool reading_ = false, ready_ = false;
+  std::uint64_t& rejected_;
+  runtime::Timer timer_;
+};
+
+}  // namespace usher::kinect

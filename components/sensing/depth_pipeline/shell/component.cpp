@@ -1,0 +1,184 @@
+#include "sensing/depth_pipeline/shell/component.hpp"
+
+#include <cmath>
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+#include "wire/images.hpp"
+
+namespace usher::depth_pipeline {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+
+constexpr auto kImageAge = milliseconds(300);
+constexpr auto kPitchAge = milliseconds(100);
+constexpr auto kTiltAge = milliseconds(500);
+constexpr double kStill = 0.01;  // [rad] between two readings of the servo
+constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
+
+/// base_footprint_T_camera of the optical frame (x right, y down, z forward).
+geometry::Pose3 optical(const CameraPose& pose, bool backward) {
+  const double yaw = backward ? geometry::kPi : 0.0;
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return {{backward ? -pose.forward : pose.forward, 0.0, pose.height},
+          geometry::from_roll_pitch_yaw(0.0, 0.0, yaw) *
+              geometry::from_roll_pitch_yaw(pose.roll, pose.down, 0.0) * Eigen::Quaterniond(axes)};
+}
+
+}  // namespace
+
+DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
+    : host_(host),
+      config_(read_pipeline(host.parameters())),
+      tilt_(host),
+      rejected_(host.health().counter("images: rejected")),
+      without_pitch_(host.health().counter("images: without pitch")),
+      while_turning_(host.health().counter("images: camera turning")),
+      refitted_(host.health().counter("images: floor fitted")),
+      drops_(host.health().counter("images: with missing floor")) {
+  auto& p = host.parameters();
+  far_ = p.number("far_of_8_bit", "m", {1, 20}, far_, "What 255 means in an 8-bit image.");
+  mount_slope_ = read_kinect_mount_slope(p);
+  kinect_.name = "Kinect";
+  kinect_.frame = "kinect_depth_optical";
+  const double axle = read_axle(p);
+  kinect_.mount = read_kinect_mount(p, axle);
+  const RearMount rear = read_rear_mount(p, axle);
+  rear_.name = "rear camera";
+  rear_.frame = "rear_camera_depth_optical";
+  rear_.mount = rear.mount;
+  rear_angle_ = rear.angle;
+
+  const ScanOutput::Frame kinect_level{kKinectLevel, kinect_.mount.x, false};
+  const ScanOutput::Frame rear_level{kRearLevel, -rear_.mount.x, true};
+  kinect_.scan.emplace(host, topics::kKinectScan, kinect_level, config_.max_range);
+  kinect_.low.emplace(host, topics::kKinectScanLow, kinect_level, config_.max_range);
+  rear_.scan.emplace(host, topics::kRearScan, rear_level, config_.max_range);
+  kinect_.output = host.output(topics::kKinectProcessed);
+  rear_.output = host.output(topics::kRearProcessed);
+  frames_ = host.output(topics::kTf);
+
+  base_ = host.input(
+      topics::kBaseStatus, {.max_age = kPitchAge, .on_loss = kNoScans},
+      [this](const auto& status, const auto&) { take_pitch(status); },
+      [this] { host_.health().set(HealthState::kDegraded, "no pitch"); });
+  servo_reading_ = host.input(topics::kKinectTilt,
+                              {.max_age = kTiltAge, .on_loss = "trusts the tilt that it asked for"},
+                              [this](const auto& tilt, const auto&) { take_tilt(tilt); });
+  kinect_.info = host.input(topics::kKinectInfo, {},
+                            [this](const auto& info, const auto&) { take_info(kinect_, info); });
+  kinect_.images = host.input(
+      topics::kKinectDepth, {.max_age = kImageAge, .on_loss = kNoScans},
+      [this](const auto&, const auto&) { take_image(kinect_); },
+      [this] { host_.health().set(HealthState::kDegraded, "no depth image"); });
+  rear_.info = host.input(topics::kRearInfo, {.optional = true},
+                          [this](const auto& info, const auto&) { take_info(rear_, info); });
+  rear_.images = host.input(
+      topics::kRearDepth,
+      {.max_age = kImageAge, .on_loss = "goes on with the Kinect alone", .optional = true},
+      [this](const auto&, const auto&) { take_image(rear_); });
+}
+
+void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::CameraInfo& info) {
+  const auto intrinsics = wire::from_message(info);
+  if (!intrinsics) {
+    ++rejected_;
+    host_.health().set(HealthState::kDegraded,
+                       std::string(camera.name) + ": " + intrinsics.error());
+    return;
+  }
+  if (camera.pipeline && camera.pipeline->intrinsics() == *intrinsics) return;
+  PipelineConfig config = config_;
+  config.origin = camera.mount.backward ? -camera.mount.x : camera.mount.x;
+  auto made = DepthPipeline::make(*intrinsics, config);
+  if (!made) host_.fault(std::string(camera.name) + ": " + made.error());
+  camera.pipeline.emplace(std::move(made).value());
+}
+
+void DepthPipelineComponent::take_pitch(const usher_msgs::msg::BaseStatus& status) {
+  if (status.state() == usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED) return;
+  if (!pitch_.add(wire::from_message(status.header().stamp()).time_since_epoch(),
+                  {status.pitch(), status.pitch_rate()}))
+    return;
+  for (Camera* camera : {&kinect_, &rear_}) {
+    if (camera->waiting && process(*camera, *camera->waiting)) camera->waiting.reset();
+  }
+}
+
+void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) {
+  if (!std::isfinite(tilt.servo())) return;
+  servo_before_ = servo_;
+  servo_ = tilt.servo();
+}
+
+/// While the servo moves nobody knows the angle of an image well enough.
+bool DepthPipelineComponent::turning() const { return std::abs(servo_ - servo_before_) > kStill; }
+
+double DepthPipelineComponent::angle_of(const Camera& camera) const {
+  return camera.mount.backward ? rear_angle_ : tilt_.servo().angle_of(servo_);
+}
+
+void DepthPipelineComponent::take_image(Camera& camera) {
+  if (camera.waiting) ++without_pitch_;  // its pitch never came
+  camera.waiting.reset();
+  auto image = camera.images.share();
+  if (!process(camera, *image)) camera.waiting = std::move(image);
+}
+
+/// False while the pitch of the image's time is not known yet.
+bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
+  const runtime::Time stamp = wire::from_message(image.header().stamp());
+  const auto pitch = pitch_.at(stamp.time_since_epoch());
+  if (!pitch) return false;
+  if (!camera.mount.backward && turning()) {
+    ++while_turning_;
+    return true;
+  }
+  const auto depth = wire::depth_image(image, far_, camera.depth);
+  if (!depth || !camera.pipeline) {
+    ++rejected_;
+    host_.health().set(HealthState::kDegraded, std::string(camera.name) + ": " +
+                                                   (depth ? "no camera_info" : depth.error()));
+    return true;
+  }
+  Mount mount = camera.mount;
+  const double angle = angle_of(camera);
+  if (!mount.backward) mount.z += mount_slope_ * angle;
+  const auto view = camera.pipeline->process(*depth, camera_pose(mount, angle, pitch->angle));
+  if (!view) {
+    ++rejected_;
+    host_.health().set(HealthState::kDegraded, std::string(camera.name) + ": " + view.error());
+    return true;
+  }
+  publish(camera, *view, stamp);
+  if (&camera == &kinect_) host_.health().set(HealthState::kOk);
+  return true;
+}
+
+void DepthPipelineComponent::publish(Camera& camera, const DepthView& view, runtime::Time stamp) {
+  refitted_ += view.refitted;
+  drops_ += view.drops > 0;
+  tf2_msgs::msg::TFMessage place;
+  place.transforms().push_back(wire::transform(stamp, frames::kBaseFootprint, camera.frame,
+                                               optical(view.pose, camera.mount.backward)));
+  place.transforms().push_back(camera.scan->place(stamp));
+  frames_.publish(place);
+  const ScanGeometry& geometry = camera.pipeline->geometry();
+  camera.scan->publish(stamp, geometry.angle_min, geometry.increment, view.scan->ranges,
+                       view.scan->intensities);
+  if (camera.low) {
+    camera.low->publish(stamp, geometry.angle_min, geometry.increment, view.low->ranges,
+                        view.low->intensities);
+  }
+  if (camera.output.reader_count() == 0) return;
+  const imaging::Intrinsics& size = camera.pipeline->intrinsics();
+  wire::to_message(stamp, camera.frame,
+                   imaging::DepthImage{size.width, size.height, view.processed}, camera.processed);
+  camera.output.publish(camera.processed);
+}
+
+}  // namespace usher::depth_pipeline

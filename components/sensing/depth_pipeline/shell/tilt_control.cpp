@@ -1,0 +1,65 @@
+#include "sensing/depth_pipeline/shell/tilt_control.hpp"
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::depth_pipeline {
+
+namespace {
+
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg::SupervisorStatus_Constants;
+
+constexpr auto kPeriod = milliseconds(100);
+constexpr auto kHold = milliseconds(2000);
+
+float angle_for(const usher_msgs::msg::SupervisorStatus& status) {
+  switch (status.state()) {
+    case STATE_INTERACTION:
+    case STATE_NAVIGATION_START:
+    case STATE_NAVIGATION_END:
+      return status.kinect_angle_interaction();
+    case STATE_NAVIGATION_ACTIVE:
+    case STATE_MANUAL:
+      return status.kinect_angle_navigation();
+    default:
+      return status.kinect_angle_default();
+  }
+}
+
+}  // namespace
+
+TiltControl::TiltControl(runtime::Host& host) : host_(host) {
+  auto& p = host.parameters();
+  servo_.gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
+                         "Equation 4.1: servo = gain times angle + offset.");
+  servo_.offset = p.number("robot.kinect.servo_offset", "rad", {-0.3, 0.3}, 0.0,
+                           "Equation 4.1: what the servo is set to for a level camera.");
+  wanted_ = servo_.servo_for(
+      p.number("angle_at_start", "rad", {-0.35, 0.35}, -0.0873,
+               "Of the camera, positive up, until the supervisor says how the robot is."));
+  state_ = host.input(
+      topics::kSupervisorStatus,
+      {.max_age = milliseconds(2000), .on_loss = "the camera keeps its angle", .optional = true},
+      [this](const auto& status, const auto&) {
+        wanted_ = servo_.servo_for(static_cast<double>(angle_for(status)));
+      });
+  request_ = host.input(
+      topics::kKinectTiltRequest, {.optional = true}, [this](const auto& request, const auto&) {
+        if (!std::isfinite(request.servo())) return;
+        held_ = std::clamp(request.servo(), -TiltServo::kLimit, TiltServo::kLimit);
+        held_until_ = host_.now() + kHold;
+        command();
+      });
+  command_ = host.output(topics::kKinectTiltCommand);
+  timer_ = host.timer("tilt", kPeriod, [this](auto) { command(); });
+}
+
+void TiltControl::command() {
+  usher_msgs::msg::CameraTilt message;
+  message.header(wire::header(host_.now(), frames::kBaseLink));
+  message.servo(host_.now() < held_until_ ? held_ : wanted_);
+  command_.publish(message);
+}
+
+}  // namespace usher::depth_pipeline

@@ -1,0 +1,216 @@
+#include "sensing/depth_pipeline/shell/component.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/testing/test_host.hpp"
+#include "sensing/depth_pipeline/device_sim/component.hpp"
+#include "sensing/depth_pipeline/test/synthetic.hpp"
+#include "wire/conversions.hpp"
+#include "wire/images.hpp"
+
+namespace usher::depth_pipeline {
+namespace {
+
+using runtime::TestHost;
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using namespace usher_msgs::msg::SupervisorStatus_Constants;
+
+constexpr const char* kParameters =
+    "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: 0.235 m, "
+    "confidence_frames: 1}";
+
+/// Images are written only for who reads them.
+class Viewer final : public runtime::Component {
+ public:
+  explicit Viewer(runtime::Host& host)
+      : input_(host.input(topics::kKinectProcessed, {.optional = true},
+                          [](const auto&, const auto&) {})) {}
+
+ private:
+  runtime::Input<sensor_msgs::msg::Image> input_;
+};
+
+class DepthPipelineComponentTest : public testing::Test {
+ protected:
+  DepthPipelineComponentTest()
+      : host_(runtime::component_factory<DepthPipelineComponent>("depth_pipeline"), kParameters) {
+    scene_.boxes = {{-0.3, 0.3, 0.6, 2.0, 2.4}};
+  }
+
+  /// Time passes with the base, the servo and, when asked, the camera alive.
+  void live(int milliseconds_count, double pitch = 0.0) {
+    for (int i = 0; i < milliseconds_count; i += 10, elapsed_ += 10) {
+      if (with_pitch_) {
+        usher_msgs::msg::BaseStatus status;
+        status.header(wire::header(host_.now(), "base_link"));
+        status.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+        status.pitch(pitch);
+        host_.publish(topics::kBaseStatus, status);
+      }
+      if (elapsed_ % 50 == 0) {
+        usher_msgs::msg::CameraTilt tilt;
+        tilt.header(wire::header(host_.now(), "base_link"));
+        tilt.servo(servo_);
+        host_.publish(topics::kKinectTilt, tilt);
+      }
+      host_.run_for(milliseconds(10));
+    }
+  }
+  void tell_camera() {
+    host_.publish(topics::kKinectInfo,
+                  wire::to_message(host_.now(), "kinect_depth_optical", scene_.camera));
+  }
+  void show(double pitch = 0.0) {
+    const auto depth = scene_.draw(camera_pose({}, servo_, pitch));
+    sensor_msgs::msg::Image image;
+    wire::to_message(host_.now(), "kinect_depth_optical", view_of(scene_.camera, depth), image);
+    host_.publish(topics::kKinectDepth, image);
+  }
+
+  TestHost host_;
+  SyntheticScene scene_;
+  double servo_ = -0.0873;
+  bool with_pitch_ = true;
+  int elapsed_ = 0;  // [ms]
+};
+
+float ahead(const sensor_msgs::msg::LaserScan& scan) {
+  return scan.ranges()[static_cast<std::size_t>(-scan.angle_min() / scan.angle_increment())];
+}
+
+TEST_F(DepthPipelineComponentTest, MakesScansImagesAndFramesOfImages) {
+  ASSERT_TRUE(host_.world().add(runtime::component_factory<Viewer>("viewer"),
+                                runtime::test_parameters("viewer", "{}").value()));
+  tell_camera();
+  live(100, 0.05);
+  show(0.05);
+  live(120, 0.05);
+  const auto scan = host_.last(topics::kKinectScan);
+  ASSERT_TRUE(scan.has_value());
+  EXPECT_EQ(scan->header().frame_id(), "kinect_level");
+  const double moved = camera_pose({}, -0.0873, 0.05).forward - 0.2;
+  EXPECT_NEAR(ahead(*scan), 2.0 + moved, 0.03);
+  EXPECT_EQ(scan->intensities().size(), scan->ranges().size());
+  ASSERT_TRUE(host_.last(topics::kKinectScanLow).has_value());
+  const auto frames = host_.last(topics::kTf);
+  ASSERT_TRUE(frames.has_value());
+  const auto& place = frames->transforms()[0];
+  EXPECT_EQ(place.child_frame_id(), "kinect_depth_optical");
+  const auto pose = wire::from_message(place.transform()).value();
+  // What is 2 m along the optical axis lies ahead and below.
+  const Eigen::Vector3d point = pose * Eigen::Vector3d(0.0, 0.0, 2.0);
+  const CameraPose camera = camera_pose({}, -0.0873, 0.05);
+  EXPECT_NEAR(point.z(), camera.height - 2.0 * std::sin(camera.down), 1e-6);
+  EXPECT_NEAR(point.x(), camera.forward + 2.0 * std::cos(camera.down), 1e-6);
+  EXPECT_NEAR((pose * Eigen::Vector3d(1.0, 0.0, 0.0)).y(), -1.0, 1e-6);
+  const auto processed = host_.last(topics::kKinectProcessed);
+  ASSERT_TRUE(processed.has_value());
+  EXPECT_EQ(processed->encoding(), "16UC1");
+  EXPECT_EQ(host_.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+}
+
+TEST_F(DepthPipelineComponentTest, WaitsForThePitchOfTheImage) {
+  tell_camera();
+  live(100);
+  with_pitch_ = false;
+  live(30);
+  show();  // the newest pitch is older than what may be extrapolated
+  live(10);
+  EXPECT_TRUE(host_.written(topics::kKinectScan).empty());
+  with_pitch_ = true;
+  live(20);
+  EXPECT_EQ(host_.written(topics::kKinectScan).size(), 1U);
+}
+
+TEST_F(DepthPipelineComponentTest, SaysWhenTheCameraIsSilent) {
+  tell_camera();
+  live(100);
+  show();
+  live(120);
+  EXPECT_EQ(host_.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+  live(600);
+  EXPECT_EQ(host_.heartbeat().reason(), "no depth image");
+}
+
+TEST_F(DepthPipelineComponentTest, LeavesOutImagesWhileTheCameraTurns) {
+  tell_camera();
+  live(100);
+  servo_ = 0.1;
+  live(20);
+  show();
+  live(30);
+  EXPECT_TRUE(host_.written(topics::kKinectScan).empty());
+  live(100);
+  show();
+  live(30);
+  EXPECT_EQ(host_.written(topics::kKinectScan).size(), 1U);
+  EXPECT_EQ(host_.counter("images: camera turning"), 1U);
+}
+
+TEST_F(DepthPipelineComponentTest, RefusesImagesThatDoNotFit) {
+  tell_camera();
+  live(100);
+  sensor_msgs::msg::Image image;
+  image.header(wire::header(host_.now(), "kinect_depth_optical"));
+  image.encoding("16UC1");
+  image.width(512);
+  image.height(424);
+  image.step(1024);
+  host_.publish(topics::kKinectDepth, image);
+  live(120);
+  EXPECT_TRUE(host_.written(topics::kKinectScan).empty());
+  EXPECT_EQ(host_.counter("images: rejected"), 1U);
+  EXPECT_THAT(host_.heartbeat().reason(), HasSubstr("carries 0"));
+}
+
+TEST_F(DepthPipelineComponentTest, TiltFollowsTheRobotsStateAndAnOperatorMayHoldIt) {
+  usher_msgs::msg::SupervisorStatus status;
+  status.kinect_angle_navigation(-0.0873F);
+  status.kinect_angle_interaction(0.1745F);
+  status.state(STATE_INTERACTION);
+  host_.publish(topics::kSupervisorStatus, status);
+  live(250);
+  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), 0.1745, 1e-6);
+  status.state(STATE_NAVIGATION_ACTIVE);
+  host_.publish(topics::kSupervisorStatus, status);
+  live(250);
+  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
+  usher_msgs::msg::CameraTilt request;
+  request.servo(9.0);
+  host_.publish(topics::kKinectTiltRequest, request);
+  live(1500);
+  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), TiltServo::kLimit, 1e-9);
+  live(900);
+  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
+}
+
+TEST(DepthPipelineSim, RatesAndPassesTheModelsScans) {
+  TestHost host(runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim"),
+                "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m}");
+  sensor_msgs::msg::LaserScan scan;
+  scan.angle_min(-0.5F);
+  scan.angle_max(0.5F);
+  scan.angle_increment(0.5F);
+  scan.range_min(0.05F);
+  scan.range_max(5.0F);
+  scan.ranges({1.0F, 2.0F, 3.0F});
+  for (int i = 0; i < 4; ++i) {
+    scan.header(wire::header(host.now(), "kinect_level"));
+    if (i == 3) scan.ranges({1.0F, 0.6F, 3.0F});
+    host.publish(topics::kSimKinectScan, scan);
+    host.run_for(milliseconds(33));
+  }
+  const auto passed = host.last(topics::kKinectScan).value();
+  EXPECT_EQ(passed.ranges()[0], 1.0F);
+  EXPECT_TRUE(std::isnan(passed.ranges()[1]));  // appeared for one frame
+  EXPECT_EQ(passed.intensities()[2], 1.0F);
+  scan.angle_increment(0.0F);
+  host.publish(topics::kSimKinectScan, scan);
+  host.run_for(milliseconds(1100));
+  EXPECT_EQ(host.counter("scans: rejected"), 1U);
+}
+
+}  // namespace
+}  // namespace usher::depth_pipeline

@@ -1,0 +1,153 @@
+#include "simulation/world/shell/depth_output.hpp"
+
+#include "wire/conversions.hpp"
+#include "wire/images.hpp"
+
+namespace usher::world {
+
+namespace {
+
+/// Half a period of 30 Hz: the cameras take turns.
+constexpr auto kTurn = std::chrono::nanoseconds(16'666'667);
+constexpr const char* kKinectFrame = "kinect_depth_optical";
+constexpr const char* kRearFrame = "rear_camera_depth_optical";
+
+imaging::Intrinsics intrinsics_of(const rendering::Lens& lens) {
+  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
+}
+
+DepthScanModelConfig model_for(const DepthCameraConfig& camera) {
+  DepthScanModelConfig config;
+  config.lens = camera.sensor.lens;
+  config.origin = std::abs(camera.mount.x);
+  return config;
+}
+
+}  // namespace
+
+DepthCameraConfig DepthOutput::read_kinect(runtime::Parameters& p) {
+  DepthCameraConfig config;
+  const std::string kind = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
+                                    "Kinect v2 (512 x 424) or v1 (640 x 480).");
+  config.sensor = kind == "v1" ? rendering::kinect_v1() : rendering::kinect_v2();
+  config.mount.x =
+      p.number("robot.kinect.mount_x", "m", {-1, 1}, 0.2, "Kinect ahead of the axle's middle.");
+  config.mount.z =
+      p.number("robot.kinect.mount_z", "m", {0, 3}, 0.665, "Kinect above the axle's middle.") +
+      p.number("kinect_height_error", "m", {-0.1, 0.1}, 0.0,
+               "How much higher the Kinect really sits than the robot's file says.");
+  const double gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
+                               "Equation 4.1: servo = gain times angle + offset.");
+  const double offset = p.number("robot.kinect.servo_offset", "rad", {-0.3, 0.3}, 0.0,
+                                 "Equation 4.1: what the servo is set to for a level camera.");
+  config.servo_gain = 1.0 / gain;
+  config.servo_offset = -offset / gain + p.number("kinect_angle_error", "rad", {-0.1, 0.1}, 0.0,
+                                                  "How much higher the Kinect really looks.");
+  return config;
+}
+
+DepthCameraConfig DepthOutput::read_rear(runtime::Parameters& p) {
+  DepthCameraConfig config;
+  config.sensor = rendering::rear_camera();
+  config.mount.x = p.number("robot.rear_camera.mount_x", "m", {-1, 1}, -0.2,
+                            "Rear camera ahead of the axle's middle; negative is behind.");
+  config.mount.z = p.number("robot.rear_camera.mount_z", "m", {0, 3}, 0.9,
+                            "Rear camera above the axle's middle.");
+  config.mount.yaw = geometry::kPi;
+  config.mount.pitch = -p.number("robot.rear_camera.angle", "rad", {-0.6, 0.6}, -0.26,
+                                 "Of the rear camera on the body, positive up.");
+  return config;
+}
+
+DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t seed)
+    : host_(host),
+      world_(world),
+      kinect_(read_kinect(host.parameters()), seed),
+      rear_(read_rear(host.parameters()), seed + 1) {
+  const std::string kind = host.parameters().choice(
+      "depth", {"off", "model", "pixels"}, "off",
+      "Depth cameras: rendered pixels, or the scans of the model that is fitted to them.");
+  if (kind == "model") kind_ = Kind::kModel;
+  if (kind == "pixels") kind_ = Kind::kPixels;
+  color_ = host.parameters().flag("color", false, "Whether colour images are painted too.");
+  kinect_model_.emplace(model_for(kinect_.config()), seed);
+  rear_model_.emplace(model_for(rear_.config()), seed + 1);
+  kinect_depth_ = host.output(topics::kSimKinectDepth);
+  kinect_color_ = host.output(topics::kSimKinectColor);
+  kinect_info_ = host.output(topics::kSimKinectInfo);
+  rear_depth_ = host.output(topics::kSimRearDepth);
+  rear_info_ = host.output(topics::kSimRearInfo);
+  kinect_scan_ = host.output(topics::kSimKinectScan);
+  kinect_low_ = host.output(topics::kSimKinectScanLow);
+  rear_scan_ = host.output(topics::kSimRearScan);
+  timer_ = host.timer("depth", kTurn, [this](auto) { publish_next(); });
+}
+
+void DepthOutput::step(runtime::Time now) {
+  kinect_.step(world_->base().truth());
+  rear_.step(world_->base().truth());
+  stepped_ = now;
+}
+
+void DepthOutput::publish_next() {
+  if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
+  if (!told_ && kind_ == Kind::kPixels) publish_info();
+  told_ = true;
+  kinect_next_ ? publish_kinect() : publish_rear();
+  kinect_next_ = !kinect_next_;
+}
+
+void DepthOutput::publish_info() {
+  kinect_info_.publish(
+      wire::to_message(stepped_, kKinectFrame, intrinsics_of(kinect_.config().sensor.lens)));
+  rear_info_.publish(
+      wire::to_message(stepped_, kRearFrame, intrinsics_of(rear_.config().sensor.lens)));
+}
+
+void DepthOutput::publish_kinect() {
+  if (kind_ == Kind::kModel) {
+    kinect_model_->scan(*world_, kinect_, result_);
+    publish_scan(result_.ranges, kinect_scan_);
+    publish_scan(result_.low, kinect_low_);
+    return;
+  }
+  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
+  kinect_.measure(*world_, renderer_.renderer(), depth_);
+  const rendering::Lens& lens = kinect_.config().sensor.lens;
+  wire::to_message(stepped_, kKinectFrame, imaging::DepthImage{lens.width, lens.height, depth_},
+                   image_);
+  kinect_depth_.publish(image_);
+  if (!color_) return;
+  rendering::paint(kinect_.truth(), rgb_);
+  wire::to_color_message(stepped_, kKinectFrame, lens.width, rgb_, image_);
+  kinect_color_.publish(image_);
+}
+
+void DepthOutput::publish_rear() {
+  if (kind_ == Kind::kModel) {
+    rear_model_->scan(*world_, rear_, result_);
+    publish_scan(result_.ranges, rear_scan_);
+    return;
+  }
+  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
+  rear_.measure(*world_, renderer_.renderer(), depth_);
+  const rendering::Lens& lens = rear_.config().sensor.lens;
+  wire::to_message(stepped_, kRearFrame, imaging::DepthImage{lens.width, lens.height, depth_},
+                   image_);
+  rear_depth_.publish(image_);
+}
+
+void DepthOutput::publish_scan(const std::vector<float>& ranges,
+                               runtime::Output<sensor_msgs::msg::LaserScan>& output) {
+  scan_.header(wire::header(stepped_, "kinect_level"));
+  scan_.angle_min(static_cast<float>(result_.angle_min));
+  scan_.angle_increment(static_cast<float>(result_.increment));
+  scan_.angle_max(static_cast<float>(
+      result_.angle_min + result_.increment * (static_cast<double>(ranges.size()) - 1.0)));
+  scan_.range_min(0.05F);
+  scan_.range_max(5.0F);
+  scan_.ranges(ranges);
+  output.publish(scan_);
+}
+
+}  // namespace usher::world

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+#include "simulation/world/core/depth_scan_model.hpp"
+
+namespace usher::world {
+
+/// The simulated depth cameras' side of the world component: pixels, or the scans that the fitted
+/// model makes without them, at 30 Hz, the two cameras in turn. Stamps are those of the world's
+/// steps.
+class DepthOutput {
+ public:
+  /// `world` is null while the component is only described; it must outlive this.
+  DepthOutput(runtime::Host& host, const World* world, std::uint64_t seed);
+
+  void set_tilt(double servo) { kinect_.set_tilt(servo); }
+  double tilt() const { return kinect_.tilt(); }  ///< [rad]
+  /// One step of the world has passed, now.
+  void step(runtime::Time now);
+
+ private:
+  enum class Kind { kOff, kModel, kPixels };
+  static DepthCameraConfig read_kinect(runtime::Parameters& parameters);
+  static DepthCameraConfig read_rear(runtime::Parameters& parameters);
+  void publish_next();
+  void publish_info();
+  void publish_kinect();
+  void publish_rear();
+  void publish_scan(const std::vector<float>& ranges,
+                    runtime::Output<sensor_msgs::msg::LaserScan>& output);
+
+  runtime::Host& host_;
+  const World* world_;
+  Kind kind_ = Kind::kOff;
+  bool color_ = false;
+  DepthCamera kinect_, rear_;
+  std::optional<DepthScanModel> kinect_model_, rear_model_;
+  WorldRenderer renderer_;
+  runtime::Time stepped_{};  ///< time of the world's last step
+  bool told_ = false;        ///< the intrinsics
+  bool kinect_next_ = true;
+  std::vector<std::uint16_t> depth_;
+  std::vector<std::uint8_t> rgb_;
+  sensor_msgs::msg::Image image_;
+  DepthScanResult result_;
+  sensor_msgs::msg::LaserScan scan_;
+  runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_;
+  runtime::Output<sensor_msgs::msg::CameraInfo> kinect_info_, rear_info_;
+  runtime::Output<sensor_msgs::msg::LaserScan> kinect_scan_, kinect_low_, rear_scan_;
+  runtime::Timer timer_;
+};
+
+}  // namespace usher::world
