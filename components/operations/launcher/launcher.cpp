@@ -101,15 +101,18 @@ std::string runtime_directory() {
 }
 
 /// Makes it for this user alone. Where anybody may write beside it (/tmp), one that was there and
-/// is not ours, or is open to others, could hold somebody else's memory of our robot.
+/// is not ours, or that others may write, could hold somebody else's memory of our robot.
 Status make_runtime_directory(const std::string& path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
     return Error{"cannot write " + path + ": " + std::strerror(errno)};
   struct stat facts {};
   if (lstat(path.c_str(), &facts) != 0 || !directory_of_mine(path))
     return Error{path + " must be a directory of this user, and is not"};
-  if (path.starts_with("/tmp/") && (facts.st_mode & 077) != 0)
-    return Error{path + " must be open to this user alone (mode 0700), and is open to others"};
+  if (!path.starts_with("/tmp/") || (facts.st_mode & 077) == 0) return {};
+  if ((facts.st_mode & 022) != 0)
+    return Error{path + " must be writable by this user alone, and others may write there"};
+  if (chmod(path.c_str(), 0700) != 0)
+    return Error{"cannot close " + path + " to others: " + std::strerror(errno)};
   return {};
 }
 

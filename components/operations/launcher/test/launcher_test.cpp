@@ -295,6 +295,14 @@ TEST_F(Launching, KeepsItsFilesWhereNobodyElseCanPutAny) {
   std::filesystem::remove_all(runtime + "/usher");
   std::filesystem::create_directory_symlink(folder_.path(), runtime + "/usher");
   EXPECT_EQ(refusal(), runtime + "/usher must be a directory of this user, and is not");
+  std::filesystem::remove(runtime + "/usher");
+  // Below /tmp, as here, others may not even read; what others could have written is not taken.
+  ASSERT_EQ(::mkdir((runtime + "/usher").c_str(), 0755), 0);
+  EXPECT_EQ(refusal(), "launched");
+  ASSERT_EQ(::stat((runtime + "/usher").c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0700U);
+  ASSERT_EQ(::chmod((runtime + "/usher").c_str(), 0777), 0);
+  EXPECT_THAT(refusal(), HasSubstr("others may write there"));
   ::unsetenv("XDG_RUNTIME_DIR");
   const std::string user = std::to_string(::geteuid());
   const std::string found = default_run_directory(7, "nuc");
