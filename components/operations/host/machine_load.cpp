@@ -36,8 +36,7 @@ std::string MachineLoad::verdict() const {
   std::string text = "this machine is too busy for the demo: " + std::string(load);
   if (stops_ > 0) {
     text += "; the robot was stopped " + std::to_string(stops_) +
-            (stops_ == 1 ? " time" : " times") + " because a component spoke late (" + last_stop_ +
-            ")";
+            (stops_ == 1 ? " time" : " times") + ", last by: " + last_stop_;
   }
   return text + "; run it again when less is running";
 }

@@ -24,9 +24,7 @@ TEST(MachineLoad, NamesTheLoadAndWhatItDid) {
               HasSubstr("too busy for the demo: 23 tasks for 2 cores; run it again"));
   load.stopped("amcl: silent for 0.13 s");
   load.stopped("costmap: silent for 0.2 s");
-  EXPECT_THAT(
-      load.verdict(),
-      HasSubstr("stopped 2 times because a component spoke late (costmap: silent for 0.2 s)"));
+  EXPECT_THAT(load.verdict(), HasSubstr("stopped 2 times, last by: costmap: silent for 0.2 s"));
 }
 
 TEST(MachineLoad, ReadsThisMachine) {
