@@ -27,8 +27,11 @@ inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& w
   const Whiskers& t = whiskers;
   const bool beside_left = t.front_left && t.back_left;
   const bool beside_right = t.front_right && t.back_right;
-  const bool bar_forward = (t.front_left && !beside_left) || (t.front_right && !beside_right);
-  const bool bar_backward = (t.back_left && !beside_left) || (t.back_right && !beside_right);
+  // Both corners of an end: something ahead of it, whatever stands beside.
+  const bool bar_forward =
+      (t.front_left && (t.front_right || !beside_left)) || (t.front_right && !beside_right);
+  const bool bar_backward =
+      (t.back_left && (t.back_right || !beside_left)) || (t.back_right && !beside_right);
   if ((twist.v > 0.0 && bar_forward) || (twist.v < 0.0 && bar_backward)) twist.v = 0.0;
   // Turning left moves the front left corner outward, and the back right one.
   const bool bar_left = t.front_left || t.back_right;

@@ -306,11 +306,11 @@ TEST(WhiskerReflex, BarsPerCornerAndDirection) {
       {{false, false, true, true}, 0.5, 0.0, false, false},
       {{true, false, false, true}, 0.0, 0.0, false, true},
       {{false, true, true, false}, 0.0, 0.0, true, false},
-      // Beside a wall, or between two: creeps along.
+      // Beside a wall: creeps along.
       {{true, false, true, false}, 0.1, 0.1, false, false},
       {{true, true, true, false}, 0.0, 0.1, false, false},
       {{true, false, true, true}, 0.1, 0.0, false, false},
-      {{true, true, true, true}, 0.1, 0.1, false, false},
+      {{true, true, true, true}, 0.0, 0.0, false, false},
   };
   for (const Row& row : rows) {
     EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers, 0.1).v, row.forward);
@@ -332,8 +332,8 @@ TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
   EXPECT_GE(whisker_reflex({0.1, -0.5}, left, 0.1).w, -0.05);
   EXPECT_EQ(whisker_reflex({0.1, 0.5}, left, 0.1).w, 0.0);
   EXPECT_GT(whisker_reflex({-0.1, 0.5}, left, 0.1).w, 0.0);
-  const Whiskers both{true, true, true, true};
-  EXPECT_EQ(whisker_reflex({0.1, -0.5}, both, 0.1).w, 0.0);
+  const Whiskers all{true, true, true, true};
+  EXPECT_EQ(whisker_reflex({0.1, -0.5}, all, 0.1), Twist2{});
 }
 
 TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {

@@ -88,6 +88,7 @@ AmclComponent::AmclComponent(runtime::Host& host)
       core_(read_parameters(host), host.random("amcl").next()),
       rejected_scans_(host.health().counter("scan: rejected")),
       rejected_odometry_(host.health().counter("odom: rejected")),
+      odometry_leaps_(host.health().counter("odom: leaps")),
       rejected_maps_(host.health().counter("map: rejected")),
       rejected_poses_(host.health().counter("initialpose: rejected")),
       bad_beams_(host.health().counter("scan: beams without a number")),
@@ -107,7 +108,7 @@ AmclComponent::AmclComponent(runtime::Host& host)
   map_ =
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
   scan_ = host.input(
-      topics::kScanFiltered, {.max_age = kScanAge, .on_loss = "reports lost: nothing moves"},
+      topics::kScanFiltered, {.max_age = kScanAge, .on_loss = "reports lost: navigation stops"},
       [this](const auto&, const auto&) { take_scan(scan_.share()); }, [this] { publish_status(); });
   initial_pose_ =
       host.input(topics::kInitialPose, {.optional = true},
@@ -195,6 +196,7 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   const UpdateResult result = core_.update(odom_T_base, beams);
   bad_beams_ += result.beams.out_of_range;
   if (result.outcome == Outcome::kOdometryRejected) ++rejected_odometry_;
+  if (result.odometry_restarted) ++odometry_leaps_;
   if (result.outcome == Outcome::kScanRejected) ++rejected_scans_;
   if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected)
     last_scan_ = stamp;

@@ -42,6 +42,7 @@ class AmclComponent final : public runtime::Component {
   runtime::Time last_scan_{};
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_odometry_;
+  std::uint64_t& odometry_leaps_;
   std::uint64_t& rejected_maps_;
   std::uint64_t& rejected_poses_;
   std::uint64_t& bad_beams_;

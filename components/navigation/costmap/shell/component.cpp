@@ -104,13 +104,12 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       {.max_age = kScanAge, .on_loss = "publishes no local costs: the local planner stops"},
       [this](const auto&, const auto&) { take_scan(scan_.share(), laser_beams_, &Map::laser); },
       [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
-  ultrasonic_ = host.input(topics::kUltrasonicFiltered,
-                           {.max_age = milliseconds(500),
-                            .on_loss = "goes on without glass, degraded",
-                            .optional = true},
-                           [this](const auto&, const auto&) {
-                             take_scan(ultrasonic_.share(), ultrasonic_beams_, &Map::ultrasonic);
-                           });
+  ultrasonic_ = host.input(
+      topics::kUltrasonicFiltered,
+      {.max_age = milliseconds(500), .on_loss = "goes on without glass", .optional = true},
+      [this](const auto&, const auto&) {
+        take_scan(ultrasonic_.share(), ultrasonic_beams_, &Map::ultrasonic);
+      });
   read_depth();
   whiskers_ =
       host.input(topics::kWhiskers,
@@ -169,12 +168,16 @@ void CostmapComponent::read_depth() {
   read(topics::kRearScan, rear_, rear_beams_, &Map::rear);
 }
 
-Costmap CostmapComponent::make(bool rolling, const grid::GridGeometry& window) {
+CostmapConfig CostmapComponent::config(bool rolling, const grid::GridGeometry& window) const {
   CostmapConfig config = settings_;
   config.window = window;
   config.rolling = rolling;
   config.footprint = footprint_;
-  auto made = Costmap::make(std::move(config));
+  return config;
+}
+
+Costmap CostmapComponent::make(bool rolling, const grid::GridGeometry& window) {
+  auto made = Costmap::make(config(rolling, window));
   if (!made) host_.fault("costmap: " + made.error());
   return std::move(made).value();
 }
@@ -215,13 +218,17 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
     host_.health().set(HealthState::kDegraded, "map refused: " + map.error());
     return;
   }
+  auto costs = Costmap::make(config(false, map->geometry()));
+  const Status usable = costs ? costs->set_static_map(*map) : Status(Error{costs.error()});
+  if (!usable) {
+    ++rejected_maps_;
+    host_.health().set(HealthState::kDegraded, "map refused: " + usable.error());
+    return;
+  }
+  static_costs_.emplace(std::move(costs).value());
+  static_costs_->update(0.0);
   global_.costs.emplace(make(false, map->geometry()));
   add_layers(global_);
-  static_costs_.emplace(make(false, map->geometry()));
-  if (const auto status = static_costs_->set_static_map(*map); !status) {
-    host_.fault("map: " + status.error());
-  }
-  static_costs_->update(0.0);
   for (Map* each : {&local_, &global_}) {
     if (each == &local_ && !static_in_local_) continue;
     if (const auto status = each->costs->set_static_map(*map); !status) {
@@ -258,6 +265,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
   if (!odom_T_base) return;
   const bool is_laser = layer == &Map::laser;
+  if (is_laser && host_.now() - stamp > kScanAge) return;  // nobody drives on what was
   const std::span<const float> ranges = layer == &Map::ultrasonic
                                             ? unexplained(scan, odom_T_sensor)
                                             : std::span<const float>(scan.ranges());
@@ -296,7 +304,8 @@ void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry:
     ++rejected_scans_;
     return;
   }
-  map.newest = std::max(map.newest, stamp);
+  // The local costs are as old as their laser scan, whatever else was seen since.
+  if (&map == &global_ || layer == map.laser) map.newest = std::max(map.newest, stamp);
 }
 
 void CostmapComponent::take_whiskers(const usher_msgs::msg::Whiskers& message) {

@@ -33,6 +33,7 @@ class CostmapComponent final : public runtime::Component {
     std::vector<geometry::Point2> directions;
   };
 
+  CostmapConfig config(bool rolling, const grid::GridGeometry& window) const;
   Costmap make(bool rolling, const grid::GridGeometry& window);
   void add_layers(Map& map);
   void read_depth_settings(runtime::Parameters& parameters);

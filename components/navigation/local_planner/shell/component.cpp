@@ -270,7 +270,9 @@ void LocalPlannerComponent::conclude(const Decision& decided, const geometry::Po
     remaining = std::max(0.0, std::abs(amount_) - made);
     done = remaining == 0.0;
   }
-  if (!decided.blocked) {
+  const bool refused = decided.reason == Reason::kInvalidInput || decided.reason == Reason::kNoPath;
+  const bool stands = decided.blocked || refused;
+  if (!stands) {
     blocked_since_.reset();
   } else if (!blocked_since_) {
     blocked_since_ = host_.now();
@@ -279,11 +281,10 @@ void LocalPlannerComponent::conclude(const Decision& decided, const geometry::Po
     last_command_ = {};
     command_.publish(wire::to_message(host_.now(), last_command_));
   }
-  publish_status(done              ? STATE_SUCCEEDED
-                 : decided.blocked ? STATE_WAITING
-                                   : STATE_ACTIVE,
-                 decided.blocked ? to_string(decided.reason) : "", remaining,
-                 decided.obstacle_distance);
+  publish_status(done     ? STATE_SUCCEEDED
+                 : stands ? STATE_WAITING
+                          : STATE_ACTIVE,
+                 stands ? to_string(decided.reason) : "", remaining, decided.obstacle_distance);
   host_.health().set(HealthState::kOk);
 }
 

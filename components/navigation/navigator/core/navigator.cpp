@@ -316,7 +316,10 @@ bool Navigator::pause_if_unfit(const Situation& s) {
     pending_.reset();
     set_motion(MotionMode::kStop);
     enter(Phase::kPaused, s.time);
+  } else if (cause != pause_cause_) {
+    phase_since_ = s.time;  // each cause has its own patience
   }
+  pause_cause_ = cause;
   waiting_for_ = reason;
   if (cause == Failure::kHeld) started_at_ += std::clamp(s.time - last_step_, 0.0, 1.0);
   const double patience = cause == Failure::kHeld ? config_.hold_timeout : config_.pause_timeout;

@@ -265,6 +265,7 @@ class Navigator {
   State state_ = State::kInitialise;
   Phase phase_ = Phase::kPlanning;
   double phase_since_ = 0.0;
+  Failure pause_cause_ = Failure::kNone;
 
   // The goal.
   bool fresh_ = false;  // requested, but no step yet

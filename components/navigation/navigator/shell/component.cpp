@@ -1,5 +1,7 @@
 #include "navigation/navigator/shell/component.hpp"
 
+#include <limits>
+
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -132,12 +134,12 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
 
 void NavigatorComponent::take_goal(const usher_msgs::msg::NavigateGoal& goal) {
   const auto pose = wire::to_planar(goal.pose().pose());
-  if (goal.location().empty() && (!pose || goal.pose().header().frame_id() != frames::kMap)) {
-    ++rejected_;
-    return;
-  }
-  core_.request({goal.id(), goal.client(), goal.location(), pose ? *pose : geometry::Pose2{},
-                 goal.max_speed()});
+  const bool usable = pose && goal.pose().header().frame_id() == frames::kMap;
+  if (goal.location().empty() && !usable) ++rejected_;
+  // The core answers what is not finite, so that nobody asks for ever.
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  core_.request({goal.id(), goal.client(), goal.location(),
+                 usable ? *pose : geometry::Pose2{kNaN, kNaN, kNaN}, goal.max_speed()});
   step();
   publish(core_.status());
 }

@@ -58,11 +58,12 @@ ScanFilterComponent::ScanFilterComponent(runtime::Host& host)
                              host.output(topics::kUltrasonicFiltered));
   frames_ = host.output(topics::kTfStatic);
   base_ = host.input(
-      topics::kBaseStatus, {.max_age = kPitchAge, .on_loss = "publishes no scans: nothing moves"},
+      topics::kBaseStatus,
+      {.max_age = kPitchAge, .on_loss = "publishes no scans: navigation stops"},
       [this](const auto& status, const auto&) { take_pitch(status); },
       [this] { host_.health().set(HealthState::kDegraded, "no pitch"); });
   scan_ = host.input(
-      topics::kScan, {.max_age = kScanAge, .on_loss = "publishes no scans: nothing moves"},
+      topics::kScan, {.max_age = kScanAge, .on_loss = "publishes no scans: navigation stops"},
       [this](const auto&, const auto&) { take_scan(laser_, scan_.share()); },
       [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
   sonar_ = host.input(
@@ -111,8 +112,11 @@ bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::Laser
   if (!pitch) return false;
   const ScanGeometry geometry{scan.angle_min(), scan.angle_increment(), scan.range_min(),
                               scan.range_max()};
-  if (!channel.filter->filter(geometry, scan.ranges(), *pitch, channel.planar)) {
+  const auto filtered = channel.filter->filter(geometry, scan.ranges(), *pitch, channel.planar);
+  if (!filtered) {
     ++rejected_;
+    if (&channel == &laser_)
+      host_.health().set(HealthState::kDegraded, "scan refused: " + filtered.error());
     return true;
   }
   floor_ = laser_.filter->counts().floor;
