@@ -22,14 +22,13 @@ namespace {
 /// A bound that is stretched further says nothing.
 constexpr double kMostSlowdown = 5.0;
 
-/// A world that was late once says so for ever, since its run no longer counts; the robot is well.
+}  // namespace
+
 bool is_well(const ComponentHealth& component) {
   return component.health() == SupervisorStatus_Constants::HEALTH_OK ||
          (component.name() == "world" &&
           component.health() == SupervisorStatus_Constants::HEALTH_DEGRADED);
 }
-
-}  // namespace
 
 std::string usher_program() { return std::string(USHER_BINARY_DIR) + "/bin/usher"; }
 
@@ -83,12 +82,23 @@ std::set<std::string> shared_memory_of(const std::map<std::string, pid_t>& proce
   return files;
 }
 
-RunningRobot::RunningRobot() : domain_(test_domain()) {
+RunningRobot::RunningRobot(bool secure) : domain_(test_domain()) {
   ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
-  manifest_ = folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) +
-                                                    "/deploy/marvin-sim.yaml\ndomain: " +
-                                                    std::to_string(domain_) + "\n");
-  auto observer = runtime::Observer::create({.name = "tests", .host = "nuc", .domain = domain_});
+  manifest_ = folder_.file("deploy/robot.yaml",
+                           "extends: " + std::string(USHER_SOURCE_DIR) +
+                               "/deploy/marvin-sim.yaml\ndomain: " + std::to_string(domain_) +
+                               "\n" + (secure ? "security: keys\n" : ""));
+  if (secure) {
+    Process make({usher_program(), "keys", keys(), "--manifest", manifest_});
+    const int code = make.wait();
+    assert(code == 0);
+    static_cast<void>(code);
+  }
+  auto observer =
+      runtime::Observer::create({.name = "tests",
+                                 .host = "nuc",
+                                 .domain = domain_,
+                                 .identity = secure ? keys() + "/operator" : std::string()});
   assert(observer);
   observer_ = std::move(observer).value();
   auto heartbeats = observer_->reader(
@@ -125,14 +135,17 @@ RunningRobot::~RunningRobot() {
   launcher_->wait(std::chrono::seconds(10));
 }
 
-void RunningRobot::launch() {
+void RunningRobot::launch(const std::vector<std::string>& before,
+                          const std::vector<std::string>& after) {
   {
     const std::lock_guard lock(mutex_);
     status_.reset();
     lives_.clear();
   }
-  launcher_ =
-      std::make_unique<Process>(std::vector<std::string>{usher_program(), "launch", manifest_});
+  std::vector<std::string> words = before;
+  words.insert(words.end(), {usher_program(), "launch", manifest_});
+  words.insert(words.end(), after.begin(), after.end());
+  launcher_ = std::make_unique<Process>(std::move(words));
 }
 
 std::unique_ptr<Process> RunningRobot::command(std::vector<std::string> words) const {

@@ -28,6 +28,9 @@ std::string usher_program();
 /// processor time of a reference loop. Bounds of wall time are multiplied with it.
 double slowdown();
 
+/// A world that was late once says so for ever, since its run no longer counts; the robot is well.
+bool is_well(const usher_msgs::msg::ComponentHealth& component);
+
 /// Names and processes of the components that were launched from a folder.
 std::map<std::string, pid_t> components_from(const std::string& folder);
 /// Files in /dev/shm that these processes have mapped or opened.
@@ -46,14 +49,18 @@ class RunningRobot {
     std::chrono::steady_clock::time_point at;  ///< of the first heartbeat of this writer
   };
 
-  RunningRobot();
+  /// A secure robot has keys of its own, in folder()/deploy/keys; its observer is the operator.
+  explicit RunningRobot(bool secure = false);
   ~RunningRobot();
 
-  /// Launches; the former launcher must have ended.
-  void launch();
+  /// Launches; the former launcher must have ended. `before` is a program that becomes the
+  /// launcher, with its arguments, `after` are more options of it.
+  void launch(const std::vector<std::string>& before = {},
+              const std::vector<std::string>& after = {});
   Process& launcher() { return *launcher_; }
   const std::string& manifest() const { return manifest_; }
   const std::string& folder() const { return folder_.path(); }
+  std::string keys() const { return folder_.path() + "/deploy/keys"; }
   std::uint32_t domain() const { return domain_; }
   runtime::Observer& observer() { return *observer_; }
   std::map<std::string, pid_t> components() const { return components_from(folder_.path()); }

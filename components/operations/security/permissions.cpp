@@ -10,6 +10,7 @@
 
 #include "idl/topics.hpp"
 #include "operations/security/authority.hpp"
+#include "runtime/dds/signed_presence.hpp"
 
 namespace usher::operations {
 
@@ -105,8 +106,12 @@ std::string permissions_document(const Permissions& permissions, int days) {
       << date(now - std::chrono::hours(24)) << "</not_before>\n        <not_after>"
       << date(now + std::chrono::hours(24) * days) << "</not_after>\n      </validity>\n"
       << "      <allow_rule>\n        <domains><id>" << permissions.domain << "</id></domains>\n";
-  write_topics(out, "publish", permissions.write);
-  write_topics(out, "subscribe", permissions.read);
+  auto write = permissions.write;
+  auto read = permissions.read;
+  write.insert(runtime::kAliveTopic);
+  read.insert(runtime::kAliveTopic);
+  write_topics(out, "publish", write);
+  write_topics(out, "subscribe", read);
   out << "      </allow_rule>\n      <default>DENY</default>\n    </grant>\n  </permissions>\n"
       << "</dds>\n";
   return out.str();
@@ -130,7 +135,9 @@ Result<Permissions> read_permissions(const std::string& document) {
   if (std::from_chars(domain.data(), end, permissions.domain).ptr != end || domain.empty())
     return Error{"these permissions name no DDS domain"};
   permissions.write = read_topics(rule, "publish");
+  permissions.write.erase(runtime::kAliveTopic);
   permissions.read = read_topics(rule, "subscribe");
+  permissions.read.erase(runtime::kAliveTopic);
   return permissions;
 }
 

@@ -10,14 +10,17 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
 
 #include "runtime/dds/bytes_type.hpp"
 #include "runtime/dds/security.hpp"
+#include "runtime/dds/signed_presence.hpp"
 #include "runtime/dds/socket_buffers.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -163,6 +166,8 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   udp->maxInitialPeersRange = kPeerRange;
   qos.transport().use_builtin_transports = false;
   guard.only_signed = !options.identity.empty();
+  // Clients hear of one another through the server, whose messages are its own.
+  guard.watch_presence = options.discovery_server.empty();
   if (guard.only_signed) {
     if (auto status = apply_identity(options.identity, qos); !status) return Error{status.error()};
   }
@@ -292,12 +297,38 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});
   self->publisher_ = self->participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   self->subscriber_ = self->participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  if (!options.identity.empty()) {
+    if (const Status status = self->sign_regularly(); !status) return Error{status.error()};
+  }
   warn_of_small_socket_buffers(options.domain, kSocketBuffer);
   return self;
 }
 
+Status Participant::sign_regularly() {
+  const ForeignQuality best_effort{.best_effort = true};
+  const auto writer = create_writer(kAliveTopic, kAliveTopic, {}, nullptr, best_effort);
+  if (!writer) return Error{writer.error()};
+  // What arrives needs no reading: the transport sees it.
+  const Qos ignored{.reliable = false};
+  if (const auto reader = create_reader(kAliveTopic, kAliveTopic, ignored, nullptr); !reader)
+    return Error{reader.error()};
+  alive_ = std::jthread([writer = *writer](const std::stop_token& stop) {
+    constexpr std::array<std::uint8_t, 4> kNothing{0, 1, 0, 0};
+    std::mutex mutex;
+    std::condition_variable_any stopped;
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+      std::span<const std::uint8_t> payload(kNothing);
+      writer->write(&payload);
+      stopped.wait_for(lock, stop, SignedPresence::kAliveEvery, [] { return false; });
+    }
+  });
+  return {};
+}
+
 Participant::~Participant() {
   if (participant_ == nullptr) return;
+  alive_ = {};
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }

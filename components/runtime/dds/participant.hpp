@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "foundation/result/result.hpp"
@@ -64,6 +65,9 @@ class Participant {
   class Listener;
   Participant(const ParticipantOptions& options, const MonotonicClock& clock);
   Result<eprosima::fastdds::dds::Topic*> topic(const std::string& name, const std::string& type);
+  /// Tells every participant of the domain that this one lives, in a thread of its own
+  /// (SignedPresence).
+  Status sign_regularly();
   Error refusal(const std::string& what, const std::string& topic_name) const;
 
   DiscoveryBook book_;
@@ -75,6 +79,7 @@ class Participant {
   Guid guid_{};
   std::mutex mutex_;
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+  std::jthread alive_;
 };
 
 Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);

@@ -7,13 +7,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <utility>
 
+#include "runtime/dds/host_clock.hpp"
 #include "runtime/dds/rtps_message.hpp"
+#include "runtime/dds/signed_presence.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -24,6 +27,14 @@ using eprosima::fastdds::rtps::ChainingTransportDescriptor;
 using eprosima::fastdds::rtps::TransportDescriptorInterface;
 using eprosima::fastdds::rtps::TransportInterface;
 using eprosima::fastdds::rtps::TransportReceiverInterface;
+
+/// Of a message that is not malformed.
+SignedPresence::Prefix source_of(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kSourceAt = 8;
+  SignedPresence::Prefix prefix{};
+  std::copy_n(message.begin() + kSourceAt, prefix.size(), prefix.begin());
+  return prefix;
+}
 
 class GuardedTransport final : public ChainingTransport {
  public:
@@ -50,6 +61,10 @@ class GuardedTransport final : public ChainingTransport {
       if (kind != MessageKind::kFarewell) options_.refused(rtps::IPLocator::toIPv4string(remote));
       return;
     }
+    if (options_.only_signed && options_.watch_presence &&
+        !presence_.hears(source_of({bytes, size}), kind == MessageKind::kSigned,
+                         MonotonicClock::read(CLOCK_MONOTONIC)))
+      return;
     // Fast DDS 2.9.1 forgets how far the authentication of a participant got when its announcement
     // and its handshake arrive on two sockets at once; the two then never authenticate.
     std::unique_lock one_at_a_time(authentication_, std::defer_lock);
@@ -60,6 +75,7 @@ class GuardedTransport final : public ChainingTransport {
  private:
   const GuardOptions options_;
   std::mutex authentication_;
+  SignedPresence presence_;
 };
 
 class GuardedTransportDescriptor final : public ChainingTransportDescriptor {

@@ -21,6 +21,8 @@ Status apply_identity(const std::string& folder, eprosima::fastdds::dds::DomainP
 
 struct GuardOptions {
   bool only_signed = false;
+  /// With `only_signed`: announcements do not keep somebody who signs nothing (SignedPresence).
+  bool watch_presence = false;
   /// Gets the address that a malformed or unsigned message came from, on the thread that received
   /// it.
   std::function<void(const std::string& address)> refused;

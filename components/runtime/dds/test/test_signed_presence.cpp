@@ -1,0 +1,74 @@
+#include "runtime/dds/signed_presence.hpp"
+
+#include <gtest/gtest.h>
+
+namespace usher::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr SignedPresence::Prefix kOne{1};
+constexpr SignedPresence::Prefix kTwo{2};
+
+/// Announcements every 200 ms in [from, to); whether all were heard.
+bool hears_all(SignedPresence& presence, milliseconds from, milliseconds to,
+               const SignedPresence::Prefix& prefix = kOne) {
+  bool all = true;
+  for (auto now = from; now < to; now += milliseconds(200))
+    all = presence.hears(prefix, false, now) && all;
+  return all;
+}
+
+constexpr milliseconds kStep(100);
+constexpr milliseconds kAuthentication(SignedPresence::kAuthentication.count() / 1'000'000);
+constexpr milliseconds kSilence(SignedPresence::kSilence.count() / 1'000'000);
+constexpr milliseconds kForgetting(SignedPresence::kForgetting.count() / 1'000'000);
+
+TEST(SignedPresence, HearsForeverWhoSignsNowAndThen) {
+  SignedPresence presence;
+  for (auto now = milliseconds(0); now < 50 * kSilence; now += kSilence - kStep)
+    ASSERT_TRUE(presence.hears(kOne, true, now) &&
+                hears_all(presence, now, now + kSilence - kStep));
+}
+
+TEST(SignedPresence, IgnoresWhoNeverSignsUntilItIsForgottenAndThenHearsItAnew) {
+  SignedPresence presence;
+  EXPECT_TRUE(hears_all(presence, milliseconds(0), kAuthentication + kStep));
+  const auto ignored = kAuthentication + kStep;
+  for (auto now = ignored; now < ignored + kForgetting; now += kStep)
+    EXPECT_FALSE(presence.hears(kOne, now.count() % 300 == 0, now)) << now.count();
+  const auto anew = ignored + kForgetting;
+  EXPECT_TRUE(hears_all(presence, anew, anew + kAuthentication));
+  EXPECT_FALSE(hears_all(presence, anew + kAuthentication, anew + kAuthentication + 5 * kStep));
+}
+
+TEST(SignedPresence, IgnoresWhoNoLongerSigns) {
+  SignedPresence presence;
+  EXPECT_TRUE(presence.hears(kOne, true, milliseconds(0)));
+  EXPECT_TRUE(hears_all(presence, milliseconds(0), kSilence + kStep));
+  EXPECT_FALSE(presence.hears(kOne, true, kSilence + kStep)) << "it begins anew";
+  const auto anew = kSilence + 2 * kStep + kForgetting;
+  EXPECT_TRUE(presence.hears(kOne, false, anew));
+  EXPECT_TRUE(presence.hears(kOne, true, anew + kStep));
+  EXPECT_TRUE(presence.hears(kOne, true, anew + kSilence));
+}
+
+TEST(SignedPresence, TellsParticipantsApart) {
+  SignedPresence presence;
+  EXPECT_TRUE(presence.hears(kOne, false, milliseconds(0)));
+  EXPECT_FALSE(presence.hears(kOne, false, kAuthentication + kStep));
+  EXPECT_TRUE(presence.hears(kTwo, false, kAuthentication + kStep));
+}
+
+TEST(SignedPresence, RemembersNoMoreThanItMust) {
+  SignedPresence presence;
+  for (int i = 0; i < 100'000; ++i) {
+    SignedPresence::Prefix prefix{};
+    prefix[0] = static_cast<std::uint8_t>(i);
+    prefix[1] = static_cast<std::uint8_t>(i >> 8);
+    prefix[2] = static_cast<std::uint8_t>(i >> 16);
+    EXPECT_TRUE(presence.hears(prefix, false, milliseconds(i % 1000)));
+  }
+}
+
+}  // namespace
+}  // namespace usher::runtime
