@@ -1,0 +1,85 @@
+#include "perception/people_detector/core/depth_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "operations/people_study/scoring.hpp"
+
+namespace usher::people_detector {
+namespace {
+
+using people_study::Score;
+using people_study::Studio;
+
+DepthDetector detector_for(const imaging::Intrinsics& intrinsics) {
+  return DepthDetector::make(intrinsics, {}).value();
+}
+
+TEST(DepthDetector, RefusesOtherImagesAndImpossibleViews) {
+  DepthDetector detector = detector_for({});
+  const std::vector<std::uint16_t> small(100);
+  EXPECT_NE(detector.find({10, 10, small}, {}).error().find("expected an image of 512 x 424"),
+            std::string::npos);
+  const std::vector<std::uint16_t> image(512 * 424);
+  EXPECT_FALSE(detector.find({512, 424, image}, {.height = -1.0}));
+  EXPECT_FALSE(
+      detector.find({512, 424, image}, {.down = std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_TRUE(detector.find({512, 424, image}, {}).value().empty());
+  EXPECT_FALSE(DepthDetector::make({.width = 5}, {}));
+  EXPECT_NE(DepthDetector::make({}, {.threshold = 99.0}).error().find("threshold must be in"),
+            std::string::npos);
+}
+
+TEST(DepthDetector, SurvivesAnyImage) {
+  DepthDetector detector = detector_for({});
+  Random random(5);
+  std::vector<std::uint16_t> image(512 * 424);
+  for (int i = 0; i < 10; ++i) {
+    for (std::uint16_t& pixel : image) pixel = static_cast<std::uint16_t>(random.next());
+    const View view{random.uniform(0.05, 3.0), random.uniform(-1.2, 1.2), random.uniform(-1, 1)};
+    const auto found = detector.find({512, 424, image}, view);
+    ASSERT_TRUE(found);
+    for (const Sighting& one : *found) {
+      EXPECT_TRUE(std::isfinite(one.forward) && std::isfinite(one.left));
+      EXPECT_GE(one.height, 0.0);
+    }
+  }
+}
+
+Score score_of(const std::vector<people_study::Scene>& scenes) {
+  Studio studio;
+  DepthDetector detector = detector_for(studio.intrinsics());
+  Score total;
+  for (const auto& scene : scenes) {
+    const auto shot = studio.take(scene, 3).value();
+    const Score one = judge(detector.find(shot.processed, shot.view).value(), shot.truths);
+    if (one.missed + one.false_alarms > 0)
+      std::printf("%s: %d missed, %d false\n", scene.name.c_str(), one.missed, one.false_alarms);
+    total += one;
+  }
+  std::printf("recall %.4f, precision %.4f, error %.3f m of %d people\n", total.recall(),
+              total.precision(), total.error / std::max(1, total.found),
+              total.found + total.missed);
+  return total;
+}
+
+TEST(DepthDetector, FindsThePeopleOfTheThesisAndNoneOfItsThings) {
+  const Score score = score_of(people_study::thesis_scenes());
+  EXPECT_GE(score.recall(), 0.95);
+  EXPECT_GE(score.precision(), 0.95);
+}
+
+TEST(DepthDetector, FindsPeopleInAnyRoom) {
+  std::vector<people_study::Scene> scenes;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed)
+    scenes.push_back(people_study::random_scene(seed));
+  const Score score = score_of(scenes);
+  EXPECT_GE(score.recall(), 0.9);
+  EXPECT_GE(score.precision(), 0.9);
+  EXPECT_LE(score.error / score.found, 0.12);
+}
+
+}  // namespace
+}  // namespace usher::people_detector

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "foundation/result/result.hpp"
+#include "perception/people_detector/core/network.hpp"
+#include "perception/people_detector/core/windows.hpp"
+
+namespace usher::people_detector {
+
+/// Somebody in a depth image, seen from the camera's foot.
+struct Sighting {
+  double forward = 0.0;  ///< [m] the middle of the body, in the camera's direction
+  double left = 0.0;     ///< [m]
+  double height = 0.0;   ///< [m] of the highest visible point
+  double score = 0.0;    ///< log odds, over the threshold
+};
+
+struct DetectorConfig {
+  Windows::Config windows;
+  double threshold = 1.5;      ///< [-] {-10..10} least log odds
+  double same_left = 0.36;     ///< [m] {0.1..1} nearer windows show the same person
+  double same_forward = 0.65;  ///< [m] {0.1..2} the same along the camera's direction
+  double body_depth = 0.1;     ///< [m] {0..0.3} from the visible surface to the body's middle
+};
+
+/// The error names the first value that cannot be.
+Status check(const DetectorConfig& config);
+
+/// Finds people in the images of a depth camera from which floor and ceiling are removed: a window
+/// wherever a surface stands upright, a small trained network that says which windows show somebody
+/// in their middle, the best of each cluster of windows.
+class DepthDetector {
+ public:
+  /// The error says what of intrinsics or configuration cannot be.
+  static Result<DepthDetector> make(const imaging::Intrinsics& intrinsics,
+                                    const DetectorConfig& config,
+                                    const Network& network = trained_network());
+
+  const imaging::Intrinsics& intrinsics() const { return intrinsics_; }
+
+  /// Nearest first; the view stays valid until the next image. An image of another size or a view
+  /// that no camera has is refused.
+  Result<std::span<const Sighting>> find(const imaging::DepthImage& image, const View& view);
+
+ private:
+  struct Scored {
+    Candidate place;
+    float score;
+  };
+  DepthDetector(const imaging::Intrinsics& intrinsics, const DetectorConfig& config,
+                const Network& network);
+  bool is_taken(const Candidate& place) const;
+  Sighting refine(const Scored& best) const;
+
+  imaging::Intrinsics intrinsics_;
+  DetectorConfig config_;
+  Windows windows_;
+  Classifier classifier_;
+  Windows::Inputs inputs_{};
+  std::vector<Scored> scored_;
+  std::vector<Candidate> taken_;
+  std::vector<Sighting> sightings_;
+};
+
+}  // namespace usher::people_detector

@@ -1,0 +1,184 @@
+#include "perception/people_detector/core/tracker.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace usher::people_detector {
+
+namespace {
+
+using geometry::Point2;
+
+constexpr double kForbidden = 1e6;
+constexpr double kSitsDown = 9.0;  // most that another height costs: who sits down is the same
+constexpr double kNewcomer = 4.0;  // what a track costs that is not confirmed
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+constexpr double kFirstSpeed = 0.8;   // [m/s] standard deviation of somebody new
+constexpr double kLongest = 1.0;      // [s] of one prediction; a gap of the sensors is no time
+constexpr double kHeightShare = 0.1;  // of a new height in the mean
+
+Status within(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return {};
+  return Error{std::string(name) + " must be in [" + std::to_string(low) + ", " +
+               std::to_string(high) + "], got " + std::to_string(value)};
+}
+
+}  // namespace
+
+Status check(const TrackerConfig& c) {
+  for (const Status& status :
+       {within("acceleration", c.acceleration, 0.1, 5.0), within("gate", c.gate, 1.0, 50.0),
+        within("reach", c.reach, 0.2, 3.0), within("height_sigma", c.height_sigma, 0.02, 1.0),
+        within("confirmations", c.confirmations, 1, 30), within("travel", c.travel, 0.0, 3.0),
+        within("patience", c.patience, 0.1, 2.0), within("walk", c.walk, 0.5, 3.0),
+        within("memory", c.memory, 0.5, 30.0), within("coasting", c.coasting, 0.1, 5.0)}) {
+    if (!status) return status;
+  }
+  return {};
+}
+
+/// White noise on the acceleration; who was not seen for a moment is taken to slow down.
+void Tracker::predict(Track& track, double seconds) const {
+  if (seconds <= 0.0) return;
+  Eigen::Matrix4d transition = Eigen::Matrix4d::Identity();
+  transition.topRightCorner<2, 2>() = seconds * Eigen::Matrix2d::Identity();
+  const bool hidden = now_ - track.last_seen() > 0.5 * config_.coasting;
+  if (hidden) transition.bottomRightCorner<2, 2>() *= std::exp(-seconds / config_.coasting);
+  const double q = config_.acceleration * config_.acceleration;
+  track.state = transition * track.state;
+  track.covariance = transition * track.covariance * transition.transpose();
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    track.covariance(axis, axis) += q * seconds * seconds * seconds / 3.0;
+    track.covariance(axis, axis + 2) += q * seconds * seconds / 2.0;
+    track.covariance(axis + 2, axis) += q * seconds * seconds / 2.0;
+    track.covariance(axis + 2, axis + 2) += q * seconds;
+  }
+}
+
+double Tracker::cost(const Track& track, const Observation& observation) const {
+  const Point2 away = observation.position - track.position();
+  if (away.norm() > config_.reach) return kForbidden;
+  const Eigen::Matrix2d spread =
+      track.covariance.topLeftCorner<2, 2>() +
+      observation.sigma * observation.sigma * Eigen::Matrix2d::Identity();
+  double distance = away.dot(spread.inverse() * away);
+  if (observation.height > 0.0 && track.height > 0.0) {
+    const double higher = (observation.height - track.height) / config_.height_sigma;
+    distance += std::min(kSitsDown, higher * higher);
+  }
+  if (distance > config_.gate) return kForbidden;
+  return distance + std::log(spread.determinant()) + (track.confirmed ? 0.0 : kNewcomer);
+}
+
+void Tracker::correct(Track& track, const Observation& observation, Source source) {
+  const Eigen::Matrix2d spread =
+      track.covariance.topLeftCorner<2, 2>() +
+      observation.sigma * observation.sigma * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<double, 4, 2> gain = track.covariance.leftCols<2>() * spread.inverse();
+  track.state += gain * (observation.position - track.position());
+  const Eigen::Matrix4d updated = track.covariance - gain * track.covariance.topRows<2>();
+  track.covariance = 0.5 * (updated + updated.transpose());
+  if (observation.height > 0.0) {
+    track.height = track.height > 0.0
+                       ? track.height + kHeightShare * (observation.height - track.height)
+                       : observation.height;
+  }
+  track.seen[static_cast<std::size_t>(source)] = now_;
+  if (source != Source::kLaser) ++track.sightings;
+  if (track.confirmed) return;
+  track.confirmed = track.fresh = track.sightings >= config_.confirmations ||
+                                  (track.position() - track.birthplace).norm() > config_.travel;
+}
+
+void Tracker::add(const Observation& observation, Source source) {
+  if (tracks_.size() >= kMost) return;
+  Track track;
+  track.id = next_id_++;
+  track.state.head<2>() = track.birthplace = observation.position;
+  track.covariance.topLeftCorner<2, 2>() *= observation.sigma * observation.sigma;
+  track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
+  track.height = observation.height;
+  track.born = now_;
+  track.seen.fill(kNever);
+  track.seen[static_cast<std::size_t>(source)] = now_;
+  track.sightings = source == Source::kLaser ? 0 : 1;
+  track.confirmed = track.sightings >= config_.confirmations;
+  tracks_.push_back(track);
+}
+
+/// Who has just been confirmed may be somebody who was hidden for a while and came out elsewhere
+/// than expected: near enough to have walked there, and of the same height.
+void Tracker::recognize() {
+  for (Track& track : tracks_) {
+    if (!track.fresh) continue;
+    track.fresh = false;
+    Track* best = nullptr;
+    double least = 1.0;
+    for (Track& hidden : tracks_) {
+      const double unseen = now_ - hidden.last_seen();
+      if (!hidden.confirmed || &hidden == &track || hidden.last_seen() >= track.born) continue;
+      const double away = (hidden.position() - track.position()).norm();
+      double distance = away / (config_.reach + config_.walk * unseen);
+      if (hidden.height > 0.0 && track.height > 0.0)
+        distance += std::abs(hidden.height - track.height) / (4.0 * config_.height_sigma);
+      if (distance < least) least = distance, best = &hidden;
+    }
+    if (best == nullptr) continue;
+    track.id = best->id;
+    track.born = best->born;
+    best->seen.fill(kNever);  // is forgotten
+  }
+}
+
+void Tracker::forget() {
+  std::erase_if(tracks_, [&](const Track& track) {
+    return now_ - track.last_seen() > (track.confirmed ? config_.memory : config_.patience);
+  });
+}
+
+void Tracker::update(double time, Source source, std::span<const Observation> observations) {
+  if (!std::isfinite(time)) return;
+  const double passed = tracks_.empty() ? 0.0 : std::clamp(time - now_, 0.0, kLongest);
+  now_ = std::max(now_, time);
+  for (Track& track : tracks_) predict(track, passed);
+  observations_.clear();
+  for (const Observation& one : observations) {
+    if (observations_.size() == kMost) break;
+    if (one.position.allFinite() && one.sigma > 0.0 && std::isfinite(one.height))
+      observations_.push_back(one);
+  }
+  costs_.clear();
+  for (const Track& track : tracks_) {
+    for (const Observation& one : observations_) {
+      costs_.push_back(cost(track, one));
+    }
+  }
+  const auto count = static_cast<int>(tracks_.size());
+  const auto pairs =
+      assignment_.solve(costs_, count, static_cast<int>(observations_.size()), kForbidden);
+  used_.assign(observations_.size(), 0);
+  for (std::size_t t = 0; t < static_cast<std::size_t>(count); ++t) {
+    if (pairs[t] < 0) continue;
+    const auto which = static_cast<std::size_t>(pairs[t]);
+    used_[which] = 1;
+    correct(tracks_[t], observations_[which], source);
+  }
+  for (std::size_t i = 0; i < observations_.size(); ++i) {
+    if (!used_[i]) add(observations_[i], source);
+  }
+  recognize();
+  forget();
+  people_.clear();
+  std::copy_if(tracks_.begin(), tracks_.end(), std::back_inserter(people_),
+               [](const Track& track) { return track.confirmed; });
+}
+
+const Track* Tracker::find(std::uint64_t id) const {
+  const auto found = std::find_if(people_.begin(), people_.end(),
+                                  [&](const Track& track) { return track.id == id; });
+  return found == people_.end() ? nullptr : &*found;
+}
+
+}  // namespace usher::people_detector

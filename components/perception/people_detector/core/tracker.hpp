@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/result/result.hpp"
+#include "perception/people_detector/core/assignment.hpp"
+
+namespace usher::people_detector {
+
+enum class Source : std::uint8_t { kKinect = 0, kRearCamera = 1, kLaser = 2 };
+inline constexpr std::size_t kSources = 3;
+
+/// One person as one sensor saw it, in odom.
+struct Observation {
+  geometry::Point2 position = geometry::Point2::Zero();  ///< [m]
+  double sigma = 0.08;                                   ///< [m] standard deviation of each axis
+  double height = 0.0;                                   ///< [m] of the highest point; 0: not known
+};
+
+struct Track {
+  std::uint64_t id = 0;                             ///< from 1 on, never given again
+  Eigen::Vector4d state = Eigen::Vector4d::Zero();  ///< x, y [m], vx, vy [m/s] in odom
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
+  double height = 0.0;                  ///< [m] 0: not known
+  double born = 0.0;                    ///< [s]
+  std::array<double, kSources> seen{};  ///< [s] last time by each source; -infinity: never
+  geometry::Point2 birthplace = geometry::Point2::Zero();
+  int sightings = 0;
+  bool confirmed = false;
+  bool fresh = false;  ///< confirmed by the last update
+
+  geometry::Point2 position() const { return state.head<2>(); }
+  geometry::Point2 velocity() const { return state.tail<2>(); }
+  double last_seen() const { return *std::max_element(seen.begin(), seen.end()); }
+};
+
+struct TrackerConfig {
+  double acceleration = 0.9;   ///< [m/s^1.5] {0.1..5} density of the random acceleration
+  double gate = 13.8;          ///< [-] {1..50} largest squared Mahalanobis distance (99.9 %)
+  double reach = 0.7;          ///< [m] {0.2..3} and largest distance
+  double height_sigma = 0.08;  ///< [m] {0.02..1} by which heights of one person differ
+  int confirmations = 4;       ///< {1..30} sightings by a camera until somebody is believed
+  double travel = 0.5;         ///< [m] {0..3} that legs must go, seen by the laser alone
+  double patience = 0.4;       ///< [s] {0.1..2} until who is not confirmed is forgotten
+  double walk = 1.5;           ///< [m/s] {0.5..3} how fast who was hidden may come out elsewhere
+  double memory = 6.0;         ///< [s] {0.5..30} until who is not seen any more is forgotten
+  double coasting = 0.8;       ///< [s] {0.1..5} in which who is not seen is taken to slow down
+};
+Status check(const TrackerConfig& config);
+
+/// Follows people over time and sensors: a Kalman filter of constant velocity for each, global
+/// nearest neighbours by position and height. Who is hidden is kept for some seconds where the
+/// person would have walked on, more and more uncertain, and found again there. Only cameras make
+/// people; legs in the laser must walk before they count.
+class Tracker {
+ public:
+  static constexpr std::size_t kMost = 64;
+
+  explicit Tracker(const TrackerConfig& config) : config_(config) {}
+
+  /// All that one sensor saw at one time [s]. Times before the newest are taken as the newest;
+  /// observations that are not finite are left out.
+  void update(double time, Source source, std::span<const Observation> observations);
+
+  /// Confirmed people as of the last update, by id.
+  std::span<const Track> people() const { return people_; }
+  /// One of them.
+  const Track* find(std::uint64_t id) const;
+
+ private:
+  void predict(Track& track, double seconds) const;
+  double cost(const Track& track, const Observation& observation) const;
+  void correct(Track& track, const Observation& observation, Source source);
+  void add(const Observation& observation, Source source);
+  void recognize();
+  void forget();
+
+  TrackerConfig config_;
+  double now_ = 0.0;
+  std::uint64_t next_id_ = 1;
+  std::vector<Track> tracks_, people_;
+  std::vector<Observation> observations_;
+  std::vector<double> costs_;
+  std::vector<char> used_;
+  Assignment assignment_;
+};
+
+}  // namespace usher::people_detector

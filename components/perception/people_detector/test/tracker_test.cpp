@@ -1,0 +1,272 @@
+#include "perception/people_detector/core/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "foundation/random/random.hpp"
+
+namespace usher::people_detector {
+namespace {
+
+using geometry::Point2;
+
+constexpr double kPeriod = 1.0 / 15.0;  // [s]
+
+Observation at(double x, double y, double height = 1.7) { return {{x, y}, 0.06, height}; }
+
+TEST(Assignment, FindsTheLeastSumAndLeavesAloneWhoDoesNotFit) {
+  Assignment assignment;
+  const std::vector<double> costs{4, 1, 3, 2, 0, 5, 3, 2, 2};
+  const auto pairs = assignment.solve(costs, 3, 3, 100);
+  EXPECT_EQ(std::vector<int>(pairs.begin(), pairs.end()), (std::vector<int>{1, 0, 2}));
+  const auto alone = assignment.solve(std::vector<double>{200, 1, 300, 2}, 2, 2, 100);
+  EXPECT_EQ(std::vector<int>(alone.begin(), alone.end()), (std::vector<int>{1, -1}));
+  EXPECT_EQ(assignment.solve(std::vector<double>{5, 1, 3}, 1, 3, 100)[0], 1);
+  const auto tall = assignment.solve(std::vector<double>{5, 1, 3}, 3, 1, 100);
+  EXPECT_EQ(std::vector<int>(tall.begin(), tall.end()), (std::vector<int>{-1, 0, -1}));
+  EXPECT_TRUE(assignment.solve({}, 0, 0, 100).empty());
+  EXPECT_EQ(assignment.solve({}, 2, 0, 100)[1], -1);
+}
+
+TEST(Tracker, BelievesACameraAfterSomeSightingsAndTheLaserWhenLegsWalk) {
+  Tracker tracker({});
+  double time = 10.0;
+  for (int i = 0; i < 3; ++i, time += kPeriod)
+    tracker.update(time, Source::kKinect, std::vector{at(2, 0)});
+  EXPECT_TRUE(tracker.people().empty());
+  tracker.update(time, Source::kKinect, std::vector{at(2, 0)});
+  ASSERT_EQ(tracker.people().size(), 1U);
+  EXPECT_EQ(tracker.people()[0].id, 1U);
+
+  Tracker legs({});
+  for (int i = 0; i < 30; ++i, time += kPeriod)
+    legs.update(time, Source::kLaser, std::vector{at(2, 0, 0)});
+  EXPECT_TRUE(legs.people().empty());  // a chair stands as still
+  for (int i = 0; i < 15; ++i, time += kPeriod)
+    legs.update(time, Source::kLaser, std::vector{at(2, 0.8 * i * kPeriod, 0)});
+  EXPECT_EQ(legs.people().size(), 1U);
+}
+
+TEST(Tracker, KnowsPositionAndVelocity) {
+  Tracker tracker({});
+  Random random(3);
+  for (int i = 0; i < 45; ++i) {
+    const double time = i * kPeriod;
+    const double x = 1.0 + 0.9 * time + random.gaussian(0, 0.05);
+    tracker.update(time, Source::kKinect,
+                   std::vector{at(x, 0.4 * time + random.gaussian(0, 0.05))});
+  }
+  ASSERT_EQ(tracker.people().size(), 1U);
+  const Track& person = tracker.people()[0];
+  EXPECT_NEAR(person.velocity().x(), 0.9, 0.3);
+  EXPECT_NEAR(person.velocity().y(), 0.4, 0.3);
+  EXPECT_NEAR(person.position().x(), 1.0 + 0.9 * 44 * kPeriod, 0.1);
+  EXPECT_LT(person.covariance(0, 0), 0.01);
+  EXPECT_EQ(tracker.find(person.id), &person);
+  EXPECT_EQ(tracker.find(77), nullptr);
+}
+
+TEST(Tracker, FindsWhoWasHiddenAgain) {
+  Tracker tracker({});
+  for (int i = 0; i < 150; ++i) {
+    const double time = i * kPeriod;
+    const bool hidden = time > 3.0 && time < 5.0;  // behind a pillar
+    std::vector<Observation> seen;
+    if (!hidden) seen.push_back(at(3.0, -2.0 + 0.7 * std::min(time, 4.0)));
+    tracker.update(time, Source::kKinect, seen);
+    if (time > 1.0) {
+      ASSERT_EQ(tracker.people().size(), 1U) << time;
+    }
+  }
+  EXPECT_EQ(tracker.people()[0].id, 1U);
+  for (int i = 0; i < 100; ++i) tracker.update(10.0 + i * kPeriod, Source::kKinect, {});
+  EXPECT_TRUE(tracker.people().empty());
+}
+
+TEST(Tracker, IgnoresWhatIsNotFiniteAndTimesOfThePast) {
+  Tracker tracker({});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 6; ++i) {
+    tracker.update(1.0 + i * kPeriod, Source::kKinect,
+                   std::vector{at(nan, 0), at(2, 0), at(1, 1, nan)});
+    tracker.update(0.0, Source::kKinect, std::vector{at(2, 0)});
+  }
+  tracker.update(nan, Source::kKinect, std::vector{at(5, 5)});
+  ASSERT_EQ(tracker.people().size(), 1U);
+  EXPECT_TRUE(tracker.people()[0].state.allFinite());
+  std::vector<Observation> crowd;
+  for (int i = 0; i < 500; ++i) crowd.push_back(at(i % 25, i / 25));
+  for (int i = 0; i < 6; ++i) tracker.update(2.0 + i * kPeriod, Source::kKinect, crowd);
+  EXPECT_LE(tracker.people().size(), Tracker::kMost);
+}
+
+TEST(TrackerConfig, SaysWhatCannotBe) {
+  TrackerConfig config;
+  EXPECT_TRUE(check(config));
+  config.memory = 100.0;
+  EXPECT_NE(check(config).error().find("memory must be in"), std::string::npos);
+}
+
+constexpr std::size_t kPeople = 4;
+constexpr double kSame = 0.75;  // [m] gate of CLEAR-MOT
+
+struct Figures {
+  int truths = 0, misses = 0, false_alarms = 0, switches = 0;
+  double mota() const { return 1.0 - double(misses + false_alarms + switches) / truths; }
+};
+
+/// Four people who walk about, cross, stand still and hide each other before a camera at 0, 0.
+class Room {
+ public:
+  /// In lanes everybody walks across the view, to and fro, at a distance of their own; else
+  /// anywhere.
+  Room(std::uint64_t seed, bool lanes) : random_(seed), lanes_(lanes) {
+    for (std::size_t i = 0; i < kPeople; ++i) {
+      place_[i] = goal_[i] = anywhere();
+      height_[i] = random_.uniform(1.55, 1.9);
+    }
+  }
+
+  std::vector<Observation> step() {
+    ++frames_;
+    for (std::size_t i = 0; i < kPeople; ++i) lanes_ ? cross(i) : walk(i);
+    std::vector<Observation> seen;
+    for (std::size_t i = 0; i < kPeople; ++i) {
+      visible_[i] = is_visible(i);
+      if (!visible_[i] || random_.uniform() > 0.96) continue;
+      const Point2 error(random_.gaussian(0, 0.07), random_.gaussian(0, 0.05));
+      seen.push_back({place_[i] + error, 0.08, height_[i] + random_.gaussian(0, 0.04)});
+    }
+    if (random_.uniform() < 0.02)  // of nobody
+      seen.push_back({anywhere(), 0.08, random_.uniform(0.8, 1.9)});
+    return seen;
+  }
+
+  /// Compares the tracks with the truth (CLEAR-MOT [bernardin2008clear]).
+  void judge(const Tracker& tracker, double now, Figures& figures) {
+    std::vector<bool> used(tracker.people().size());
+    std::array<std::size_t, kPeople> match{};
+    for (std::size_t i = 0; i < kPeople; ++i) {
+      match[i] = track_of(i, tracker, used, true);
+      if (match[i] < used.size()) used[match[i]] = true;
+    }
+    for (std::size_t i = 0; i < kPeople; ++i) {
+      if (!visible_[i]) continue;
+      ++figures.truths;
+      if (match[i] == used.size()) match[i] = track_of(i, tracker, used, false);
+      if (match[i] == used.size()) {
+        ++figures.misses;
+        continue;
+      }
+      used[match[i]] = true;
+      const std::uint64_t id = tracker.people()[match[i]].id;
+      figures.switches += identity_[i] != 0 && identity_[i] != id;
+      identity_[i] = id;
+    }
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const Track& track = tracker.people()[k];
+      const bool nobody = std::none_of(place_.begin(), place_.end(), [&](const Point2& place) {
+        return (place - track.position()).norm() < kSame;
+      });
+      figures.false_alarms += !used[k] && nobody && now - track.last_seen() < 0.5;
+    }
+  }
+
+ private:
+  /// In the Kinect's field of view.
+  Point2 anywhere() {
+    const double forward = random_.uniform(1.0, 6.0);
+    return {forward, random_.uniform(-0.6, 0.6) * forward};
+  }
+
+  void cross(std::size_t i) {
+    const auto lane = static_cast<double>(i);
+    const double forward = 1.6 + 1.0 * lane;
+    place_[i] = {forward, 1.3 * std::sin((0.55 + 0.07 * lane) * frames_ * kPeriod + lane)};
+  }
+
+  void walk(std::size_t i) {
+    const Point2 way = goal_[i] - place_[i];
+    if (way.norm() < 0.1) {
+      wait_[i] -= kPeriod;
+      if (wait_[i] > 0.0) return;
+      goal_[i] = anywhere();
+      speed_[i] = random_.uniform(0.5, 1.3);
+      wait_[i] = random_.uniform(0.0, 4.0);
+      return;
+    }
+    Point2 step = speed_[i] * kPeriod * way.normalized();
+    for (std::size_t j = 0; j < kPeople; ++j) {  // nobody walks through anybody
+      const Point2 gap = place_[i] - place_[j];
+      if (j != i && gap.norm() < 0.5)
+        step += 0.04 * (gap + Point2(-gap.y(), gap.x())) / std::max(0.1, gap.norm());
+    }
+    place_[i] += step;
+  }
+
+  bool is_visible(std::size_t i) const {
+    const auto bearing = [](const Point2& p) { return std::atan2(p.y(), p.x()); };
+    for (std::size_t j = 0; j < kPeople; ++j) {
+      const double near = place_[j].norm();
+      if (j == i || near > place_[i].norm()) continue;
+      if (std::abs(bearing(place_[i]) - bearing(place_[j])) * near < 0.25) return false;
+    }
+    return true;
+  }
+
+  /// The track that had this person before, while it fits, or the nearest.
+  std::size_t track_of(std::size_t i, const Tracker& tracker, const std::vector<bool>& used,
+                       bool before) const {
+    std::size_t best = used.size();
+    double nearest = kSame;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const double away = (tracker.people()[k].position() - place_[i]).norm();
+      if (used[k] || away >= nearest || (before && tracker.people()[k].id != identity_[i]))
+        continue;
+      best = k, nearest = away;
+    }
+    return best;
+  }
+
+  Random random_;
+  bool lanes_;
+  int frames_ = 0;
+  std::array<Point2, kPeople> place_, goal_;
+  std::array<double, kPeople> speed_{}, height_{}, wait_{};
+  std::array<bool, kPeople> visible_{};
+  std::array<std::uint64_t, kPeople> identity_{};
+};
+
+Figures follow(Room room) {
+  constexpr int kMinutes = 10;
+  Tracker tracker({});
+  Figures figures;
+  for (int frame = 0; frame < kMinutes * 60 * 15; ++frame) {
+    tracker.update(frame * kPeriod, Source::kKinect, room.step());
+    if (frame > 15) room.judge(tracker, frame * kPeriod, figures);
+  }
+  std::printf("MOTA %.4f, %d misses, %d false alarms, %d switches of %d\n", figures.mota(),
+              figures.misses, figures.false_alarms, figures.switches, figures.truths);
+  return figures;
+}
+
+TEST(Tracker, KeepsFourPeopleApartWhoCross) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Figures figures = follow({seed, true});
+    EXPECT_GE(figures.mota(), 0.9) << "seed " << seed;
+    EXPECT_LE(figures.switches, 12) << "seed " << seed;
+  }
+}
+
+TEST(Tracker, FollowsFourPeopleWhoWalkAnywhereAndHideEachOtherForSeconds) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Figures figures = follow({seed, false});
+    EXPECT_GE(figures.mota(), 0.9) << "seed " << seed;
+    EXPECT_LE(figures.switches, 80) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace usher::people_detector
