@@ -33,7 +33,7 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
   request.client(kOperatorName);
   request.command(command);
   request.goal(goal);
-  for (int tries = 0; tries < 15; ++tries) {
+  for (int tries = 0; tries < 25; ++tries) {
     writer->write(request);
     const auto until = std::chrono::steady_clock::now() + kRepeat;
     while (std::chrono::steady_clock::now() < until) {
@@ -43,7 +43,7 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
       return {};
     }
   }
-  return Error{"the supervisor did not answer within 3 s"};
+  return Error{"the supervisor did not answer within 5 s"};
 }
 
 }  // namespace usher::operations
