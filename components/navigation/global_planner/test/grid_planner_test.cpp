@@ -1,27 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <vector>
 
 #include "foundation/random/random.hpp"
 #include "navigation/global_planner/core/grid_planner.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#include "support/counted_new.hpp"
 
 namespace usher::global_planner {
 namespace {
@@ -338,14 +324,14 @@ TEST(GridPlanner, DoesNotAllocateAfterTheFirstQueryOnAMap) {
   for (const Metric metric : {Metric::kInflated, Metric::kShortest}) {
     GridPlanner p = planner({.metric = metric});
     ASSERT_TRUE(p.plan(costs, at(costs, 0, 0), at(costs, 199, 199)).ok());
-    const long before = allocations;
+    const std::uint64_t before = test::allocation_count();
     int planned = 0;
     for (int i = 0; i < 100; ++i) {
       const Pose2 goal =
           at(costs, static_cast<int>(random.below(150)), static_cast<int>(random.below(150)));
       planned += p.plan(costs, at(costs, 0, 0), goal).ok() ? 1 : 0;
     }
-    EXPECT_EQ(allocations - before, 0);
+    EXPECT_EQ(test::allocation_count() - before, 0U);
     EXPECT_GT(planned, 90);
   }
 }

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "idl/topics.hpp"
-#include "runtime/engine/test/counted_new.hpp"
+#include "support/counted_new.hpp"
 
 // What the conformance suite cannot reach from outside: the engine's bounds, its threads and its
 // allocations, on a platform and a transport made of lists.

@@ -1,10 +1,10 @@
-#include "runtime/engine/test/counted_new.hpp"
+#include "support/counted_new.hpp"
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
-namespace usher::runtime::test {
+namespace usher::test {
 namespace {
 
 std::atomic<std::uint64_t> allocations{0};
@@ -13,10 +13,10 @@ std::atomic<std::uint64_t> allocations{0};
 
 std::uint64_t allocation_count() { return allocations; }
 
-}  // namespace usher::runtime::test
+}  // namespace usher::test
 
 void* operator new(std::size_t size) {
-  ++usher::runtime::test::allocations;
+  ++usher::test::allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-namespace usher::runtime::test {
+namespace usher::test {
 
 /// How often this program has called operator new, which counted_new.cpp replaces.
 std::uint64_t allocation_count();
 
-}  // namespace usher::runtime::test
+}  // namespace usher::test
