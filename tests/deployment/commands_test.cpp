@@ -122,6 +122,9 @@ TEST_F(Commands, GotoDrivesThere) {
 TEST_F(Commands, StopHoldsTheRobotUntilMove) {
   EXPECT_EQ(output({"stop"}), "stopped\n");
   EXPECT_TRUE(robot_->wait_for([] { return !robot_->status()->enable_movement(); }, Seconds(5)));
+  const auto status = robot_->command({"status"});
+  status->wait();
+  EXPECT_TRUE(contains(status->output(), "stands: stopped by ")) << status->output();
   EXPECT_EQ(output({"move"}), "may move\n");
   EXPECT_TRUE(robot_->wait_for([] { return robot_->status()->enable_movement(); }, Seconds(5)));
 }

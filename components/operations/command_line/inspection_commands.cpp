@@ -53,8 +53,13 @@ int status(std::uint32_t domain, double patience) {
   if (!reader) return fail(reader.error());
   const auto message = reader->take(runtime::from_seconds(patience));
   if (!message) return fail("no supervisor in domain " + std::to_string(domain));
+  std::string stopped;
+  for (const auto& client : message->stopped_by())
+    stopped += (stopped.empty() ? "" : ", ") + client;
   std::cout << "state " << state_name(message->state())
-            << (message->granted() ? ", may drive" : ", may not drive: " + message->reason())
+            << (!message->granted() ? ", may not drive: " + message->reason()
+                : !stopped.empty()  ? ", stands: stopped by " + stopped
+                                    : ", may drive")
             << "\n";
   Table table({"component", "health", "loss means", "heard s ago", "why"});
   constexpr const char* kCriticality[] = {"stop", "degrade", "notify"};
