@@ -37,7 +37,8 @@ function(usher_test NAME)
   target_compile_definitions(${TARGET} PRIVATE USHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                USHER_BINARY_DIR="${CMAKE_BINARY_DIR}")
   add_test(NAME ${NAME} COMMAND ${TARGET} ${ARG_ARGUMENTS})
-  set_tests_properties(${NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+  set_tests_properties(${NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
+                       ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/leaks.supp:print_suppressions=0")
 endfunction()
 
 # usher_benchmark(NAME SOURCES ... DEPENDS ...)
