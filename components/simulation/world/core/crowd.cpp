@@ -145,7 +145,7 @@ void Crowd::remember_robot(const RobotView& robot) {
 }
 
 /// Along the robot's way, so that no wall comes between: the newest point of it that a straight
-/// walk reaches, else the nearest.
+/// walk reaches, else a little on from the nearest.
 Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
   constexpr double kSight = 6.0;    // [m]
   constexpr double kTested = 0.2;   // [m] between tested points of the straight walk
@@ -159,13 +159,14 @@ Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
     }
     return true;
   };
-  Point2 nearest = trail_.back();
+  constexpr std::size_t kAhead = 8;  // points of the trail
+  std::size_t nearest = trail_.size() - 1;
   for (std::size_t i = trail_.size(); i > 0; i -= std::min(i, kSkip)) {
     const Point2& point = trail_[i - 1];
     if ((point - here).norm() < kSight && free(point)) return point;
-    if ((point - here).norm() < (nearest - here).norm()) nearest = point;
+    if ((point - here).norm() < (trail_[nearest] - here).norm()) nearest = i - 1;
   }
-  return nearest;
+  return trail_[std::min(nearest + kAhead, trail_.size() - 1)];
 }
 
 void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot) {
