@@ -3,10 +3,11 @@
 
 #include <filesystem>
 
-#include "child.hpp"
 #include "echo_component.hpp"
 #include "runtime/api/contract.hpp"
 #include "runtime/dds/observer.hpp"
+#include "support/folder.hpp"
+#include "support/process.hpp"
 #include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
@@ -14,8 +15,9 @@ namespace usher::runtime {
 namespace {
 
 using namespace std::chrono_literals;
-using test::Child;
 using testing::HasSubstr;
+using usher::test::Folder;
+using usher::test::Process;
 
 constexpr Duration kLong =
     std::chrono::duration_cast<Duration>(10s * usher::test::kSanitizerFactor);
@@ -38,59 +40,59 @@ bool sees(const Observer& observer, const std::string& name) {
 }
 
 TEST(ComponentMain, PrintsWhatTheComponentIs) {
-  Child help(kProgram, {"--help"});
+  Process help({kProgram, "--help"});
   EXPECT_EQ(help.wait(), 0);
   EXPECT_THAT(help.output(), HasSubstr("--parameters"));
   EXPECT_THAT(help.output(), HasSubstr("cmd_vel/interaction"));
   EXPECT_THAT(help.output(), HasSubstr("gain"));
   EXPECT_THAT(help.output(), HasSubstr("0.1..10"));
   EXPECT_THAT(help.output(), HasSubstr("Factor on the velocity."));
-  Child contract(kProgram, {"--contract"});
+  Process contract({kProgram, "--contract"});
   EXPECT_EQ(contract.wait(), 0);
   const auto read = contract_from_yaml(contract.output(), "--contract");
   ASSERT_TRUE(read.ok()) << read.error();
   EXPECT_EQ(read->component, "echo");
-  Child version(kProgram, {"--version"});
+  Process version({kProgram, "--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_THAT(version.output(), HasSubstr("usher-echo "));
 }
 
 TEST(ComponentMain, EndsWithCode2OnWrongOptionsAndFiles) {
-  const test::TemporaryFolder folder;
-  Child option(kProgram, {"--frequency", "50"});
+  const Folder folder;
+  Process option({kProgram, "--frequency", "50"});
   EXPECT_EQ(option.wait(), 2);
-  Child absent(kProgram, {"--parameters", folder.path() + "/absent.yaml"});
+  Process absent({kProgram, "--parameters", folder.path() + "/absent.yaml"});
   EXPECT_EQ(absent.wait(), 2);
-  EXPECT_THAT(absent.output(), HasSubstr("absent.yaml"));
+  EXPECT_THAT(absent.errors(), HasSubstr("absent.yaml"));
   const std::string range =
       folder.file("range.yaml", parameters("echo", "parameters:\n  gain: 0\n"));
-  Child wrong(kProgram, {"--parameters", range});
+  Process wrong({kProgram, "--parameters", range});
   EXPECT_EQ(wrong.wait(), 2);
-  EXPECT_THAT(wrong.output(), HasSubstr("range.yaml:8"));
+  EXPECT_THAT(wrong.errors(), HasSubstr("range.yaml:8"));
   std::string other = parameters();
   other.replace(other.find("echo"), 4, "amcl");
-  Child misled(kProgram, {"--parameters", folder.file("amcl.yaml", other)});
+  Process misled({kProgram, "--parameters", folder.file("amcl.yaml", other)});
   EXPECT_EQ(misled.wait(), 2);
-  EXPECT_THAT(misled.output(), HasSubstr("amcl"));
+  EXPECT_THAT(misled.errors(), HasSubstr("amcl"));
 }
 
 TEST(ComponentMain, StopsInOrderWhenAsked) {
-  const test::TemporaryFolder folder;
+  const Folder folder;
   const std::string path = folder.file("echo.yaml", parameters());
   auto out = observer();
   for (const int signal : {SIGTERM, SIGINT}) {
-    Child child(kProgram, {"--parameters", path});
+    Process child({kProgram, "--parameters", path});
     ASSERT_TRUE(out->wait_for([](const Observer& o) { return sees(o, "echo"); }, kLong));
     child.signal(signal);
-    EXPECT_EQ(child.wait(), 0) << child.output();
+    EXPECT_EQ(child.wait(), 0) << child.errors();
     // It has left: nobody had to wait for its lease.
     EXPECT_TRUE(out->wait_for([](const Observer& o) { return !sees(o, "echo"); }, 500ms));
   }
 }
 
 TEST(ComponentMain, EndsWithCode3AfterAFault) {
-  const test::TemporaryFolder folder;
-  Child child(kProgram, {"--parameters", folder.file("echo.yaml", parameters())});
+  const Folder folder;
+  Process child({kProgram, "--parameters", folder.file("echo.yaml", parameters())});
   auto out = observer();
   auto questions = out->writer(topics::kCmdVelManual);
   auto heartbeats = out->reader(topics::kHeartbeat);
@@ -98,7 +100,7 @@ TEST(ComponentMain, EndsWithCode3AfterAFault) {
   ASSERT_NE(heartbeats->take(kLong), nullptr);
   questions->write(test::question(out->now(), 0.0, 666.0));
   EXPECT_EQ(child.wait(), 3);
-  EXPECT_THAT(child.output(), HasSubstr("asked to fail"));
+  EXPECT_THAT(child.errors(), HasSubstr("asked to fail"));
   for (;;) {
     const auto beat = heartbeats->take(kLong);
     ASSERT_NE(beat, nullptr) << "the last heartbeat was lost";
@@ -109,22 +111,22 @@ TEST(ComponentMain, EndsWithCode3AfterAFault) {
 TEST(ComponentMain, IgnoresDdsSettingsOfTheEnvironment) {
   // A profile that would move every participant to another network interface, and a discovery
   // server that is not there.
-  const test::TemporaryFolder folder;
+  const Folder folder;
   const std::string profile = folder.file("profile.xml", "<this is not even XML");
   ::setenv("FASTRTPS_DEFAULT_PROFILES_FILE", profile.c_str(), 1);
   ::setenv("ROS_DISCOVERY_SERVER", "10.255.255.1:11811", 1);
-  Child child(kProgram, {"--parameters", folder.file("echo.yaml", parameters())});
+  Process child({kProgram, "--parameters", folder.file("echo.yaml", parameters())});
   ::unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
   ::unsetenv("ROS_DISCOVERY_SERVER");
   auto out = observer();
   EXPECT_TRUE(out->wait_for([](const Observer& o) { return sees(o, "echo"); }, kLong));
   child.signal(SIGTERM);
   EXPECT_EQ(child.wait(), 0);
-  EXPECT_EQ(child.output(), "");
+  EXPECT_EQ(child.output() + child.errors(), "");
 }
 
 TEST(ComponentMain, IsBackAndMatchedWithin1SecondAfterKill9) {
-  const test::TemporaryFolder folder;
+  const Folder folder;
   const std::string path = folder.file("echo.yaml", parameters());
   auto out = observer();
   auto answers = out->reader(topics::kCmdVelInteraction);
@@ -139,7 +141,7 @@ TEST(ComponentMain, IsBackAndMatchedWithin1SecondAfterKill9) {
     return false;
   };
   std::vector<double> times;
-  auto child = std::make_unique<Child>(kProgram, std::vector<std::string>{"--parameters", path});
+  auto child = std::make_unique<Process>(std::vector<std::string>{kProgram, "--parameters", path});
   ASSERT_TRUE(answered());
   for (int round = 0; round < 5; ++round) {
     child->signal(SIGKILL);
@@ -147,7 +149,7 @@ TEST(ComponentMain, IsBackAndMatchedWithin1SecondAfterKill9) {
     while (answers->take() != nullptr) {
     }
     const auto begin = std::chrono::steady_clock::now();
-    child = std::make_unique<Child>(kProgram, std::vector<std::string>{"--parameters", path});
+    child = std::make_unique<Process>(std::vector<std::string>{kProgram, "--parameters", path});
     ASSERT_TRUE(answered());
     times.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -159,8 +161,8 @@ TEST(ComponentMain, IsBackAndMatchedWithin1SecondAfterKill9) {
 }
 
 TEST(ComponentMain, IsSeenDeadWithinItsLeaseAfterKill9) {
-  const test::TemporaryFolder folder;
-  Child child(kProgram, {"--parameters", folder.file("echo.yaml", parameters())});
+  const Folder folder;
+  Process child({kProgram, "--parameters", folder.file("echo.yaml", parameters())});
   auto out = observer();
   ASSERT_TRUE(out->wait_for([](const Observer& o) { return sees(o, "echo"); }, kLong));
   child.signal(SIGKILL);
@@ -175,36 +177,36 @@ TEST(ComponentMain, IsSeenDeadWithinItsLeaseAfterKill9) {
 }
 
 TEST(GroupMain, RunsSeveralComponentsInOneProcess) {
-  const test::TemporaryFolder folder;
+  const Folder folder;
   const std::string left = folder.file("left.yaml", parameters("left"));
   const std::string right = folder.file("right.yaml", parameters("right"));
-  Child child(kProgram, {"--group", "--parameters", left, "--parameters", right});
+  Process child({kProgram, "--group", "--parameters", left, "--parameters", right});
   auto out = observer();
   ASSERT_TRUE(
       out->wait_for([](const Observer& o) { return sees(o, "left") && sees(o, "right"); }, kLong));
   child.signal(SIGTERM);
-  EXPECT_EQ(child.wait(), 0) << child.output();
+  EXPECT_EQ(child.wait(), 0) << child.errors();
 }
 
 TEST(GroupMain, EndsAllWhenOneEnds) {
-  const test::TemporaryFolder folder;
-  Child child(kProgram, {"--group", "--parameters", folder.file("left.yaml", parameters("left")),
-                         "--parameters", folder.file("right.yaml", parameters("right"))});
+  const Folder folder;
+  Process child({kProgram, "--group", "--parameters", folder.file("left.yaml", parameters("left")),
+                 "--parameters", folder.file("right.yaml", parameters("right"))});
   auto out = observer();
   auto questions = out->writer(topics::kCmdVelManual);
   ASSERT_TRUE(questions.ok() && questions->wait_for_readers(2, kLong));
   questions->write(test::question(out->now(), 0.0, 666.0));
-  EXPECT_EQ(child.wait(), 3) << child.output();
+  EXPECT_EQ(child.wait(), 3) << child.errors();
 }
 
 TEST(GroupMain, RefusesComponentsThatItDoesNotHave) {
-  const test::TemporaryFolder folder;
+  const Folder folder;
   std::string other = parameters();
   other.replace(other.find("echo"), 4, "amcl");
-  Child child(kProgram, {"--group", "--parameters", folder.file("amcl.yaml", other)});
+  Process child({kProgram, "--group", "--parameters", folder.file("amcl.yaml", other)});
   EXPECT_EQ(child.wait(), 2);
-  EXPECT_THAT(child.output(), HasSubstr("'amcl' is not in this program"));
-  Child none(kProgram, {"--group"});
+  EXPECT_THAT(child.errors(), HasSubstr("'amcl' is not in this program"));
+  Process none({kProgram, "--group"});
   EXPECT_EQ(none.wait(), 2);
 }
 

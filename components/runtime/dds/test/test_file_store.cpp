@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "child.hpp"
 #include "runtime/dds/file_store.hpp"
+#include "support/folder.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(FileStore, ReturnsWhatWasKeptAlsoToTheNextProcess) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const Bytes bytes{1, 2, 0, 255};
   ASSERT_TRUE(FileStore(folder.path() + "/a/b").keep("last_pose", bytes).ok());
   const auto kept = FileStore(folder.path() + "/a/b").kept("last_pose");
@@ -21,7 +21,7 @@ TEST(FileStore, ReturnsWhatWasKeptAlsoToTheNextProcess) {
 }
 
 TEST(FileStore, ReplacesAndKeepsEmptyValues) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const FileStore store(folder.path());
   ASSERT_TRUE(store.keep("latch", Bytes(1000, 7)).ok());
   ASSERT_TRUE(store.keep("latch", Bytes{}).ok());
@@ -35,14 +35,14 @@ TEST(FileStore, ReplacesAndKeepsEmptyValues) {
 }
 
 TEST(FileStore, HasNothingBeforeTheFirstTime) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const auto kept = FileStore(folder.path()).kept("epoch");
   ASSERT_FALSE(kept.ok());
   EXPECT_THAT(kept.error(), HasSubstr("epoch"));
 }
 
 TEST(FileStore, RefusesKeysThatLeaveTheFolderAndValuesThatAreTooLarge) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const FileStore store(folder.path());
   for (const char* key : {"", "../x", "a/b", ".hidden", "Upper", "sp ace"}) {
     EXPECT_FALSE(store.keep(key, Bytes{1}).ok()) << key;
@@ -56,7 +56,7 @@ TEST(FileStore, RefusesKeysThatLeaveTheFolderAndValuesThatAreTooLarge) {
 }
 
 TEST(FileStore, SaysWhenTheFolderCannotBeUsed) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const std::string file = folder.file("plain", "x");
   const Status status = FileStore(file).keep("pose", Bytes{1});
   ASSERT_FALSE(status.ok());

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <thread>
 
-#include "child.hpp"
 #include "echo_component.hpp"
 #include "runtime/dds/dds_host.hpp"
 #include "runtime/dds/observer.hpp"
+#include "support/folder.hpp"
 #include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
@@ -257,7 +257,7 @@ TEST(DdsHost, RunsJobsBesideTheHandlersAndTheirEndAsHandler) {
 }
 
 TEST(DdsHost, KeepsValuesOverItsLife) {
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   ParameterFile parameters = file("keeper");
   parameters.run_directory = folder.path();
   std::vector<std::string> found;

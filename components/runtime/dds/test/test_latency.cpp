@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <thread>
 
-#include "child.hpp"
 #include "echo_component.hpp"
 #include "runtime/dds/host_clock.hpp"
 #include "runtime/dds/observer.hpp"
+#include "support/folder.hpp"
+#include "support/process.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::runtime {
@@ -58,12 +59,13 @@ Percentiles wake_up_round_trip() {
 
 TEST(Latency, FromWriteToHandlerIsNearTheCostOfWakingUp) {
   const auto anchor = MonotonicClock::read(CLOCK_REALTIME) - MonotonicClock::read(CLOCK_MONOTONIC);
-  const test::TemporaryFolder folder;
+  const usher::test::Folder folder;
   const std::string path = folder.file(
       "echo.yaml",
       "component: echo\nname: echo\nhost: nuc\ndomain: " + std::to_string(test_domain()) +
           "\nclock_anchor: " + std::to_string(anchor.count()) + "\n");
-  test::Child child(USHER_BINARY_DIR "/tests/usher-test-echo", {"--parameters", path});
+  const usher::test::Process child(
+      {USHER_BINARY_DIR "/tests/usher-test-echo", "--parameters", path});
   auto out = std::move(Observer::create({.name = "operator",
                                          .host = "nuc",
                                          .domain = test_domain(),
