@@ -177,6 +177,9 @@ int demo(const DemoArguments& arguments) {
   const auto plan = (*observer)->reader(topics::kPlan, take);
   const auto status = (*observer)->reader(topics::kNavigateStatus, take);
   const auto screen = (*observer)->reader(topics::kDialogueScreen, take);
+  const auto wanted = (*observer)->reader(topics::kCmdVelNavigation, take);
+  const auto command = (*observer)->reader(topics::kDriveCommand, take);
+  const auto whiskers = (*observer)->reader(topics::kWhiskers, take);
   const auto supervisor =
       (*observer)->reader(topics::kSupervisorStatus,
                           [&](const auto& message, const auto&) { take_grant(watch, message); });
