@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
 #include "navigation/global_planner/core/line.hpp"
 
 namespace usher::global_planner {
@@ -14,13 +15,6 @@ using geometry::Point2;
 using geometry::Pose2;
 
 constexpr int kMaxSide = 65000;
-
-Status check_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return {};
-  char text[160];
-  std::snprintf(text, sizeof text, "%s must be in [%g, %g], got %g", field, low, high, value);
-  return Error{text};
-}
 
 StepCosts step_costs(const GridPlannerConfig& c) {
   if (c.metric == Metric::kShortest) return StepCosts::shortest(c.allow_unknown);
@@ -76,15 +70,15 @@ const char* name(PlanFailure failure) {
 }
 
 Result<GridPlanner> GridPlanner::create(const GridPlannerConfig& c) {
-  for (const Status& status :
-       {check_range("neutral_cost", c.neutral_cost, 1.0, 1000.0),
-        check_range("cost_factor", c.cost_factor, 0.0, 60.0 * c.neutral_cost / (kInscribed - 1)),
-        check_range("unknown_cost", c.unknown_cost, 0, kInscribed - 1),
-        check_range("escape_radius", c.escape_radius, 0.0, 5.0),
-        check_range("goal_tolerance", c.goal_tolerance, 0.0, 5.0),
-        check_range("smoothing_iterations", c.smoothing_iterations, 0, 1000)}) {
-    if (!status) return Error{status.error()};
-  }
+  if (const Status status =
+          within({{"neutral_cost", c.neutral_cost, 1.0, 1000.0},
+                  {"cost_factor", c.cost_factor, 0.0, 60.0 * c.neutral_cost / (kInscribed - 1)},
+                  {"unknown_cost", static_cast<double>(c.unknown_cost), 0, kInscribed - 1},
+                  {"escape_radius", c.escape_radius, 0.0, 5.0},
+                  {"goal_tolerance", c.goal_tolerance, 0.0, 5.0},
+                  {"smoothing_iterations", static_cast<double>(c.smoothing_iterations), 0, 1000}});
+      !status)
+    return Error{status.error()};
   return GridPlanner(c);
 }
 

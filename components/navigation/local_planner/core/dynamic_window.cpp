@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
+
 namespace usher::local_planner {
 namespace {
 
@@ -22,15 +24,10 @@ constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
 
-struct Range {
-  const char* name;
-  double value;
-  double low;
-  double high;
-};
-
 Status check(const DynamicWindowConfig& c) {
-  const Range ranges[] = {
+  const CriticWeights& w = c.weights;
+  constexpr double kMost = 1e6;
+  return within({
       {"pace", c.pace, 0.05, 3.0},
       {"slowest", c.slowest, 0.01, c.pace},
       {"careful_speed", c.careful_speed, 0.0, 3.0},
@@ -63,24 +60,18 @@ Status check(const DynamicWindowConfig& c) {
       {"response.turn_time_constant", c.response.turn_time_constant, 0.0, 3.0},
       {"response.acceleration", c.response.acceleration, 0.05, 10.0},
       {"response.angular_acceleration", c.response.angular_acceleration, 0.05, 20.0},
-  };
-  for (const Range& r : ranges) {
-    if (!(r.value >= r.low && r.value <= r.high)) {
-      return Error{std::string("local planner: ") + r.name + " must be in [" +
-                   std::to_string(r.low) + ", " + std::to_string(r.high) + "], got " +
-                   std::to_string(r.value)};
-    }
-  }
-  const CriticWeights& w = c.weights;
-  for (const double weight :
-       {w.path, w.goal, w.alignment, w.goal_front, w.obstacle, w.moving_obstacle, w.speed,
-        w.twirling, w.smoothness, w.prefer_forward, w.oscillation}) {
-    if (!(weight >= 0.0 && weight <= 1e6)) {
-      return Error{"local planner: every critic's weight must be in [0, 1e6], got " +
-                   std::to_string(weight)};
-    }
-  }
-  return {};
+      {"weights.path", w.path, 0.0, kMost},
+      {"weights.goal", w.goal, 0.0, kMost},
+      {"weights.alignment", w.alignment, 0.0, kMost},
+      {"weights.goal_front", w.goal_front, 0.0, kMost},
+      {"weights.obstacle", w.obstacle, 0.0, kMost},
+      {"weights.moving_obstacle", w.moving_obstacle, 0.0, kMost},
+      {"weights.speed", w.speed, 0.0, kMost},
+      {"weights.twirling", w.twirling, 0.0, kMost},
+      {"weights.smoothness", w.smoothness, 0.0, kMost},
+      {"weights.prefer_forward", w.prefer_forward, 0.0, kMost},
+      {"weights.oscillation", w.oscillation, 0.0, kMost},
+  });
 }
 
 bool plausible(const Twist2& twist) {
@@ -160,10 +151,8 @@ void DynamicWindow::clear_path() {
 }
 
 Status DynamicWindow::set_pace(double pace) {
-  if (!(pace >= config_.slowest && pace <= 3.0)) {
-    return Error{"local planner: pace must be in [" + std::to_string(config_.slowest) +
-                 ", 3] m/s, got " + std::to_string(pace)};
-  }
+  if (const Status status = within({{"pace", pace, config_.slowest, 3.0, "m/s"}}); !status)
+    return status;
   config_.pace = pace;
   return {};
 }

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "foundation/result/bounds.hpp"
+
 namespace usher::navigator {
 namespace {
 
@@ -29,49 +31,37 @@ bool finite(const std::vector<geometry::Pose2>& path) {
 
 /// Bounds of every field: what is outside makes no sense, and nothing may wait forever.
 Status check(const NavigatorConfig& c) {
-  struct Field {
-    const char* name;
-    double value, low, high;
-  };
-  for (const Field& f :
-       {Field{"position_tolerance", c.position_tolerance, 0.01, 2.0},
-        Field{"yaw_tolerance", c.yaw_tolerance, 0.01, 3.2},
-        Field{"settle_time", c.settle_time, 0.0, 10.0},
-        Field{"settle_speed", c.settle_speed, 0.001, 0.5},
-        Field{"replan_period", c.replan_period, 0.0, 600.0},
-        Field{"replan_interval", c.replan_interval, 0.1, 60.0},
-        Field{"off_path", c.off_path, 0.1, 10.0},
-        Field{"obstacle_ahead", c.obstacle_ahead, 0.0, 20.0},
-        Field{"keep_path", c.keep_path, 0.0, 1.0},
-        Field{"wait_object", c.wait_object, 0.0, 120.0},
-        Field{"wait_person", c.wait_person, c.wait_object, 120.0},
-        Field{"recovery_patience", c.recovery_patience, 0.1, 120.0},
-        Field{"stall_time", c.stall_time, 1.0, 120.0},
-        Field{"most_recoveries", static_cast<double>(c.most_recoveries), 0.0, 100.0},
-        Field{"recovery_progress", c.recovery_progress, 0.1, 100.0},
-        Field{"back_off_distance", c.back_off_distance, 0.0, 2.0},
-        Field{"rear_margin", c.rear_margin, 0.0, 2.0},
-        Field{"look_angle", c.look_angle, 0.1, 6.3},
-        Field{"clear_time", c.clear_time, 0.0, 30.0},
-        Field{"recovery_timeout", c.recovery_timeout, 0.5, 120.0},
-        Field{"plan_attempts", static_cast<double>(c.plan_attempts), 1.0, 100.0},
-        Field{"plan_retry", c.plan_retry, 0.1, 60.0},
-        Field{"plan_timeout", c.plan_timeout, 0.5, 60.0},
-        Field{"ready_timeout", c.ready_timeout, 0.0, 600.0},
-        Field{"pause_timeout", c.pause_timeout, 0.0, 600.0},
-        Field{"hold_timeout", c.hold_timeout, 0.0, 3600.0},
-        Field{"time_base", c.time_base, 1.0, 36000.0},
-        Field{"time_factor", c.time_factor, 1.0, 1000.0},
-        Field{"usual_speed", c.usual_speed, 0.05, 5.0},
-        Field{"speed_memory", c.speed_memory, 0.1, 600.0},
-        Field{"degraded_speed", c.degraded_speed, 0.05, 5.0}}) {
-    if (f.value >= f.low && f.value <= f.high) continue;
-    char message[160];
-    std::snprintf(message, sizeof message, "%s must be in [%g, %g], got %g", f.name, f.low, f.high,
-                  f.value);
-    return Error{message};
-  }
-  return {};
+  return within({{"position_tolerance", c.position_tolerance, 0.01, 2.0},
+                 {"yaw_tolerance", c.yaw_tolerance, 0.01, 3.2},
+                 {"settle_time", c.settle_time, 0.0, 10.0},
+                 {"settle_speed", c.settle_speed, 0.001, 0.5},
+                 {"replan_period", c.replan_period, 0.0, 600.0},
+                 {"replan_interval", c.replan_interval, 0.1, 60.0},
+                 {"off_path", c.off_path, 0.1, 10.0},
+                 {"obstacle_ahead", c.obstacle_ahead, 0.0, 20.0},
+                 {"keep_path", c.keep_path, 0.0, 1.0},
+                 {"wait_object", c.wait_object, 0.0, 120.0},
+                 {"wait_person", c.wait_person, c.wait_object, 120.0},
+                 {"recovery_patience", c.recovery_patience, 0.1, 120.0},
+                 {"stall_time", c.stall_time, 1.0, 120.0},
+                 {"most_recoveries", static_cast<double>(c.most_recoveries), 0.0, 100.0},
+                 {"recovery_progress", c.recovery_progress, 0.1, 100.0},
+                 {"back_off_distance", c.back_off_distance, 0.0, 2.0},
+                 {"rear_margin", c.rear_margin, 0.0, 2.0},
+                 {"look_angle", c.look_angle, 0.1, 6.3},
+                 {"clear_time", c.clear_time, 0.0, 30.0},
+                 {"recovery_timeout", c.recovery_timeout, 0.5, 120.0},
+                 {"plan_attempts", static_cast<double>(c.plan_attempts), 1.0, 100.0},
+                 {"plan_retry", c.plan_retry, 0.1, 60.0},
+                 {"plan_timeout", c.plan_timeout, 0.5, 60.0},
+                 {"ready_timeout", c.ready_timeout, 0.0, 600.0},
+                 {"pause_timeout", c.pause_timeout, 0.0, 600.0},
+                 {"hold_timeout", c.hold_timeout, 0.0, 3600.0},
+                 {"time_base", c.time_base, 1.0, 36000.0},
+                 {"time_factor", c.time_factor, 1.0, 1000.0},
+                 {"usual_speed", c.usual_speed, 0.05, 5.0},
+                 {"speed_memory", c.speed_memory, 0.1, 600.0},
+                 {"degraded_speed", c.degraded_speed, 0.05, 5.0}});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "foundation/result/bounds.hpp"
 #include "navigation/roadmap/core/path_smoother.hpp"
 
 namespace usher::roadmap {
@@ -12,19 +13,8 @@ namespace {
 
 constexpr std::int8_t kOccupiedFrom = 65;  // percent, as map_server's default
 
-Status check_range(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return {};
-  char text[160];
-  std::snprintf(text, sizeof(text), "%s must be in [%g, %g], got %g", name, low, high, value);
-  return Error{text};
-}
-
 Status check(const RoadmapConfig& c) {
-  struct Range {
-    const char* name;
-    double value, low, high;
-  };
-  const Range ranges[] = {
+  return within({
       {"inflation", c.inflation, 0.01, 2.0},
       {"cell_size", c.sampling.cell_size, 0.1, 50.0},
       {"points_per_cell", static_cast<double>(c.sampling.points_per_cell), 1, 1000},
@@ -39,11 +29,7 @@ Status check(const RoadmapConfig& c) {
       {"regenerations", static_cast<double>(c.regenerations), 0, 20},
       {"escape_radius", c.escape_radius, 0.0, 5.0},
       {"goal_tolerance", c.goal_tolerance, 0.0, 5.0},
-  };
-  for (const Range& range : ranges) {
-    if (auto ok = check_range(range.name, range.value, range.low, range.high); !ok) return ok;
-  }
-  return {};
+  });
 }
 
 std::string at(const Point2& point) {

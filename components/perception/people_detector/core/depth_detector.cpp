@@ -4,32 +4,25 @@
 #include <cmath>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
+
 namespace usher::people_detector {
 
 namespace {
 
 constexpr double kSteepest = 1.2;  // [rad]
 
-Status within(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return {};
-  return Error{std::string(name) + " must be in [" + std::to_string(low) + ", " +
-               std::to_string(high) + "], got " + std::to_string(value)};
-}
-
 }  // namespace
 
 Status check(const DetectorConfig& c) {
-  for (const Status& status :
-       {within("nearest", c.windows.nearest, 0.2, 2.0),
-        within("farthest", c.windows.farthest, 1.0, 8.0),
-        within("least_extent", c.windows.least_extent, 0.1, 1.0),
-        within("step", c.windows.step, 0.02, 0.2), within("threshold", c.threshold, -10.0, 10.0),
-        within("same_left", c.same_left, 0.1, 1.0),
-        within("same_forward", c.same_forward, 0.1, 2.0),
-        within("body_depth", c.body_depth, 0.0, 0.3)}) {
-    if (!status) return status;
-  }
-  return {};
+  return within({{"nearest", c.windows.nearest, 0.2, 2.0},
+                 {"farthest", c.windows.farthest, 1.0, 8.0},
+                 {"least_extent", c.windows.least_extent, 0.1, 1.0},
+                 {"step", c.windows.step, 0.02, 0.2},
+                 {"threshold", c.threshold, -10.0, 10.0},
+                 {"same_left", c.same_left, 0.1, 1.0},
+                 {"same_forward", c.same_forward, 0.1, 2.0},
+                 {"body_depth", c.body_depth, 0.0, 0.3}});
 }
 
 Result<DepthDetector> DepthDetector::make(const imaging::Intrinsics& intrinsics,

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
+
 namespace usher::people_detector {
 
 namespace {
@@ -19,24 +21,19 @@ constexpr double kFirstSpeed = 0.8;   // [m/s] standard deviation of somebody ne
 constexpr double kLongest = 1.0;      // [s] of one prediction; a gap of the sensors is no time
 constexpr double kHeightShare = 0.1;  // of a new height in the mean
 
-Status within(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return {};
-  return Error{std::string(name) + " must be in [" + std::to_string(low) + ", " +
-               std::to_string(high) + "], got " + std::to_string(value)};
-}
-
 }  // namespace
 
 Status check(const TrackerConfig& c) {
-  for (const Status& status :
-       {within("acceleration", c.acceleration, 0.1, 5.0), within("gate", c.gate, 1.0, 50.0),
-        within("reach", c.reach, 0.2, 3.0), within("height_sigma", c.height_sigma, 0.02, 1.0),
-        within("confirmations", c.confirmations, 1, 30), within("travel", c.travel, 0.0, 3.0),
-        within("patience", c.patience, 0.1, 2.0), within("walk", c.walk, 0.5, 3.0),
-        within("memory", c.memory, 0.5, 30.0), within("coasting", c.coasting, 0.1, 5.0)}) {
-    if (!status) return status;
-  }
-  return {};
+  return within({{"acceleration", c.acceleration, 0.1, 5.0},
+                 {"gate", c.gate, 1.0, 50.0},
+                 {"reach", c.reach, 0.2, 3.0},
+                 {"height_sigma", c.height_sigma, 0.02, 1.0},
+                 {"confirmations", static_cast<double>(c.confirmations), 1, 30},
+                 {"travel", c.travel, 0.0, 3.0},
+                 {"patience", c.patience, 0.1, 2.0},
+                 {"walk", c.walk, 0.5, 3.0},
+                 {"memory", c.memory, 0.5, 30.0},
+                 {"coasting", c.coasting, 0.1, 5.0}});
 }
 
 /// White noise on the acceleration; who was not seen for a moment is taken to slow down.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
 #include "sensing/depth_pipeline/core/kernels.hpp"
 
 namespace usher::depth_pipeline {
@@ -40,28 +41,22 @@ std::uint16_t millimeters(double meters) {
 }  // namespace
 
 Status check(const PipelineConfig& config) {
-  struct Bound {
-    const char* name;
-    double value, low, high;
-  };
-  for (const Bound& b :
-       {Bound{"min_depth", config.min_depth, 0.05, 2.0},
-        Bound{"max_depth", config.max_depth, 1.0, 16.0},
-        Bound{"max_range", config.max_range, 0.5, 16.0}, Bound{"origin", config.origin, -1.0, 1.0},
-        Bound{"support", static_cast<double>(config.support), 1.0, 8.0},
-        Bound{"support_gap", config.support_gap, 0.0, 5.0},
-        Bound{"low_gap", config.low_gap, 0.0, 5.0},
-        Bound{"drop_length", config.drop_length, 0.05, 2.0},
-        Bound{"drop_width", config.drop_width, 0.0, 2.0},
-        Bound{"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
-              Confidence::kMostFrames},
-        Bound{"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
-        Bound{"least_confidence", config.least_confidence, 0.0, 1.0}}) {
-    if (!(b.value >= b.low && b.value <= b.high)) {
-      return Error{std::string(b.name) + " must be in [" + std::to_string(b.low) + ", " +
-                   std::to_string(b.high) + "], got " + std::to_string(b.value)};
-    }
-  }
+  if (const auto status =
+          within({{"min_depth", config.min_depth, 0.05, 2.0},
+                  {"max_depth", config.max_depth, 1.0, 16.0},
+                  {"max_range", config.max_range, 0.5, 16.0},
+                  {"origin", config.origin, -1.0, 1.0},
+                  {"support", static_cast<double>(config.support), 1.0, 8.0},
+                  {"support_gap", config.support_gap, 0.0, 5.0},
+                  {"low_gap", config.low_gap, 0.0, 5.0},
+                  {"drop_length", config.drop_length, 0.05, 2.0},
+                  {"drop_width", config.drop_width, 0.0, 2.0},
+                  {"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
+                   Confidence::kMostFrames},
+                  {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
+                  {"least_confidence", config.least_confidence, 0.0, 1.0}});
+      !status)
+    return status;
   if (const auto status = check(config.floor); !status) return status;
   if (const auto status = check(config.refitted); !status)
     return Error{"refitted " + status.error()};

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "foundation/result/bounds.hpp"
+
 namespace usher::depth_pipeline {
 
 namespace {
@@ -37,25 +39,15 @@ double first_root(double a, double b, double c) {
 }  // namespace
 
 Status check(const FloorModel& model) {
-  struct Bound {
-    const char* name;
-    double value, low, high;
-  };
-  for (const Bound& b :
-       {Bound{"floor_margin", model.floor_margin, 0.0, 0.5},
-        Bound{"angle_margin", model.angle_margin, 0.0, 0.1},
-        Bound{"noise_factor", model.noise_factor, 0.0, 10.0},
-        Bound{"noise_base", model.noise_base, 0.0, 0.1},
-        Bound{"noise_growth", model.noise_growth, 0.0, 0.05},
-        Bound{"ceiling", model.ceiling, 0.3, 4.0}, Bound{"low_height", model.low_height, 0.0, 2.0},
-        Bound{"drop_depth", model.drop_depth, 0.02, 1.0},
-        Bound{"drop_range", model.drop_range, 0.0, 6.0}}) {
-    if (!(b.value >= b.low && b.value <= b.high)) {
-      return Error{std::string(b.name) + " must be in [" + std::to_string(b.low) + ", " +
-                   std::to_string(b.high) + "], got " + std::to_string(b.value)};
-    }
-  }
-  return {};
+  return within({{"floor_margin", model.floor_margin, 0.0, 0.5},
+                 {"angle_margin", model.angle_margin, 0.0, 0.1},
+                 {"noise_factor", model.noise_factor, 0.0, 10.0},
+                 {"noise_base", model.noise_base, 0.0, 0.1},
+                 {"noise_growth", model.noise_growth, 0.0, 0.05},
+                 {"ceiling", model.ceiling, 0.3, 4.0},
+                 {"low_height", model.low_height, 0.0, 2.0},
+                 {"drop_depth", model.drop_depth, 0.02, 1.0},
+                 {"drop_range", model.drop_range, 0.0, 6.0}});
 }
 
 FloorPrediction::FloorPrediction(const Intrinsics& intrinsics, const FloorModel& model,

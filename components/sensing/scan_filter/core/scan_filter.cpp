@@ -6,6 +6,7 @@
 #include <string>
 
 #include "foundation/geometry/pose3.hpp"
+#include "foundation/result/bounds.hpp"
 
 namespace usher::scan_filter {
 namespace {
@@ -20,8 +21,6 @@ constexpr float kJumpShare = 0.06f;  // of the nearer
 constexpr double kWidest = 4.0;      // beams' angles between two ends that belong together
 constexpr float kSameAngle = 1e-6f;  // [rad] closer than this an end lies on an angle
 
-bool in(double value, double low, double high) { return value >= low && value <= high; }
-
 // Takes the nearer where two surfaces meet one angle.
 void offer(float& out, float range) {
   if (!(out <= range)) out = range;
@@ -30,22 +29,19 @@ void offer(float& out, float range) {
 }  // namespace
 
 Result<ScanFilter> ScanFilter::make(const ScanFilterConfig& c) {
-  const auto bad = [](const char* name, double value, const char* range) {
-    return Error{std::string(name) + " must be in " + range + ", got " + std::to_string(value)};
-  };
-  if (!in(c.mount_x, -2, 2)) return bad("mount_x", c.mount_x, "[-2, 2] m");
-  if (!in(c.mount_y, -2, 2)) return bad("mount_y", c.mount_y, "[-2, 2] m");
-  if (!in(c.mount_z, -1, 3)) return bad("mount_z", c.mount_z, "[-1, 3] m");
-  if (!in(c.mount_yaw, -4, 4)) return bad("mount_yaw", c.mount_yaw, "[-4, 4] rad");
-  if (!in(c.mount_pitch, -0.6, 0.6)) return bad("mount_pitch", c.mount_pitch, "[-0.6, 0.6] rad");
-  if (!in(c.axle_height, 0, 1)) return bad("axle_height", c.axle_height, "[0, 1] m");
-  if (!in(c.bearing_limit, 0.01, 3.1)) {
-    return bad("bearing_limit", c.bearing_limit, "[0.01, 3.1] rad");
-  }
-  if (!in(c.floor_margin, 0, 1)) return bad("floor_margin", c.floor_margin, "[0, 1] m");
-  if (!in(c.floor_angle, 0, 0.1)) return bad("floor_angle", c.floor_angle, "[0, 0.1] rad");
-  if (!in(c.floor_time, 0, 0.1)) return bad("floor_time", c.floor_time, "[0, 0.1] s");
-  if (!in(c.max_height, 0.1, 10)) return bad("max_height", c.max_height, "[0.1, 10] m");
+  if (const Status status = within({{"mount_x", c.mount_x, -2, 2, "m"},
+                                    {"mount_y", c.mount_y, -2, 2, "m"},
+                                    {"mount_z", c.mount_z, -1, 3, "m"},
+                                    {"mount_yaw", c.mount_yaw, -4, 4, "rad"},
+                                    {"mount_pitch", c.mount_pitch, -0.6, 0.6, "rad"},
+                                    {"axle_height", c.axle_height, 0, 1, "m"},
+                                    {"bearing_limit", c.bearing_limit, 0.01, 3.1, "rad"},
+                                    {"floor_margin", c.floor_margin, 0, 1, "m"},
+                                    {"floor_angle", c.floor_angle, 0, 0.1, "rad"},
+                                    {"floor_time", c.floor_time, 0, 0.1, "s"},
+                                    {"max_height", c.max_height, 0.1, 10, "m"}});
+      !status)
+    return Error{status.error()};
   return ScanFilter(c);
 }
 
@@ -90,7 +86,7 @@ Status ScanFilter::adopt(const ScanGeometry& g, std::size_t beams) {
   if (beams == 0 || beams > kMaxBeams) {
     return Error{"a scan must have 1 to 10000 beams, got " + std::to_string(beams)};
   }
-  if (!in(g.angle_min, -7, 7) || !in(g.angle_increment, 1e-5, 4.0) ||
+  if (!(std::abs(g.angle_min) <= 7.0) || !(g.angle_increment >= 1e-5 && g.angle_increment <= 4.0) ||
       static_cast<double>(beams - 1) * g.angle_increment > 2.0 * geometry::kPi + 1e-6) {
     return Error{"angles of a scan must rise within one turn, got " + std::to_string(beams) +
                  " beams from " + std::to_string(g.angle_min) + " rad every " +
