@@ -135,6 +135,18 @@ geometry::Twist2 MovementControl::ramp(const geometry::Twist2& wanted, Time now)
           approach(last_.w, wanted.w, parameters_.angular, seconds)};
 }
 
+/// As fast as the base can slow down, never faster than wanted before the touch.
+geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
+                                         const Inputs& inputs) const {
+  geometry::Twist2 twist =
+      whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+  const double measured = inputs.measured ? inputs.measured->v : 0.0;
+  const double slowest = std::min(std::abs(measured) - parameters_.reflex_drop, std::abs(ramped.v));
+  if (measured * ramped.v > 0.0 && slowest > std::abs(twist.v))
+    twist.v = std::copysign(slowest, ramped.v);
+  return twist;
+}
+
 Decision MovementControl::decide(const Inputs& inputs, Time now) {
   const Wish wish = choose(inputs);
   const Bound limits = bound(inputs, wish);
@@ -165,8 +177,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
 
     const geometry::Twist2 ramped = ramp(wanted, now);
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
-    decision.twist =
-        whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+    decision.twist = reflex(ramped, inputs);
     if (decision.twist != ramped) decision.limit = Limit::kWhisker;
   }
 

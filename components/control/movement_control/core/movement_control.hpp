@@ -50,6 +50,9 @@ struct Parameters {
   VelocityLimit low_battery{0.8, 0.6};
   double reverse = 0.4;  ///< [m/s] {>= 0} nothing sees behind
   double touched = 0.1;  ///< [m/s] {>= 0} creeping past what a whisker touches
+  /// [m/s] {> 0} The reflex asks the base for no more than this below its speed: a balancing one
+  /// that is told to drop by more holds its speed first, to lean back.
+  double reflex_drop = 5.0;
 
   /// The Segway's own acceleration; a stop passes at once, as the stopping distances were measured.
   AccelerationLimit linear{0.7, 1.4, 0.0};
@@ -162,6 +165,7 @@ class MovementControl {
   Wish choose(const Inputs& inputs) const;
   Bound bound(const Inputs& inputs, const Wish& wish) const;
   geometry::Twist2 ramp(const geometry::Twist2& wanted, Time now) const;
+  geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 
   Parameters parameters_;

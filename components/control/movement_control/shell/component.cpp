@@ -38,6 +38,9 @@ Parameters MovementControlComponent::read_parameters(runtime::Parameters& parame
                                 "Greatest speed backwards, where nothing sees.");
   p.touched = parameters.number("touched_v", "m/s", {0, 0.3}, p.touched,
                                 "Greatest speed past what a whisker touches.");
+  p.reflex_drop = parameters.number("reflex_drop", "m/s", {0.1, 5}, p.reflex_drop,
+                                    "So much slower than it drives the reflex tells the base to "
+                                    "be; a balancing one holds its speed when told more.");
   const auto acceleration = [&](AccelerationLimit& value, const std::string& name,
                                 const std::string& unit) {
     value.speed_up = parameters.number(name + "_speed_up", unit, {0, 10}, value.speed_up,

@@ -336,6 +336,30 @@ TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
   EXPECT_EQ(whisker_reflex({0.1, -0.5}, all, 0.1), Twist2{});
 }
 
+TEST(WhiskerReflex, BrakesABalancingBaseAsFastAsItFollows) {
+  Parameters parameters;
+  parameters.reflex_drop = 0.25;
+  MovementControl control(parameters);
+  Inputs inputs = all_well();
+  const auto decide = [&](double wanted, double measured, bool touched, int at) {
+    inputs.navigation = Twist2{wanted, 0.0};
+    inputs.measured = Twist2{measured, 0.0};
+    inputs.whiskers = Whiskers{.front_left = touched};
+    return control.decide(inputs, milliseconds(at)).twist.v;
+  };
+  int now = 0;
+  while (decide(0.7, 0.7, false, now += 40) < 0.7) {
+  }
+  EXPECT_NEAR(decide(0.7, 0.7, true, now += 20), 0.45, 1e-12);
+  EXPECT_NEAR(decide(0.7, 0.6, true, now += 20), 0.35, 1e-12);
+  EXPECT_EQ(decide(0.2, 0.6, true, now += 40), 0.35 - 1.4 * 0.04) << "never faster than wanted";
+  EXPECT_EQ(decide(0.7, 0.25, true, now += 20), 0.0);
+  EXPECT_EQ(decide(0.7, -0.6, true, now += 20), 0.0) << "it rolls back";
+  inputs.measured.reset();
+  EXPECT_EQ(control.decide(inputs, milliseconds(now += 20)).twist.v, 0.0);
+  EXPECT_EQ(MovementControl().decide(inputs, milliseconds(0)).twist.v, 0.0);
+}
+
 TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
   MovementControl control;
   Inputs inputs = all_well();
