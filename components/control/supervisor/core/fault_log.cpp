@@ -35,8 +35,13 @@ void FaultLog::raise(Cause cause, std::string_view component, std::string_view d
       // So many active ones: give up one that ends by itself, never a latched one.
       const auto loose = std::find_if(faults_.begin(), faults_.end(),
                                       [](const Fault& fault) { return !fault.latched(); });
-      if (loose == faults_.end()) return;
-      faults_.erase(loose);
+      if (loose != faults_.end()) {
+        faults_.erase(loose);
+      } else if (cause == Cause::kEmergencyStop) {
+        faults_.pop_back();  // the motors must go off; the rest stays to be cleared with it
+      } else {
+        return;
+      }
     } else {
       return;
     }

@@ -12,6 +12,7 @@ constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
 
 /// A crash may have lost the last epochs that were granted; a restart begins safely above them.
 constexpr std::uint64_t kUnsavedEpochs = 1024;
+constexpr const char* kOthers = "others";  // more clients than are remembered
 
 bool over(NavigationState state) {
   return state == NavigationState::kSucceeded || state == NavigationState::kFailed ||
@@ -126,7 +127,11 @@ Answer Supervisor::request(const Request& request, Time now) {
 void Supervisor::stop(const std::string& client) {
   if (std::find(stopped_by_.begin(), stopped_by_.end(), client) != stopped_by_.end()) return;
   // So many names are not honest; the stop holds all the same, and only an operator ends it.
-  if (stopped_by_.size() < kMostStops) stopped_by_.push_back(client);
+  if (stopped_by_.size() < kMostStops) {
+    stopped_by_.push_back(client);
+  } else {
+    stopped_by_.back() = kOthers;
+  }
 }
 
 bool Supervisor::is_operator(const std::string& client) const {
@@ -137,7 +142,7 @@ bool Supervisor::is_operator(const std::string& client) const {
 void Supervisor::movement_on(const std::string& client) {
   if (is_operator(client)) {
     stopped_by_.clear();
-  } else {
+  } else if (client != kOthers) {
     std::erase(stopped_by_, client);
   }
 }

@@ -1,5 +1,7 @@
 #include "control/supervisor/shell/component.hpp"
 
+#include <memory>
+
 #include "wire/conversions.hpp"
 
 namespace usher::supervisor {
@@ -15,6 +17,7 @@ constexpr int kStatusEvery = 5;        // of those periods: 10 Hz
 constexpr int kDiagnosticsEvery = 50;  // 1 Hz
 constexpr auto kBaseAge = milliseconds(150);
 constexpr const char* kMemoryKey = "supervisor";
+constexpr auto kKeeping = milliseconds(5);  // the memory on the disk, in simulation
 constexpr int kMostComponents = 64;
 constexpr std::size_t kMostWriters = 64;  // in the status
 
@@ -252,15 +255,25 @@ void SupervisorComponent::ask_base(const Decision& decision) {
   base_requests_.publish(message);
 }
 
+/// Beside the handlers: a busy disk takes longer than a grant lives. What a crash meanwhile loses
+/// is an epoch at most, which a restart skips, or a stop of the last milliseconds.
 void SupervisorComponent::keep_memory() {
-  const std::string text = to_text(core_.memory());
+  if (keeping_) return;
+  std::string text = to_text(core_.memory());
   if (text == kept_) return;
-  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()),
-                                            text.size());
-  if (const auto status = host_.keep(kMemoryKey, bytes); !status) {
-    host_.fault("cannot keep the epoch over a restart: " + status.error());
-  }
   kept_ = text;
+  keeping_ = true;
+  const auto outcome = std::make_shared<Status>();
+  host_.offload(
+      kKeeping,
+      [&host = host_, text = std::move(text), outcome] {
+        *outcome = host.keep(kMemoryKey,
+                             {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+      },
+      [this, outcome] {
+        keeping_ = false;
+        if (!*outcome) host_.fault("cannot keep the epoch over a restart: " + outcome->error());
+      });
 }
 
 void SupervisorComponent::publish_status() {

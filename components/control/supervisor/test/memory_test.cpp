@@ -102,6 +102,14 @@ TEST(FaultLog, KeepsLatchedFaultsWhenItIsFull) {
   EXPECT_NE(log.latched(), nullptr);
 }
 
+TEST(FaultLog, AnEmergencyStopIsNeverLost) {
+  FaultLog log;
+  for (int i = 0; i < 200; ++i) log.raise(Cause::kForeignWriter, std::to_string(i), "", Time(i));
+  log.raise(Cause::kEmergencyStop, "operator", "", Time(300));
+  EXPECT_TRUE(log.active(Cause::kEmergencyStop));
+  EXPECT_EQ(log.faults().size(), FaultLog::kCapacity);
+}
+
 TEST(FaultLog, NotesARepeatedFaultOnceAndAReturnAnew) {
   FaultLog log;
   log.raise(Cause::kComponentLost, "amcl", "silent", Time(1));

@@ -466,5 +466,21 @@ TEST(Supervisor, ReportsAppendixA3) {
   EXPECT_EQ(status.components[5].health, Health::kMissing);
 }
 
+TEST(Supervisor, MoreStopsThanItRemembersHoldUntilAnOperatorEndsThem) {
+  Robot robot = guiding();
+  const auto ask_as = [&](const std::string& client, Command command) {
+    robot.supervisor.request({++robot.request_id, client, command, ""}, robot.now());
+    return robot.supervisor.step(robot.now()).enables.movement;
+  };
+  for (int i = 0; i < 40; ++i) ask_as("client " + std::to_string(i), Command::kStop);
+  bool moves = false;
+  for (int i = 0; i < 40; ++i)
+    moves = moves || ask_as("client " + std::to_string(i), Command::kMovementOn);
+  EXPECT_FALSE(moves);
+  EXPECT_FALSE(ask_as("others", Command::kMovementOn));
+  EXPECT_EQ(robot.supervisor.status().stopped_by, std::vector<std::string>{"others"});
+  EXPECT_TRUE(ask_as("operator", Command::kMovementOn));
+}
+
 }  // namespace
 }  // namespace usher::supervisor

@@ -1,0 +1,62 @@
+#include "control/supervisor/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include "runtime/testing/test_host.hpp"
+
+namespace usher::supervisor {
+namespace {
+
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg::SupervisorRequest_Constants;
+
+constexpr const char* kManifest = R"(
+manifest.components:
+  - {name: supervisor, type: supervisor, host: nuc, criticality: stop, timeout: 0.12 s}
+  - {name: movement_control, type: movement_control, host: nuc, criticality: stop, timeout: 0.12 s}
+)";
+
+class Component : public testing::Test {
+ protected:
+  usher_msgs::msg::SupervisorStatus ask(const char* client, std::uint8_t command) {
+    usher_msgs::msg::SupervisorRequest request;
+    request.id(++id);
+    request.client(client);
+    request.command(command);
+    host.publish(topics::kSupervisorRequest, request);
+    host.run_for(milliseconds(120));
+    return host.last(topics::kSupervisorStatus).value();
+  }
+  usher_msgs::msg::SupervisorStatus after_a_crash() {
+    host.world().kill(host.name());
+    host.clear();
+    host.world().start(host.name());
+    host.run_for(milliseconds(120));
+    return host.last(topics::kSupervisorStatus).value();
+  }
+
+  runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"), kManifest};
+  std::uint64_t id = 0;
+};
+
+TEST_F(Component, AStopAndAnEmergencyStopHoldOverACrash) {
+  EXPECT_EQ(ask("guide", COMMAND_STOP).stopped_by(), std::vector<std::string>{"guide"});
+  EXPECT_EQ(after_a_crash().stopped_by(), std::vector<std::string>{"guide"});
+  EXPECT_TRUE(ask("operator", COMMAND_MOVEMENT_ON).stopped_by().empty());
+  EXPECT_TRUE(after_a_crash().stopped_by().empty());
+  ask("operator", COMMAND_EMERGENCY_STOP);
+  const auto faults = after_a_crash().faults();
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(host.last(topics::kDriveGrant)->granted(), false);
+}
+
+TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
+  host.run_for(milliseconds(500));
+  const auto status = host.last(topics::kSupervisorStatus).value();
+  EXPECT_FALSE(host.last(topics::kDriveGrant)->granted());
+  EXPECT_FALSE(status.reason().empty());
+  EXPECT_GE(host.written(topics::kDriveGrant).size(), 20U) << "silence is no answer";
+}
+
+}  // namespace
+}  // namespace usher::supervisor
