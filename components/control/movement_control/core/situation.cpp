@@ -49,15 +49,14 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
 
   const geometry::Pose2& sensor = parameters.base_T_sensor;
   double ahead = parameters.horizon;
-  bool forward_seen = false;
+  std::size_t forward = 0, unknown = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double range = ranges[i];
-    if (std::isnan(range)) continue;
     const double angle = sensor.yaw + angle_min + angle_increment * static_cast<double>(i);
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    if (c > 0.0) forward_seen = true;
-    if (range > parameters.horizon) continue;
+    if (c > 0.0) ++forward, unknown += std::isnan(range);
+    if (!(range <= parameters.horizon)) continue;
     const double reach = std::max(range, 0.0);  // -infinity: right at the sensor
     const double x = sensor.x + reach * c;
     const double y = sensor.y + reach * s;
@@ -69,7 +68,7 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
       side = std::min(side, std::abs(y));
     }
   }
-  if (!forward_seen) return std::nullopt;
+  if (2 * unknown >= forward) return std::nullopt;  // blind on most of what is ahead
 
   // What stands beside the thing ahead belongs to it: a wall ahead is not a narrow place before it.
   const auto nearer = static_cast<std::size_t>(std::max(0.0, ahead / kSlice - 1.0));

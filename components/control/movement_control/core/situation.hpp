@@ -35,9 +35,10 @@ struct FreeSpaceParameters {
 };
 
 /// Measures the free room from one horizontal scan. Ranges follow REP 117: +infinity is free, NaN
-/// is unknown and ignored, -infinity is something too near to measure. The width is measured in
+/// is unknown, -infinity is something too near to measure. The width is measured in
 /// slices of 0.25 m, so a robot that stands askew in a corridor still finds nearly the corridor's
-/// width. Nothing when no beam points forward: then nothing is known. O(beams), no allocation.
+/// width. Nothing when no beam points forward, or half of those are unknown. O(beams), no
+/// allocation.
 std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_min,
                                     double angle_increment, const FreeSpaceParameters& parameters);
 

@@ -77,6 +77,14 @@ TEST(FreeSpace, OpenIsTheHorizon) {
   EXPECT_EQ(space.width, 12.0);
 }
 
+TEST(FreeSpace, KnowsNothingWhenBlindOnHalfOfWhatIsAhead) {
+  std::vector<float> ranges = scan(corridor(3.0));
+  for (int i = 0; i < kBeams; i += 3) ranges[static_cast<std::size_t>(i)] = kNan;
+  EXPECT_NEAR(measure(ranges).width, 3.0, 0.05);
+  for (int i = 1; i < kBeams; i += 3) ranges[static_cast<std::size_t>(i)] = kNan;
+  EXPECT_FALSE(free_space(ranges, kAngleMin, kIncrement, {}).has_value());
+}
+
 TEST(FreeSpace, KnowsNothingWithoutForwardBeams) {
   EXPECT_FALSE(free_space({}, kAngleMin, kIncrement, {}).has_value());
   EXPECT_FALSE(free_space(std::vector<float>(kBeams, kNan), kAngleMin, kIncrement, {}).has_value());

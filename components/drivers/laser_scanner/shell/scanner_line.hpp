@@ -51,8 +51,8 @@ class ScannerLine {
     flush();
   }
   void lost(const std::string& reason) {
-    session_.closed();
-    host_.health().set(runtime::HealthState::kDegraded, reason);
+    session_.closed(reason);
+    host_.health().set(runtime::HealthState::kDegraded, session_.reason());
   }
   void tick() {
     session_.tick(now());

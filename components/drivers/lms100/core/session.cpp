@@ -63,9 +63,9 @@ void Session::opened(Time now) {
   send_step(now);
 }
 
-void Session::closed() {
+void Session::closed(const std::string& reason) {
+  if (state_ != State::kFailed) reason_ = reason;  // a failure closes the line: that is why
   state_ = State::kClosed;
-  reason_ = "not connected";
   output_.clear();
 }
 

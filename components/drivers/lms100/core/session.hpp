@@ -40,7 +40,7 @@ class Session {
   /// The connection is open. Bytes to send are waiting afterwards.
   void opened(Time now);
   /// The connection is gone, for whatever reason.
-  void closed();
+  void closed(const std::string& reason = "not connected");
 
   /// Bytes arrived. Every scan that completes is given to `on_scan`, in order; it is reused.
   template <class OnScan>

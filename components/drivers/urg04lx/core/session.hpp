@@ -35,7 +35,7 @@ class Session {
   explicit Session(const Parameters& parameters) : parameters_(parameters) {}
 
   void opened(Time now);
-  void closed();
+  void closed(const std::string& reason = "not connected");
 
   /// Bytes arrived. Every scan that completes is given to `on_scan`; it is reused.
   template <class OnScan>
