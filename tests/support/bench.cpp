@@ -54,8 +54,9 @@ void reference_loop() {
   benchmark::DoNotOptimize(sum);
 }
 
-/// Keeps the median real time in seconds of each benchmark and shows progress on standard error.
-class MedianReporter : public benchmark::BenchmarkReporter {
+/// Keeps the least real time in seconds of each benchmark, what other guests of the machine take is
+/// not ours, and shows progress on standard error.
+class LeastReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -63,15 +64,16 @@ class MedianReporter : public benchmark::BenchmarkReporter {
       if (run.error_occurred) {
         std::fprintf(stderr, "%s failed: %s\n", run.run_name.function_name.c_str(),
                      run.error_message.c_str());
-      } else if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median") {
+      } else if (run.run_type == Run::RT_Iteration) {
         const double seconds =
             run.GetAdjustedRealTime() / benchmark::GetTimeUnitMultiplier(run.time_unit);
-        medians[run.run_name.function_name] = seconds;
+        double& best = least.try_emplace(run.run_name.function_name, seconds).first->second;
+        best = std::min(best, seconds);
         std::fprintf(stderr, "timed %s: %.6g s\n", run.run_name.function_name.c_str(), seconds);
       }
     }
   }
-  std::map<std::string, double> medians;
+  std::map<std::string, double> least;
 };
 
 std::string quoted(const std::string& text) {
@@ -210,13 +212,13 @@ bool Bench::measure_times() {
         ->UseRealTime()
         ->Repetitions(kRepetitions);
   }
-  MedianReporter reporter;
+  LeastReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   bool complete = true;
   for (const Timing& timing : timings_) {
-    const auto found = reporter.medians.find(timing.key);
-    complete = complete && found != reporter.medians.end();
-    if (found != reporter.medians.end()) metrics_[timing.key] = found->second / timing.unit;
+    const auto found = reporter.least.find(timing.key);
+    complete = complete && found != reporter.least.end();
+    if (found != reporter.least.end()) metrics_[timing.key] = found->second / timing.unit;
   }
   return complete;
 }

@@ -17,7 +17,7 @@ enum class Bound { kAtMost, kAtLeast };
 ///
 ///     int main(int argc, char** argv) {
 ///       usher::bench::Bench bench("amcl", "willow-trinary 1165x945, 60 beams, 2000 particles");
-///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });          // median, in
+///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });          // least, in
 ///       units of 1e-3 s bench.instructions("sensor_update_instructions", [&] { model.update(...);
 ///       });  // exactly this call bench.metric("cells", 1e6);
 ///       bench.published("likelihood_field_ms", 164, "ROS amcl");
@@ -42,7 +42,7 @@ class Bench {
   /// returns 4.
   std::string data(const std::string& relative);
 
-  /// Median wall time of `work` over Google Benchmark repetitions, in multiples of `unit` seconds.
+  /// Least wall time of `work` over Google Benchmark repetitions, in multiples of `unit` seconds.
   void time(std::string key, double unit, std::function<void()> work);
   /// Instructions of one call of `work` after `warm_up` calls, by callgrind; only with
   /// --instructions.
