@@ -47,6 +47,7 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
   for (const PersonPlan& plan : plans) {
     Person person{
         .name = plan.name, .scripted = plan.loop.empty(), .position = plan.start, .yaw = plan.yaw};
+    person.radius = config.radius;
     // Not from the stream of the walking, which heights shall not disturb.
     Random looks(stream_seed(seed, plan.name.c_str()));
     person.height =
@@ -100,17 +101,31 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
 
     Point2 push = push_of_people(i) + push_of_robot(person, walks, robot);
     constexpr double kWallSight = 0.8;  // [m]
-    const auto wall = scene.nearest(person.position, config_.top, config_.radius + kWallSight);
+    const auto wall = scene.nearest(person.position, config_.top, person.radius + kWallSight);
     if (wall.thing >= 0) {
-      push += config_.wall_push * std::exp((config_.radius - wall.distance) / config_.wall_reach) *
+      push += config_.wall_push * std::exp((person.radius - wall.distance) / config_.wall_reach) *
               unit(person.position - wall.point);
     }
     if (!walks && push.norm() < kStandsFirm) push.setZero();
-    const bool by_a_wall = wall.distance < config_.radius + 0.1;
+    const bool by_a_wall = wall.distance < person.radius + 0.1;
+    turn_sideways(person, walks, robot);
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
     lose_patience(person, mind, robot);
     hold(person, mind, movers_[i]);
   }
+}
+
+/// Past a robot that stands people turn sideways, and back once they have room.
+void Crowd::turn_sideways(Person& person, bool walks, const RobotView& robot) const {
+  constexpr double kNear = 0.8;  // [m]
+  constexpr double kRate = 0.3;  // [m/s]
+  if (robot.footprint.empty()) return;
+  const double gap =
+      shapes::Polygon(robot.footprint).gap_to_disc(person.position, person.radius).distance;
+  const bool squeezes = walks && robot_stands_ > kStands && gap < kNear;
+  const double change = (squeezes ? config_.sideways : config_.radius) - person.radius;
+  const double step = std::clamp(change, -kRate * kStep, kRate * kStep);
+  if (step < gap - kSqueeze) person.radius += step;
 }
 
 /// Posture and height of the body; who walks, walks upright.
@@ -176,12 +191,17 @@ void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const Ro
       mind.look_left = kLookPeriod;
       mind.goal = point_to_follow(person.position, scene);
     }
-    // Near enough, or still in front of it: lets the robot pass first.
+    // Near enough, or still in front of it: lets the robot pass first, and when it does not, walks
+    // round it.
     const Point2 from_robot = person.position - robot.pose.position();
     const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));
     constexpr double kInFront = 2.5;  // [m]
     const bool in_front = from_robot.norm() < kInFront && from_robot.dot(heading) > 0.0;
-    if (in_front || from_robot.norm() < config_.follow_distance) mind.goal = person.position;
+    if (in_front && robot_stands_ > config_.patience) {
+      mind.goal = robot.pose.position() - config_.follow_distance * heading;
+    } else if (in_front || from_robot.norm() < config_.follow_distance) {
+      mind.goal = person.position;
+    }
     return;
   }
   if (mind.loop.empty()) return;
@@ -238,8 +258,8 @@ Point2 Crowd::wanted_velocity(const Person& person, const Mind& mind,
 
   const shapes::Polygon body(robot.footprint);
   const double apart = (body.center() - person.position).norm();
-  if (apart > body.radius() + config_.radius + config_.robot_see) return speed * direction;
-  const shapes::Gap gap = body.gap_to_disc(person.position, config_.radius);
+  if (apart > body.radius() + person.radius + config_.robot_see) return speed * direction;
+  const shapes::Gap gap = body.gap_to_disc(person.position, person.radius);
   const Point2 to_robot = unit(body.center() - person.position);
   const bool ahead = to_robot.dot(direction) > 0.5;
   if (!ahead) return speed * direction;
@@ -273,8 +293,8 @@ Point2 Crowd::push_of_robot(const Person& person, bool walks, const RobotView& r
   const shapes::Polygon body(robot.footprint);
   const Point2 away = person.position - body.center();
   const double apart = away.norm();
-  if (apart > body.radius() + config_.radius + config_.robot_see) return Point2::Zero();
-  const double gap = body.gap_to_disc(person.position, config_.radius).distance;
+  if (apart > body.radius() + person.radius + config_.robot_see) return Point2::Zero();
+  const double gap = body.gap_to_disc(person.position, person.radius).distance;
   const bool stands = robot_stands_ > kStands;
   Point2 push = (stands ? 0.25 : 1.0) * config_.robot_push * std::exp(-gap / config_.robot_reach) *
                 unit(away);
@@ -304,7 +324,7 @@ void Crowd::move(std::size_t index, const Point2& acceleration, bool by_a_wall, 
 
   const bool robot_here = !robot.footprint.empty();
   const auto robot_gap = [&] {
-    return shapes::Polygon(robot.footprint).gap_to_disc(person.position, config_.radius).distance;
+    return shapes::Polygon(robot.footprint).gap_to_disc(person.position, person.radius).distance;
   };
   constexpr double kSkin = 0.01;  // [m] nobody touches the robot by own will
   if (robot_here && robot_gap() < kSkin) {
@@ -316,11 +336,11 @@ void Crowd::move(std::size_t index, const Point2& acceleration, bool by_a_wall, 
     }
   }
   const auto wall =
-      by_a_wall ? scene.nearest(person.position, config_.top, config_.radius) : Scene::Nearest{};
+      by_a_wall ? scene.nearest(person.position, config_.top, person.radius) : Scene::Nearest{};
   if (wall.thing >= 0) {
     const Point2 out = unit(person.position - wall.point);
     person.position = wall.distance > 0.0
-                          ? Point2(person.position + (config_.radius - wall.distance) * out)
+                          ? Point2(person.position + (person.radius - wall.distance) * out)
                           : before;
     const double into = person.velocity.dot(out);
     if (into < 0.0) person.velocity -= into * out;
@@ -332,6 +352,7 @@ void Crowd::move(std::size_t index, const Point2& acceleration, bool by_a_wall, 
         person.yaw + std::clamp(turn, -kFastestTurn * kStep, kFastestTurn * kStep));
   }
   movers_[index].center = person.position;
+  movers_[index].radius = person.radius;
 }
 
 }  // namespace usher::world

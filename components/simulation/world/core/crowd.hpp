@@ -26,6 +26,7 @@ struct Person {
   Point2 position = Point2::Zero();  ///< [m]
   Point2 velocity = Point2::Zero();  ///< [m/s]
   double yaw = 0.0;                  ///< [rad] where the person looks
+  double radius = 0.25;              ///< [m] of the room that the body takes now
   double height = 1.75;              ///< [m] when standing upright
   rendering::Posture posture = rendering::Posture::kStanding;
   double stride = 0.0;  ///< [rad] phase of walking
@@ -33,7 +34,8 @@ struct Person {
 
 /// Constants of the people; accelerations are those of a person of unit mass.
 struct CrowdConfig {
-  double radius = 0.25;           ///< [m]
+  double radius = 0.25;           ///< [m] half the breadth of the shoulders
+  double sideways = 0.17;         ///< [m] half the depth of the body [fruin1971]
   double top = 1.7;               ///< [m]
   double relaxation = 0.5;        ///< [s] to reach the wanted velocity
   double speed_spread = 0.12;     ///< relative, between people
@@ -53,7 +55,8 @@ struct CrowdConfig {
 /// People who walk between points and mind each other, walls and the robot: the social force model
 /// [helbing1995social] with habits on top. Who meets the robot keeps to the right; who is blocked
 /// stops, waits and in the end turns round, or walks away from a robot that bars both ways; past
-/// one that stands still people squeeze. Nobody walks into a wall or, by own will, into the robot.
+/// one that stands still people squeeze, sideways. Nobody walks into a wall or, by own will, into
+/// the robot.
 /// Deterministic for the seed.
 class Crowd {
  public:
@@ -96,6 +99,7 @@ class Crowd {
   void choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot);
   void turn_round(Mind& mind) const;
   void lose_patience(Person& person, Mind& mind, const RobotView& robot);
+  void turn_sideways(Person& person, bool walks, const RobotView& robot) const;
   void hold(Person& person, const Mind& mind, Mover& mover) const;
   Point2 wanted_velocity(const Person& person, const Mind& mind, const RobotView& robot) const;
   Point2 push_of_people(std::size_t index) const;

@@ -79,8 +79,8 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
                                  person.posture == rendering::Posture::kWalking
                              ? 1.0
                              : 0.75;
-    movers_.push_back({person.position, world.config().crowd.radius * config_.body_radius,
-                       share * person.height});
+    movers_.push_back(
+        {person.position, person.radius * config_.body_radius, share * person.height});
   }
   const geometry::Pose3 pose = camera.pose(world);
   const Eigen::Vector3d axis = pose.rotation * Eigen::Vector3d::UnitX();

@@ -79,7 +79,7 @@ Status World::place_robot(const Pose2& pose) {
                  scene_->things()[static_cast<std::size_t>(near.thing)].name + "' there"};
   }
   for (const Person& person : crowd_.people()) {
-    const auto gap = shapes::Polygon(footprint).gap_to_disc(person.position, config_.crowd.radius);
+    const auto gap = shapes::Polygon(footprint).gap_to_disc(person.position, person.radius);
     if (gap.distance < kApart) return Error{"the robot would touch '" + person.name + "' there"};
   }
   base_->place(pose);
@@ -197,7 +197,7 @@ void World::judge(const Pose2& before, const Twist2& speed) {
   }
   for (std::size_t i = 0; i < crowd_.people().size(); ++i) {
     const Person& person = crowd_.people()[i];
-    const double gap = body.gap_to_disc(person.position, config_.crowd.radius).distance;
+    const double gap = body.gap_to_disc(person.position, person.radius).distance;
     if (gap < truth_.clearance) truth_.clearance = gap, truth_.nearest = person.name;
     if (gap <= 0.0 && !touched_people_[i]) {
       count_touch(person.name, time_ - seen_since_[i] > config_.stopping_time, fastest);
