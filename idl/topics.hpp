@@ -163,6 +163,8 @@ inline constexpr Topic<sensor_msgs::msg::Joy> kJoy{
 inline constexpr Topic<usher_msgs::msg::FaceTarget> kInteractionTarget{
     "interaction/target",        Kind::kStream, 1, 10, "guide meeting people_detector operator",
     "Whom the robot shall face."};
+inline constexpr Topic<usher_msgs::msg::People> kPeople{
+    "people", Kind::kStream, 1, 15, "people_detector", "Everybody around, followed over time."};
 inline constexpr Topic<usher_msgs::msg::PersonAhead> kPersonAhead{
     "people/ahead",
     Kind::kStream,
@@ -330,13 +332,14 @@ inline constexpr auto kAll = std::tie(
     kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan, kKinectTilt,
     kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
     kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
-    kMovementStatus, kPersonAhead, kJoy, kInteractionTarget, kSupervisorStatus, kSupervisorRequest,
-    kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts,
-    kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal,
-    kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel,
-    kNavigateStatus, kNavigatePace, kLocations, kDialogueScreen, kDialogueAnswer, kGuideStatus,
-    kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
-    kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth,
-    kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimGroundTruth, kSimPersonGoal);
+    kMovementStatus, kPeople, kPersonAhead, kJoy, kInteractionTarget, kSupervisorStatus,
+    kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus,
+    kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest,
+    kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,
+    kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kDialogueScreen,
+    kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback,
+    kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor,
+    kSimKinectInfo, kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan,
+    kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

@@ -49,6 +49,7 @@
   TYPE(usher_msgs::msg::MovementEnable)               \
   TYPE(usher_msgs::msg::MovementStatus)               \
   TYPE(usher_msgs::msg::FaceTarget)                   \
+  TYPE(usher_msgs::msg::People)                       \
   TYPE(usher_msgs::msg::PersonAhead)                  \
   TYPE(usher_msgs::msg::SupervisorStatus)             \
   TYPE(usher_msgs::msg::SupervisorRequest)            \

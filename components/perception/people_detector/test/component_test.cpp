@@ -1,0 +1,119 @@
+#include "perception/people_detector/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "room_scan.hpp"
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::people_detector {
+namespace {
+
+using geometry::Point2;
+using geometry::Pose2;
+using std::chrono::milliseconds;
+
+class Component : public testing::Test {
+ protected:
+  void localize() { send_transform(frames::kMap, frames::kOdom, map_T_odom); }
+  /// One second of a robot that stands, 50 scans; `walker` by time in the map.
+  template <class Walker>
+  void run(double seconds, const Walker& walker) {
+    for (int i = 0; i < static_cast<int>(50 * seconds); ++i, time += 0.02) {
+      send_transform(frames::kOdom, frames::kBaseFootprint, odom_T_base);
+      send_transform(frames::kBaseFootprint, "laser_level", {0.1, 0.0, 0.0});
+      const Pose2 sensor = map_T_odom * odom_T_base * Pose2{0.1, 0.0, 0.0};
+      const RoomScan room = scan_room(sensor, {{walker(time), 0.25}});
+      sensor_msgs::msg::LaserScan scan;
+      scan.header(wire::header(host.now(), "laser_level"));
+      scan.angle_min(static_cast<float>(room.angle_min));
+      scan.angle_increment(static_cast<float>(room.increment));
+      scan.angle_max(static_cast<float>(room.angle_min + room.increment * 540));
+      scan.range_min(0.01F);
+      scan.range_max(20.0F);
+      scan.ranges(room.ranges);
+      host.publish(topics::kScanFiltered, scan);
+      host.run_for(milliseconds(20));
+    }
+  }
+  void send_transform(const char* parent, const char* child, const Pose2& pose) {
+    tf2_msgs::msg::TFMessage message;
+    geometry_msgs::msg::TransformStamped transform;
+    transform.header(wire::header(host.now(), parent));
+    transform.child_frame_id(child);
+    transform.transform().translation().x(pose.x);
+    transform.transform().translation().y(pose.y);
+    transform.transform().rotation().z(std::sin(0.5 * pose.yaw));
+    transform.transform().rotation().w(std::cos(0.5 * pose.yaw));
+    message.transforms({transform});
+    host.publish(topics::kTf, message);
+  }
+
+  runtime::TestHost host{runtime::component_factory<PeopleDetectorComponent>("people_detector")};
+  const Pose2 map_T_odom{0.5, 0.5, 0.3};
+  const Pose2 odom_T_base{0.4, 0.6, 0.1};
+  double time = 0.0;
+};
+
+Point2 crossing(double time) { return {3.0, 0.6 + 0.8 * time}; }
+Point2 standing(double) { return {3.0, 2.0}; }
+
+TEST_F(Component, TellsWhoWalksWhereAndHowFastInOdom) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(3.0, crossing);
+  const auto people = host.last(topics::kPeople);
+  ASSERT_TRUE(people && people->people().size() == 1U);
+  EXPECT_EQ(people->header().frame_id(), frames::kOdom);
+  const auto& person = people->people()[0];
+  const Point2 seen = map_T_odom * Point2(person.x(), person.y());
+  EXPECT_LT((seen - crossing(time)).norm(), 0.25);
+  const Point2 velocity(person.vx(), person.vy());
+  EXPECT_NEAR(velocity.norm(), 0.8, 0.2);
+  EXPECT_NEAR(std::atan2(velocity.y(), velocity.x()) + map_T_odom.yaw, geometry::kPi / 2, 0.3);
+  EXPECT_EQ(person.id(), 1U);
+  EXPECT_EQ(person.sources(), usher_msgs::msg::Person_Constants::SOURCE_LASER);
+  EXPECT_TRUE(std::isnan(person.height()));
+  EXPECT_LT(host.written(topics::kPeople).size(), 55U) << "15 a second are enough";
+}
+
+TEST_F(Component, AChairIsNobody) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(3.0, standing);
+  ASSERT_TRUE(host.last(topics::kPeople));
+  EXPECT_TRUE(host.last(topics::kPeople)->people().empty());
+}
+
+TEST_F(Component, WithoutMapOrPoseItKnowsNobodyAndSaysWhy) {
+  run(1.0, crossing);
+  ASSERT_TRUE(host.last(topics::kPeople));
+  EXPECT_TRUE(host.last(topics::kPeople)->people().empty());
+  EXPECT_EQ(host.heartbeat().reason(), "no map");
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  run(1.0, crossing);
+  EXPECT_TRUE(host.last(topics::kPeople)->people().empty());
+  EXPECT_EQ(host.heartbeat().reason(), "robot not localized");
+}
+
+TEST_F(Component, FallsSilentWithTheScanAndRefusesABadOne) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(0.5, crossing);
+  host.run_for(milliseconds(60));
+  host.clear();
+  sensor_msgs::msg::LaserScan scan;
+  scan.header(wire::header(host.now(), "laser_level"));
+  scan.angle_increment(std::nanf(""));
+  host.publish(topics::kScanFiltered, scan);
+  host.run_for(milliseconds(1000));
+  EXPECT_EQ(host.counter("scans: rejected"), 1U);
+  EXPECT_TRUE(host.written(topics::kPeople).empty());
+  EXPECT_EQ(host.heartbeat().reason(), "no scan");
+}
+
+}  // namespace
+}  // namespace usher::people_detector
