@@ -15,6 +15,7 @@ constexpr double kPolylineStep = 0.1;      // [m] 3 mm off an arc of 0.5 m
 constexpr double kTurnOnSpot = 0.15;       // [m/s] slower than this a turn is one on the spot
 constexpr double kTurnMatters = 0.05;      // [rad/s]
 constexpr double kTightPath = 4.0;         // the plan leads through the middle of a door
+constexpr double kLanePath = 2.0;          // aside although the middle is cheaper
 constexpr double kOscillationWay = 0.05;   // [m] after which the other sense is allowed again
 constexpr double kOscillationTurn = 0.35;  // [rad]
 
@@ -162,9 +163,9 @@ void DynamicWindow::measure_path(const Input& input) {
   const double begin = path_.progress() - kBehind;
   const double end = local_goal_arc_ + config_.forward_point;
   const double step = std::max(kPolylineStep, (end - begin) / 128.0);
-  geometry::Point2 a = path_.point(begin);
+  geometry::Point2 a = lane_.point(path_, begin);
   for (double arc = begin; arc < end; arc += step) {
-    const geometry::Point2 b = path_.point(std::min(arc + step, end));
+    const geometry::Point2 b = lane_.point(path_, std::min(arc + step, end));
     path_distance_.add(
         static_cast<float>(a.x() - input.pose.x), static_cast<float>(a.y() - input.pose.y),
         static_cast<float>(b.x() - input.pose.x), static_cast<float>(b.y() - input.pose.y));
@@ -239,14 +240,15 @@ CriticScores DynamicWindow::score(const Input& input, std::size_t index, double 
   const double end_x = rollout_.x()[3 * index + 2];
   const double end_y = rollout_.y()[3 * index + 2];
   CriticScores s;
-  s.path = (tight_ ? kTightPath : 1.0) * weights.path / 3.0 *
+  const double line = tight_ ? kTightPath : lane_.keeps_aside() ? kLanePath : 1.0;
+  s.path = line * weights.path / 3.0 *
            (static_cast<double>(point_distances_[3 * index]) +
             static_cast<double>(point_distances_[3 * index + 1]) +
             static_cast<double>(point_distances_[3 * index + 2]));
   s.goal = weights.goal * way_left(goal_lengths_, input, end_x, end_y);
   if (aligned_) {
-    s.alignment = (tight_ ? kTightPath : 1.0) * weights.alignment *
-                  static_cast<double>(point_distances_[3 * count + index]);
+    s.alignment =
+        line * weights.alignment * static_cast<double>(point_distances_[3 * count + index]);
     s.goal_front = weights.goal_front * way_left(front_lengths_, input,
                                                  static_cast<double>(points_x_[3 * count + index]),
                                                  static_cast<double>(points_y_[3 * count + index]));

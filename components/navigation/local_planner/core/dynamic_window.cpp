@@ -23,6 +23,13 @@ constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer t
 constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
+constexpr double kLaneGap = 0.05;   // [m] beside the clearance, to what stands on the right
+constexpr double kMeeting = 1.2;    // [m] of path within which somebody is met
+constexpr double kWalksOn = 0.2;    // [m/s] the same way: no meeting
+constexpr double kPolite = 6.0;     // [s] that it gives way
+constexpr double kMetAnew = 3.0;    // [s] without anybody, until it does so again
+constexpr double kSamePlace = 0.3;  // [m]
+constexpr double kSoon = 0.65;      // [rad] of a turn whose room bounds its rate now
 
 Status check(const DynamicWindowConfig& c) {
   const CriticWeights& w = c.weights;
@@ -102,6 +109,8 @@ const char* to_string(Reason reason) {
       return "braking: no way that can be stopped on";
     case Reason::kBlocked:
       return "blocked";
+    case Reason::kGivingWay:
+      return "giving way to somebody";
     case Reason::kTouching:
       return "an obstacle inside the footprint";
     case Reason::kRecovering:
@@ -131,7 +140,9 @@ DynamicWindow::DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd)
                 .disc_clearance = config.disc_clearance},
                simd),
       wavefront_(simd),
-      path_distance_(simd) {}
+      path_distance_(simd),
+      lane_(config.footprint.inscribed_radius(), config.clearance + kLaneGap,
+            config.keep_left ? -1.0 : 1.0) {}
 
 Status DynamicWindow::set_path(std::span<const Pose2> path) {
   const bool had_goal = !path_.empty();
@@ -146,6 +157,7 @@ Status DynamicWindow::set_path(std::span<const Pose2> path) {
 
 void DynamicWindow::clear_path() {
   path_.clear();
+  lane_.clear();
   position_reached_ = false;
   turning_ = 0;
 }
@@ -195,12 +207,17 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
 }
 
 /// Along the slowest of the arcs just tried that stays free for longest; of equal ones the one that
-/// bends least from now.
+/// bends least from now. Nobody is dodged: who walks can step aside, a wall cannot.
 Decision DynamicWindow::brake(const Input& input) {
   const bool standing = std::abs(input.measured.v) < kStanding;
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
   if (standing) return decision;
+  if (!input.discs.empty()) {
+    Input alone = input;
+    alone.discs = {};
+    drive(alone, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
+  }
   const Trajectory* best = nullptr;
   double best_bend = 0.0;
   for (const Trajectory& trajectory : rollout_.trajectories()) {
@@ -278,7 +295,8 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
   for (int i = 0; i <= steps; ++i) {
     const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / std::max(steps, 1)};
     if (!touches(input, roomy_, turned)) continue;
-    rate = std::min(rate, config_.tight_turn);
+    if (i * kSweep < kSoon)
+      rate = std::min(rate, (touches(input, narrow_, turned) ? 1.0 : 1.5) * config_.tight_turn);
     if (i > 0 && touches(input, least, turned)) return 0.0;
   }
   return rate;
@@ -297,6 +315,14 @@ std::optional<Decision> DynamicWindow::free_corner(const Input& input, double an
   return decision;
 }
 
+/// Counts a turn that cannot go on. Twice in both senses at one place, and there is no room: more
+/// to and fro would not find any.
+bool DynamicWindow::is_given_up(const geometry::Point2& position, int sense) {
+  if ((position - barred_.at).norm() > kSamePlace) barred_ = {position, 0, 0};
+  if (turning_ == sense) ++(sense > 0 ? barred_.left : barred_.right);
+  return barred_.left >= 2 && barred_.right >= 2;
+}
+
 Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   if (std::abs(input.measured.v) > kSlowEnoughToTurn) {
     return halt(input, reason, config_.limits.deceleration);
@@ -308,6 +334,8 @@ Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   if (auto decision = free_corner(input, angle)) return *decision;
   double fastest = turn_rate(input, angle);
   if (fastest == 0.0) {
+    if (is_given_up(input.pose.position(), angle > 0.0 ? 1 : -1))
+      return halt(input, Reason::kBlocked, config_.braking);
     angle += angle > 0.0 ? -2.0 * geometry::kPi : 2.0 * geometry::kPi;
     fastest = turn_rate(input, angle);
     if (fastest == 0.0) return halt(input, Reason::kBlocked, config_.braking);
@@ -337,9 +365,30 @@ bool DynamicWindow::must_turn_first(const Input& input, double& heading) {
   heading = std::atan2(way.y(), way.x());
   const double error = std::abs(geometry::shortest_turn(input.pose.yaw, heading));
   const bool standing = std::abs(input.measured.v) < kSlowEnoughToTurn;
-  if (turning_ != 0 && error < kAligned) turning_ = 0;
+  if (turning_ != 0 && error < kAligned) {
+    turning_ = 0;
+    barred_ = {};
+  }
   if (turning_ != 0) return true;
   return error > (standing ? 0.7 : 1.0) * config_.turn_first_angle;
+}
+
+/// Who meets a robot waits for it to stand before squeezing past: creeping on drives them back.
+bool DynamicWindow::gives_way(const Input& input) {
+  const bool met = std::any_of(people_.begin(), people_.end(), [&](const MovingDisc& person) {
+    const geometry::Point2 way = person.position - input.pose.position();
+    const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
+    if (way.dot(heading) < 0.0 || person.velocity.dot(heading) > kWalksOn) return false;
+    for (double arc = path_.progress(); arc < path_.progress() + kMeeting; arc += 0.1) {
+      if ((path_.point(arc) - person.position).norm() <
+          config_.footprint.inscribed_radius() + person.radius)
+        return true;
+    }
+    return false;
+  });
+  met_nobody_ = met ? 0.0 : met_nobody_ + input.seconds;
+  gave_way_ = met ? gave_way_ + input.seconds : met_nobody_ > kMetAnew ? 0.0 : gave_way_;
+  return met && gave_way_ < kPolite;
 }
 
 Decision DynamicWindow::follow(const Input& input) {
@@ -357,6 +406,13 @@ Decision DynamicWindow::follow(const Input& input) {
     turning_ = 0;  // no room to turn: perhaps an arc leads out
   }
   choose_local_goal(input);
+  lane_.choose(path_, input.costs, input.discs, input.seconds);
+  if (gives_way(input)) {
+    drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
+    Decision decision = brake(input);
+    if (decision.reason == Reason::kBlocked) decision.reason = Reason::kGivingWay;
+    return with_obstacle(decision);
+  }
   // Slow towards the goal, and towards an obstacle that nothing leads around, by the distance that
   // stopping takes.
   const double lag =

@@ -13,6 +13,7 @@
 #include "foundation/kinematics/stopping_distance.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/local_planner/core/contact.hpp"
+#include "navigation/local_planner/core/lane.hpp"
 #include "navigation/local_planner/core/reference_path.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
 #include "navigation/local_planner/core/trail.hpp"
@@ -60,7 +61,8 @@ struct DynamicWindowConfig {
   double fastest_turn = 1.0;          ///< [rad/s]
   double slowest_turn = 0.15;         ///< [rad/s] turning in place
   double spot_turn = 0.8;             ///< [rad/s] turning in place
-  double tight_turn = 0.15;           ///< [rad/s] turning in place without the whole clearance
+  double tight_turn = 0.15;           ///< [rad/s] turning in place without half of the clearance,
+                                      ///< twice as fast without the whole
   double lateral_acceleration = 0.8;  ///< [m/s2] bounds speed x turn rate
   double turn_stopping_time = 0.6;    ///< [s] a turn stops within this time x its rate
   double braking = 2.0;               ///< [m/s2] slope of the command when it must stop
@@ -79,6 +81,7 @@ struct DynamicWindowConfig {
   double yaw_tolerance = 0.10;       ///< [rad]
   double turn_first_angle =
       1.2;  ///< [rad] between heading and path from which a moving robot stops to turn
+  bool keep_left = false;  ///< to which side it makes room for who comes the other way
   bool unknown_is_lethal = false;
   bool trust_centers =
       false;  ///< where whole lethal cells leave no way, their centers decide, at tight_speed
@@ -98,6 +101,7 @@ enum class Reason : std::uint8_t {
   kReached,        ///< at the goal; the command is zero
   kBraking,        ///< no trajectory can be stopped before an obstacle: stops
   kBlocked,        ///< stands before an obstacle
+  kGivingWay,      ///< stands before somebody, who may pass
   kTouching,       ///< stands with a lethal cell inside its outline: a recovery motion may free it
   kRecovering,     ///< a recovery motion runs
   kNoPath,         ///< nothing to follow
@@ -148,6 +152,11 @@ class DynamicWindow {
   /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
   /// has been taken away: forward from a touch behind, backward from one in front.
   void set_touches(const Touches& touches) { touches_ = touches; }
+  /// Everybody who is known to be a person, also who stands, in the frame of the costs. Before
+  /// whom it meets on its way it stands for a while and lets them pass.
+  void set_people(std::span<const MovingDisc> people) {
+    people_.assign(people.begin(), people.end());
+  }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
   Status set_pace(double pace);
 
@@ -190,12 +199,14 @@ class DynamicWindow {
   Decision turn_to(const Input& input, double yaw, Reason reason);
   Decision follow(const Input& input);
   Decision brake(const Input& input);
+  bool gives_way(const Input& input);
   Decision halt(const Input& input, Reason reason, double deceleration) const;
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);
   Decision recover(const Input& input, const geometry::Twist2& target);
   bool must_turn_first(const Input& input, double& heading);
   bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
+  bool is_given_up(const geometry::Point2& position, int sense);
   double turn_rate(const Input& input, double angle) const;
   geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;
 
@@ -220,10 +231,17 @@ class DynamicWindow {
   Wavefront wavefront_;
   ReferencePath path_;
   PolylineDistance path_distance_;
+  Lane lane_;
+  std::vector<MovingDisc> people_;
+  double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]
   LethalBits bits_;
 
   bool position_reached_ = false;
   int turning_ = 0;  // +1, -1: turning first, in this sense
+  struct {
+    geometry::Point2 at = geometry::Point2::Constant(1e9);
+    int left = 0, right = 0;
+  } barred_;  // how often a turn at a place could not go on in a sense
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
   Trail trail_;

@@ -18,6 +18,10 @@ using std::chrono::milliseconds;
 constexpr auto kCostsAge = milliseconds(250);
 constexpr auto kOdomAge = milliseconds(150);
 constexpr auto kWhiskerAge = milliseconds(300);
+constexpr auto kPeopleAge = milliseconds(400);
+constexpr double kBody = 0.25;              // [m] radius of a person
+constexpr double kWalks = 0.3;              // [m/s] slower, the costs say all
+constexpr double kSeenLately = 0.5;         // [s]
 constexpr double kLongestPrediction = 0.1;  // [s] from the odometry's stamp to now
 constexpr double kPathShift = 0.005;        // [m] less is not worth placing the path anew
 constexpr double kPathTurn = 0.002;         // [rad]
@@ -69,8 +73,9 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
       p.number("deceleration", "m/s2", {0.1, 5}, 1.0, "Of the command, toward standstill.");
   c.limits.angular_acceleration =
       p.number("angular_acceleration", "rad/s2", {0.1, 10}, 1.5, "Of the turn command.");
-  c.tight_turn = p.number("tight_turn", "rad/s", {0.05, 2}, c.tight_turn,
-                          "Turn rate in place without the whole clearance.");
+  c.tight_turn =
+      p.number("tight_turn", "rad/s", {0.05, 2}, c.tight_turn,
+               "Turn rate in place without half of the clearance; twice that without the whole.");
   c.lateral_acceleration = p.number("lateral_acceleration", "m/s2", {0.1, 3},
                                     c.lateral_acceleration, "Bounds speed times turn rate.");
   c.braking =
@@ -91,6 +96,8 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
               "rollout"
           ? Sampling::kTrajectoryRollout
           : Sampling::kDynamicWindow;
+  c.keep_left = p.choice("keep", {"right", "left"}, "right",
+                         "Side on which people of the country pass each other.") == "left";
   c.speed_samples = static_cast<int>(
       p.integer("speed_samples", "-", {3, 64}, c.speed_samples, "Speeds that are tried."));
   c.turn_samples = static_cast<int>(
@@ -132,6 +139,9 @@ LocalPlannerComponent::LocalPlannerComponent(runtime::Host& host)
   whiskers_ = host.input(
       topics::kWhiskers,
       {.max_age = kWhiskerAge, .on_loss = "takes nothing for touched", .optional = true});
+  people_ = host.input(topics::kPeople, {.max_age = kPeopleAge,
+                                         .on_loss = "foresees nobody; the costs hold who is there",
+                                         .optional = true});
   command_ = host.output(topics::kCmdVelNavigation);
   status_ = host.output(topics::kFollowStatus);
   view_ = host.output(topics::kLocalPlan);
@@ -229,7 +239,30 @@ Decision LocalPlannerComponent::decision(const grid::Grid<std::uint8_t>& costs,
   if (mode_ == MODE_ROTATE)
     return planner_->rotate(costs, pose, measured, last_command_, elapsed,
                             std::copysign(turn_rate_, amount_));
-  return planner_->decide(costs, pose, measured, last_command_, elapsed);
+  foresee(pose);
+  planner_->set_people(everybody_);
+  return planner_->decide(costs, pose, measured, last_command_, elapsed, walkers_);
+}
+
+/// Everybody, and who walks in front of the axle or beside it; whoever comes from behind sees the
+/// robot.
+void LocalPlannerComponent::foresee(const geometry::Pose2& pose) {
+  walkers_.clear();
+  everybody_.clear();
+  const auto* message = people_.fresh();
+  if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
+  const double age = runtime::seconds(host_.now() - wire::from_message(message->header().stamp()));
+  const geometry::Point2 ahead{std::cos(pose.yaw), std::sin(pose.yaw)};
+  for (const auto& person : message->people()) {
+    const geometry::Point2 velocity{person.vx(), person.vy()};
+    const geometry::Point2 position = geometry::Point2{person.x(), person.y()} + age * velocity;
+    if (!position.allFinite() || !velocity.allFinite()) continue;
+    if (static_cast<double>(person.unseen()) > kSeenLately) continue;
+    everybody_.push_back({position, velocity, kBody});
+    if (velocity.norm() < kWalks) continue;
+    if ((position - pose.position()).dot(ahead) < 0.0) continue;
+    walkers_.push_back({position, velocity, kBody});
+  }
 }
 
 /// The path lives in map, the robot drives in odom: follows what localization corrects between the

@@ -24,6 +24,7 @@ class LocalPlannerComponent final : public runtime::Component {
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured);
+  void foresee(const geometry::Pose2& pose);
   bool place_path();
   void conclude(const Decision& decision, const geometry::Pose2& pose);
   void stand(std::uint8_t state, const std::string& reason);
@@ -46,6 +47,7 @@ class LocalPlannerComponent final : public runtime::Component {
   std::optional<geometry::Pose2>
       path_placed_by_;  ///< odom_T_map that the planner's path was placed with
 
+  std::vector<MovingDisc> everybody_, walkers_;
   geometry::Twist2 last_command_;
   runtime::Time last_decision_{};
   std::optional<runtime::Time> blocked_since_;
@@ -57,6 +59,7 @@ class LocalPlannerComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::Costmap> costs_;
   runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
+  runtime::Input<usher_msgs::msg::People> people_;
   runtime::Output<geometry_msgs::msg::TwistStamped> command_;
   runtime::Output<usher_msgs::msg::FollowStatus> status_;
   runtime::Output<nav_msgs::msg::Path> view_;

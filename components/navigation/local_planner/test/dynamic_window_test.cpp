@@ -213,6 +213,59 @@ TEST(Decide, YieldsToSomebodyWhoComesTowardsIt) {
   EXPECT_TRUE(met.target.v < 0.6 || std::abs(met.target.w) > 0.2);
 }
 
+TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
+  DynamicWindow planner = planner_to(8.0);
+  const auto reason = [&](const std::vector<MovingDisc>& people) {
+    planner.set_people(people);
+    return planner.decide(empty_window(), {}, {}, {}, 0.05).reason;
+  };
+  const std::vector<MovingDisc> met{{{1.3, 0.1}, {-0.2, 0}, 0.25}};
+  const std::vector<MovingDisc> elsewhere[] = {{},
+                                               {{{2.5, 0}, {-0.5, 0}, 0.25}},
+                                               {{{1.0, 0.9}, {-0.5, 0}, 0.25}},
+                                               {{{1.0, 0}, {0.6, 0}, 0.25}},
+                                               {{{-0.6, 0}, {0, 0}, 0.25}},
+                                               {{{kNaN, kNaN}, {kNaN, 0}, 0.25}}};
+  for (const auto& people : elsewhere) EXPECT_EQ(reason(people), Reason::kFollowing);
+  EXPECT_EQ(reason(met), Reason::kGivingWay);
+  for (double waited = 0.0; waited < 5.0; waited += 0.05)
+    ASSERT_EQ(reason(met), Reason::kGivingWay) << waited;
+  for (double waited = 0.0; waited < 1.5; waited += 0.05) reason(met);
+  EXPECT_EQ(reason(met), Reason::kFollowing) << "for ever it does not wait";
+  for (double waited = 0.0; waited < 3.5; waited += 0.05) reason({});
+  EXPECT_EQ(reason(met), Reason::kGivingWay) << "somebody else";
+}
+
+TEST(Decide, BrakesStraightBeforeSomebodyInsteadOfIntoTheWall) {
+  World world(-3, -3, 3, 3);
+  world.add(Box{-3, 0.6, 3, 0.7});
+  world.add(Box{-3, -0.7, 3, -0.6});
+  world.finish(0.305);
+  DynamicWindow planner = planner_to(8.0);
+  const std::vector<MovingDisc> person{{{1.6, 0}, {-0.8, 0}, 0.25}};
+  const Decision decision = planner.decide(world.costs(), {}, {0.9, 0}, {0.9, 0}, 0.05, person);
+  EXPECT_LT(decision.command.v, 0.9);
+  EXPECT_LT(std::abs(decision.command.w), 0.1);
+}
+
+TEST(Decide, GivesUpATurnThatWhiskersBarInBothSenses) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {-2, 0, 0}}).ok());
+  Decision decision;
+  double yaw = 0.0;
+  int turns = 0;
+  for (int i = 0; i < 2000 && decision.command.v == 0.0; ++i) {
+    planner.set_touches({yaw > 0.6, yaw < -0.6, yaw<-0.6, yaw> 0.6});
+    const double before = decision.command.w;
+    decision = planner.decide(empty_window(), {0, 0, yaw}, {}, decision.command, 0.05);
+    yaw += 0.05 * decision.command.w;
+    turns += before * decision.command.w < 0.0;
+  }
+  EXPECT_GE(turns, 2) << "both senses are tried";
+  EXPECT_LE(turns, 5) << "and not for ever";
+  EXPECT_GT(decision.command.v, 0.0) << "perhaps an arc leads out";
+}
+
 TEST(Decide, IsTheSameOnEveryInstructionSet) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
