@@ -17,9 +17,9 @@ enum class Bound { kAtMost, kAtLeast };
 ///
 ///     int main(int argc, char** argv) {
 ///       usher::bench::Bench bench("amcl", "willow-trinary 1165x945, 60 beams, 2000 particles");
-///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });          // least, in
-///       units of 1e-3 s bench.instructions("sensor_update_instructions", [&] { model.update(...);
-///       });  // exactly this call bench.metric("cells", 1e6);
+///       bench.time("likelihood_field_ms", 1e-3, [&] { field.build(map); });  // the least
+///       bench.instructions("update_instructions", [&] { model.update(scan); });
+///       bench.metric("cells", [&] { return 1e6; });
 ///       bench.published("likelihood_field_ms", 164, "ROS amcl");
 ///       bench.target("likelihood_field_ms", Bound::kAtMost, 16);
 ///       return bench.run(argc, argv);
