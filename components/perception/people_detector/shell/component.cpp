@@ -9,7 +9,6 @@ namespace usher::people_detector {
 
 namespace {
 
-using namespace usher_msgs::msg::Person_Constants;
 using runtime::HealthState;
 using std::chrono::milliseconds;
 
@@ -48,13 +47,12 @@ usher_msgs::msg::Person to_message(const Track& track, double now) {
                                    : std::numeric_limits<float>::quiet_NaN());
   person.age(static_cast<float>(now - track.born));
   person.unseen(static_cast<float>(now - track.last_seen()));
-  constexpr std::array<std::uint8_t, kSources> kBits{SOURCE_KINECT, SOURCE_REAR_CAMERA,
-                                                     SOURCE_LASER};
-  std::uint8_t sources = 0;
-  for (std::size_t i = 0; i < kSources; ++i) {
-    if (now - track.seen[i] < kRecently) sources = static_cast<std::uint8_t>(sources | kBits[i]);
-  }
-  person.sources(sources);
+  const auto by = [&](Source source) {
+    return now - track.seen[static_cast<std::size_t>(source)] < kRecently;
+  };
+  person.by_kinect(by(Source::kKinect));
+  person.by_rear(by(Source::kRearCamera));
+  person.by_laser(by(Source::kLaser));
   return person;
 }
 

@@ -75,7 +75,7 @@ TEST_F(Component, TellsWhoWalksWhereAndHowFastInOdom) {
   EXPECT_NEAR(velocity.norm(), 0.8, 0.2);
   EXPECT_NEAR(std::atan2(velocity.y(), velocity.x()) + map_T_odom.yaw, geometry::kPi / 2, 0.3);
   EXPECT_EQ(person.id(), 1U);
-  EXPECT_EQ(person.sources(), usher_msgs::msg::Person_Constants::SOURCE_LASER);
+  EXPECT_TRUE(person.by_laser() && !person.by_kinect() && !person.by_rear());
   EXPECT_TRUE(std::isnan(person.height()));
   EXPECT_LT(host.written(topics::kPeople).size(), 55U) << "15 a second are enough";
 }
