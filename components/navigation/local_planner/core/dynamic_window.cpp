@@ -23,7 +23,7 @@ constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer t
 constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
-constexpr double kLaneGap = 0.05;   // [m] beside the clearance, to what stands on the right
+constexpr double kLaneGap = 0.05;   // [m] beside the clearance, to what stands on its side
 constexpr double kMeeting = 1.2;    // [m] of path within which somebody is met
 constexpr double kWalksOn = 0.2;    // [m/s] the same way: no meeting
 constexpr double kPolite = 6.0;     // [s] that it gives way

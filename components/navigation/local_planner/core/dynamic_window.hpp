@@ -62,7 +62,7 @@ struct DynamicWindowConfig {
   double slowest_turn = 0.15;         ///< [rad/s] turning in place
   double spot_turn = 0.8;             ///< [rad/s] turning in place
   double tight_turn = 0.15;           ///< [rad/s] turning in place without half of the clearance,
-                                      ///< twice as fast without the whole
+                                      ///< half as fast again without the whole
   double lateral_acceleration = 0.8;  ///< [m/s2] bounds speed x turn rate
   double turn_stopping_time = 0.6;    ///< [s] a turn stops within this time x its rate
   double braking = 2.0;               ///< [m/s2] slope of the command when it must stop

@@ -75,7 +75,8 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
       p.number("angular_acceleration", "rad/s2", {0.1, 10}, 1.5, "Of the turn command.");
   c.tight_turn =
       p.number("tight_turn", "rad/s", {0.05, 2}, c.tight_turn,
-               "Turn rate in place without half of the clearance; twice that without the whole.");
+               "Turn rate in place without half of the clearance; 1.5 times that without the "
+               "whole.");
   c.lateral_acceleration = p.number("lateral_acceleration", "m/s2", {0.1, 3},
                                     c.lateral_acceleration, "Bounds speed times turn rate.");
   c.braking =
