@@ -163,8 +163,7 @@ void DynamicWindow::clear_path() {
 }
 
 Status DynamicWindow::set_pace(double pace) {
-  if (const Status status = within({{"pace", pace, config_.slowest, 3.0, "m/s"}}); !status)
-    return status;
+  if (Status status = within({{"pace", pace, config_.slowest, 3.0, "m/s"}}); !status) return status;
   config_.pace = pace;
   return {};
 }
@@ -379,8 +378,9 @@ bool DynamicWindow::gives_way(const Input& input) {
     const geometry::Point2 way = person.position - input.pose.position();
     const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
     if (way.dot(heading) < 0.0 || person.velocity.dot(heading) > kWalksOn) return false;
-    for (double arc = path_.progress(); arc < path_.progress() + kMeeting; arc += 0.1) {
-      if ((path_.point(arc) - person.position).norm() <
+    constexpr double kStep = 0.1;  // [m]
+    for (int i = 0; kStep * i < kMeeting; ++i) {
+      if ((path_.point(path_.progress() + kStep * i) - person.position).norm() <
           config_.footprint.inscribed_radius() + person.radius)
         return true;
     }

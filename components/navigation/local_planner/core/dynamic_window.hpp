@@ -139,7 +139,7 @@ struct Decision {
 /// discs are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
 /// microseconds and allocates only when grid or samples grow. Same inputs, same decisions, on every
 /// processor.
-class DynamicWindow {
+class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
  public:
   /// An error names the value that is out of its range.
   static Result<DynamicWindow> make(const DynamicWindowConfig& config,
