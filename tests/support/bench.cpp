@@ -6,13 +6,16 @@
 #include <array>
 #include <cassert>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <numeric>
 
 /// The region that callgrind collects: it toggles on this name, so the symbol must survive.
 extern "C" __attribute__((noinline, used, visibility("default"))) void usher_bench_counted(
@@ -156,7 +159,23 @@ std::string Bench::data(const std::string& relative) {
 
 void Bench::time(std::string key, double unit, std::function<void()> work) {
   assert(is_identifier(key) && unit > 0);
-  timings_.push_back({std::move(key), unit, std::move(work)});
+  timings_.push_back({std::move(key), unit, std::move(work), nullptr});
+}
+
+void Bench::time_each(std::string key, double unit, std::size_t cases,
+                      std::function<void(std::size_t)> work) {
+  assert(cases > 0);
+  auto least = std::make_shared<std::vector<double>>(cases, std::numeric_limits<double>::max());
+  time(std::move(key), unit, [least, work = std::move(work)] {
+    using Clock = std::chrono::steady_clock;
+    for (std::size_t i = 0; i < least->size(); ++i) {
+      const auto begin = Clock::now();
+      work(i);
+      const std::chrono::duration<double> taken = Clock::now() - begin;
+      (*least)[i] = std::min((*least)[i], taken.count());
+    }
+  });
+  timings_.back().cases = std::move(least);
 }
 
 void Bench::instructions(std::string key, std::function<void()> work, int warm_up) {
@@ -218,7 +237,12 @@ bool Bench::measure_times() {
   for (const Timing& timing : timings_) {
     const auto found = reporter.least.find(timing.key);
     complete = complete && found != reporter.least.end();
-    if (found != reporter.least.end()) metrics_[timing.key] = found->second / timing.unit;
+    if (found == reporter.least.end()) continue;
+    const auto& cases = timing.cases;
+    const double seconds = cases ? std::accumulate(cases->begin(), cases->end(), 0.0) /
+                                       static_cast<double>(cases->size())
+                                 : found->second;
+    metrics_[timing.key] = seconds / timing.unit;
   }
   return complete;
 }

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class Bench {
 
   /// Least wall time of `work` over Google Benchmark repetitions, in multiples of `unit` seconds.
   void time(std::string key, double unit, std::function<void()> work);
+  /// Mean over `cases` of the least wall time that `work(case)` took, in multiples of `unit`
+  /// seconds: for cases so long that a disturbance seldom hits the same one each time.
+  void time_each(std::string key, double unit, std::size_t cases,
+                 std::function<void(std::size_t)> work);
   /// Instructions of one call of `work` after `warm_up` calls, by callgrind; only with
   /// --instructions.
   void instructions(std::string key, std::function<void()> work, int warm_up = 1);
@@ -64,6 +69,7 @@ class Bench {
     std::string key;
     double unit;
     std::function<void()> work;
+    std::shared_ptr<std::vector<double>> cases;  // least time of each [s]; null: one case
   };
   struct Counted {
     std::string key;

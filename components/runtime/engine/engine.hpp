@@ -48,7 +48,7 @@ class Engine final : public Host {
   /// Jobs under way; one more is a fault.
   static constexpr std::size_t kMaxJobs = 64;
   /// Received bytes of one stream that wait for a turn; then StreamSink::received refuses more.
-  static constexpr std::size_t kMaxStreamBytes = 256 * 1024;
+  static constexpr std::size_t kMaxStreamBytes = std::size_t{256} * 1024;
   /// Writers remembered per input; beyond, the one not heard for longest is forgotten.
   static constexpr std::size_t kMaxWriters = 256;
 

@@ -117,9 +117,9 @@ class LockstepWorld {
   }
   /// Bytes that need not be a message, for what a broken or hostile writer sends.
   template <class Message>
-  void publish_bytes(const topics::Topic<Message>& topic, Bytes cdr,
+  void publish_bytes(const topics::Topic<Message>& topic, const Bytes& cdr,
                      const std::string& participant = "test", const std::string& host = {}) {
-    write_bytes(declaration_of(topic), std::move(cdr), participant, host);
+    write_bytes(declaration_of(topic), cdr, participant, host);
   }
   /// Of the writer that publish() uses; opens it.
   template <class Message>

@@ -49,7 +49,7 @@ void CostField::load(const CostGrid& costs) {
   if (costs.width() != width_ || costs.height() != height_) {
     width_ = costs.width();
     height_ = costs.height();
-    stride_ = (width_ + 2 + 15) / 16 * 16;
+    stride_ = (width_ + 3 + 15) / 16 * 16;
     // Rows whose distance is a multiple of the page size fall on the same lines of the first cache.
     if (stride_ % 256 == 0) stride_ += 16;
     cells_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2),

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 
 namespace usher::global_planner {
 namespace {
@@ -21,6 +22,12 @@ constexpr int kDx[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kDy[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
 std::uint32_t packed(int x, int y) { return static_cast<std::uint32_t>(y << 16 | x); }
+std::uint32_t three_costs(const std::uint8_t* first) {
+  static_assert(std::endian::native == std::endian::little);
+  std::uint32_t four = 0;
+  std::memcpy(&four, first, sizeof four);
+  return four & 0xffffff;
+}
 BandQueue::Entry make_entry(std::uint32_t value, std::uint32_t cell) {
   return static_cast<BandQueue::Entry>(value) << 32 | cell;
 }
@@ -143,6 +150,13 @@ void GridSearch::expand(const CostField& field, const Target& target, std::uint3
     const auto straight_at = [&](int direction) __attribute__((always_inline)) {
       return straight[costs[cell + offset(direction)]];
     };
+    // Whether all eight neighbours cost what this cell costs.
+    const auto even_around = [&]() __attribute__((always_inline)) {
+      const std::uint32_t beside = three_costs(costs + cell - 1);
+      const std::uint32_t even = (beside >> 8 & 0xff) * 0x010101u;
+      return ((beside ^ even) | (three_costs(costs + cell - stride - 1) ^ even) |
+              (three_costs(costs + cell + stride - 1) ^ even)) == 0;
+    };
     const auto diagonal_at = [&](int direction) __attribute__((always_inline)) {
       return diagonal[costs[cell + offset(direction)]];
     };
@@ -164,9 +178,11 @@ void GridSearch::expand(const CostField& field, const Target& target, std::uint3
       relax(direction, diagonal_at(direction) | (beside & kBlocked));
     };
 
+    const bool even = !kUniform && even_around();
     if constexpr (d % 2 == 0) {
       const std::uint32_t ahead = straight_at(d);
       relax(d, ahead);
+      if (even) continue;
       // In the open and on uniform costs the parent reaches both sides by a diagonal step of its
       // own.
       if (!kUniform || straight_at(d + 3) == kBlocked) {
@@ -185,7 +201,7 @@ void GridSearch::expand(const CostField& field, const Target& target, std::uint3
       relax(d + 1, left);
       relax(d + 7, right);
       relax_diagonal(d, left | right);
-      if constexpr (!kUniform) {
+      if (!kUniform && !even) {
         relax_diagonal(d + 2, left | straight_at(d + 3));
         relax_diagonal(d + 6, right | straight_at(d + 5));
       }
