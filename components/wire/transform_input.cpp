@@ -1,5 +1,7 @@
 #include "wire/transform_input.hpp"
 
+#include <algorithm>
+
 namespace usher::wire {
 
 namespace {
@@ -51,14 +53,11 @@ void TransformInput::take(const tf2_msgs::msg::TFMessage& message, bool fixed) {
 void TransformInput::when_known(const std::string& target, const std::string& source,
                                 runtime::Time stamp,
                                 std::function<void(const geometry::Pose3&)> work) {
-  if (waiting_.empty()) {
-    if (const auto pose = lookup(target, source, stamp)) {
-      work(*pose);
-      return;
-    }
-  }
   if (waiting_.size() == kMaxWaiting) {
-    waiting_.pop_front();
+    // A source that floods pays for itself.
+    const auto own = std::find_if(waiting_.begin(), waiting_.end(),
+                                  [&](const Waiting& other) { return other.source == source; });
+    waiting_.erase(own == waiting_.end() ? waiting_.begin() : own);
     ++dropped_;
   }
   waiting_.push_back({target, source, stamp, host_.now(), std::move(work)});
@@ -66,18 +65,21 @@ void TransformInput::when_known(const std::string& target, const std::string& so
 }
 
 void TransformInput::serve() {
-  // In order of arrival: later work overtakes only what has been given up.
-  while (!waiting_.empty()) {
-    if (const auto pose =
-            lookup(waiting_.front().target, waiting_.front().source, waiting_.front().stamp)) {
-      const auto work = std::move(waiting_.front().work);
-      waiting_.pop_front();
+  for (std::size_t i = 0; i < waiting_.size();) {
+    const auto at = waiting_.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool first = std::none_of(
+        waiting_.begin(), at, [&](const Waiting& earlier) { return earlier.source == at->source; });
+    const auto pose = first ? lookup(at->target, at->source, at->stamp)
+                            : Result<geometry::Pose3>(Error{"others wait before it"});
+    if (pose) {
+      const auto work = std::move(at->work);
+      waiting_.erase(at);
       work(*pose);
-    } else if (host_.now() - waiting_.front().since > kPatience) {
-      waiting_.pop_front();
+    } else if (host_.now() - at->since > kPatience) {
+      waiting_.erase(at);
       ++dropped_;
     } else {
-      return;
+      ++i;
     }
   }
 }

@@ -28,8 +28,10 @@ class TransformInput {
                                         runtime::Time stamp) const;
   const geometry::TransformBuffer& buffer() const { return buffer_; }
 
-  /// Runs `work(target_T_source)` now or in the handler that makes the transform known. Work that
-  /// waited 100 ms is dropped and counted ("tf: dropped"), the oldest too when more than 16 wait.
+  /// Runs `work(target_T_source)` now or in the handler that makes the transform known: in order of
+  /// arrival for one source frame, while no source waits for another. Work that waited 100 ms is
+  /// dropped and counted ("tf: dropped"); when more than 16 wait, so is the oldest of the same
+  /// source, or of all where none of that source waits.
   void when_known(const std::string& target, const std::string& source, runtime::Time stamp,
                   std::function<void(const geometry::Pose3&)> work);
 
