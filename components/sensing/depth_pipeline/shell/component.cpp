@@ -14,7 +14,6 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kImageAge = milliseconds(300);
-constexpr auto kPitchAge = milliseconds(100);
 constexpr auto kTiltAge = milliseconds(500);
 constexpr double kStill = 0.01;  // [rad] between two readings of the servo
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
@@ -35,6 +34,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
     : host_(host),
       config_(read_pipeline(host.parameters())),
       tilt_(host),
+      pitch_(host, kNoScans, [this] { process_waiting(); }),
       rejected_(host.health().counter("images: rejected")),
       without_pitch_(host.health().counter("images: without pitch")),
       while_turning_(host.health().counter("images: camera turning")),
@@ -62,10 +62,6 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
   rear_.output = host.output(topics::kRearProcessed);
   frames_ = host.output(topics::kTf);
 
-  base_ = host.input(
-      topics::kBaseStatus, {.max_age = kPitchAge, .on_loss = kNoScans},
-      [this](const auto& status, const auto&) { take_pitch(status); },
-      [this] { host_.health().set(HealthState::kDegraded, "no pitch"); });
   servo_reading_ = host.input(topics::kKinectTilt,
                               {.max_age = kTiltAge, .on_loss = "trusts the tilt that it asked for"},
                               [this](const auto& tilt, const auto&) { take_tilt(tilt); });
@@ -99,11 +95,7 @@ void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::C
   camera.pipeline.emplace(std::move(made).value());
 }
 
-void DepthPipelineComponent::take_pitch(const usher_msgs::msg::BaseStatus& status) {
-  if (status.state() == usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED) return;
-  if (!pitch_.add(wire::from_message(status.header().stamp()).time_since_epoch(),
-                  {status.pitch(), status.pitch_rate()}))
-    return;
+void DepthPipelineComponent::process_waiting() {
   for (Camera* camera : {&kinect_, &rear_}) {
     if (camera->waiting && process(*camera, *camera->waiting)) camera->waiting.reset();
   }
@@ -132,7 +124,7 @@ void DepthPipelineComponent::take_image(Camera& camera) {
 /// False while the pitch of the image's time is not known yet.
 bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
   const runtime::Time stamp = wire::from_message(image.header().stamp());
-  const auto pitch = pitch_.at(stamp.time_since_epoch());
+  const auto pitch = pitch_.at(stamp);
   if (!pitch) return false;
   if (!camera.mount.backward && turning()) {
     ++while_turning_;

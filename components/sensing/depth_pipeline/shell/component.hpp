@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "foundation/estimation/pitch_history.hpp"
 #include "sensing/depth_pipeline/shell/parameters.hpp"
 #include "sensing/depth_pipeline/shell/scan_output.hpp"
 #include "sensing/depth_pipeline/shell/tilt_control.hpp"
+#include "wire/pitch_input.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -37,7 +37,7 @@ class DepthPipelineComponent final : public runtime::Component {
 
   void take_info(Camera& camera, const sensor_msgs::msg::CameraInfo& info);
   void take_image(Camera& camera);
-  void take_pitch(const usher_msgs::msg::BaseStatus& status);
+  void process_waiting();
   void take_tilt(const usher_msgs::msg::CameraTilt& tilt);
   bool process(Camera& camera, const Image& image);
   void publish(Camera& camera, const DepthView& view, runtime::Time stamp);
@@ -47,10 +47,10 @@ class DepthPipelineComponent final : public runtime::Component {
   runtime::Host& host_;
   PipelineConfig config_;
   TiltControl tilt_;
+  wire::PitchInput pitch_;
   double mount_slope_ = 0.0;
   double rear_angle_ = 0.0;
   double far_ = 12.0;
-  estimation::PitchHistory pitch_;
   double servo_ = 0.0, servo_before_ = 0.0;
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
@@ -58,7 +58,6 @@ class DepthPipelineComponent final : public runtime::Component {
   std::uint64_t& refitted_;
   std::uint64_t& drops_;
   Camera kinect_, rear_;
-  runtime::Input<usher_msgs::msg::BaseStatus> base_;
   runtime::Input<usher_msgs::msg::CameraTilt> servo_reading_;
   runtime::Output<tf2_msgs::msg::TFMessage> frames_;
 };

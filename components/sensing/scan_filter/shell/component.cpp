@@ -11,7 +11,6 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(200);
-constexpr auto kPitchAge = milliseconds(100);
 
 ScanFilterConfig laser_config(runtime::Parameters& p) {
   ScanFilterConfig c;
@@ -49,6 +48,7 @@ ScanFilterConfig ultrasonic_config(runtime::Parameters& p, const ScanFilterConfi
 
 ScanFilterComponent::ScanFilterComponent(runtime::Host& host)
     : host_(host),
+      pitch_(host, "publishes no scans: navigation stops", [this] { filter_waiting(); }),
       rejected_(host.health().counter("scans: rejected")),
       without_pitch_(host.health().counter("scans: without pitch")),
       floor_(host.health().counter("beams: floor")) {
@@ -57,11 +57,6 @@ ScanFilterComponent::ScanFilterComponent(runtime::Host& host)
   ultrasonic_ = make_channel("ultrasonic_level", ultrasonic_config(host.parameters(), laser),
                              host.output(topics::kUltrasonicFiltered));
   frames_ = host.output(topics::kTfStatic);
-  base_ = host.input(
-      topics::kBaseStatus,
-      {.max_age = kPitchAge, .on_loss = "publishes no scans: navigation stops"},
-      [this](const auto& status, const auto&) { take_pitch(status); },
-      [this] { host_.health().set(HealthState::kDegraded, "no pitch"); });
   scan_ = host.input(
       topics::kScan, {.max_age = kScanAge, .on_loss = "publishes no scans: navigation stops"},
       [this](const auto&, const auto&) { take_scan(laser_, scan_.share()); },
@@ -84,11 +79,7 @@ ScanFilterComponent::Channel ScanFilterComponent::make_channel(
   return channel;
 }
 
-void ScanFilterComponent::take_pitch(const usher_msgs::msg::BaseStatus& status) {
-  if (status.state() == usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED) return;
-  if (!pitch_.add(wire::from_message(status.header().stamp()).time_since_epoch(),
-                  {status.pitch(), status.pitch_rate()}))
-    return;
+void ScanFilterComponent::filter_waiting() {
   for (Channel* channel : {&laser_, &ultrasonic_}) {
     if (channel->waiting && filter(*channel, *channel->waiting)) channel->waiting.reset();
   }
@@ -100,7 +91,12 @@ void ScanFilterComponent::take_scan(Channel& channel,
     ++rejected_;
     return;
   }
-  if (channel.waiting) ++without_pitch_;  // its pitch never came
+  if (channel.waiting) {  // its pitch never came
+    ++without_pitch_;
+    const auto pitch = pitch_.at(wire::from_message(channel.waiting->header().stamp()));
+    if (&channel == &laser_ && !pitch && pitch_.current() && host_.now() - laser_left_ > kScanAge)
+      host_.health().set(HealthState::kDegraded, "scan without pitch: " + pitch.error());
+  }
   channel.waiting.reset();
   if (!filter(channel, *scan)) channel.waiting = std::move(scan);
 }
@@ -108,7 +104,7 @@ void ScanFilterComponent::take_scan(Channel& channel,
 /// False while the pitch of the scan's time is not known yet.
 bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::LaserScan& scan) {
   const runtime::Time stamp = wire::from_message(scan.header().stamp());
-  const auto pitch = pitch_.at(stamp.time_since_epoch());
+  const auto pitch = pitch_.at(stamp);
   if (!pitch) return false;
   const ScanGeometry geometry{scan.angle_min(), scan.angle_increment(), scan.range_min(),
                               scan.range_max()};
@@ -137,7 +133,10 @@ bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::Laser
   message.range_max(static_cast<float>(planar.geometry.range_max));
   message.ranges(planar.ranges);
   channel.output.publish(message);
-  if (&channel == &laser_) host_.health().set(HealthState::kOk);
+  if (&channel == &laser_) {
+    laser_left_ = host_.now();
+    host_.health().set(HealthState::kOk);
+  }
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "sensing/scan_filter/core/scan_filter.hpp"
+#include "wire/pitch_input.hpp"
 
 namespace usher::scan_filter {
 
@@ -28,18 +29,18 @@ class ScanFilterComponent final : public runtime::Component {
 
   Channel make_channel(const char* frame, const ScanFilterConfig& config,
                        runtime::Output<sensor_msgs::msg::LaserScan> output);
-  void take_pitch(const usher_msgs::msg::BaseStatus& status);
+  void filter_waiting();
   void take_scan(Channel& channel, std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
   bool filter(Channel& channel, const sensor_msgs::msg::LaserScan& scan);
   void place_frames();
 
   runtime::Host& host_;
-  estimation::PitchHistory pitch_;
+  wire::PitchInput pitch_;
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
   std::uint64_t& floor_;
   Channel laser_, ultrasonic_;
-  runtime::Input<usher_msgs::msg::BaseStatus> base_;
+  runtime::Time laser_left_{};  ///< when the last laser scan did
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
   runtime::Input<sensor_msgs::msg::LaserScan> sonar_;
   runtime::Output<tf2_msgs::msg::TFMessage> frames_;

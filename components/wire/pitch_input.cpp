@@ -1,0 +1,47 @@
+#include "wire/pitch_input.hpp"
+
+#include <utility>
+
+namespace usher::wire {
+
+namespace {
+using runtime::HealthState;
+using std::chrono::milliseconds;
+constexpr auto kMaxAge = milliseconds(100);
+constexpr auto kFuture = milliseconds(20);
+}  // namespace
+
+PitchInput::PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch)
+    : host_(host),
+      on_pitch_(std::move(on_pitch)),
+      refused_(host.health().counter("base/status: refused")),
+      base_(host.input(
+          topics::kBaseStatus, {.max_age = kMaxAge, .on_loss = on_loss},
+          [this](const auto& status, const auto&) { take(status); },
+          [this] { host_.health().set(HealthState::kDegraded, "no pitch"); })) {}
+
+bool PitchInput::current() const { return host_.now() - heard_ <= kMaxAge; }
+
+void PitchInput::take(const usher_msgs::msg::BaseStatus& status) {
+  const bool connected =
+      status.state() != usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED;
+  const Status added = connected ? add(status) : Error{"the base is disconnected"};
+  if (added) {
+    heard_ = host_.now();
+    on_pitch_();
+    return;
+  }
+  if (connected) ++refused_;
+  if (!current()) host_.health().set(HealthState::kDegraded, "no pitch: " + added.error());
+}
+
+Status PitchInput::add(const usher_msgs::msg::BaseStatus& status) {
+  const Time stamp = from_message(status.header().stamp());
+  if (const auto ahead = stamp - host_.now(); ahead > kFuture) {
+    return Error{"base/status must be stamped at most 20 ms ahead of now, got " +
+                 std::to_string(std::chrono::duration_cast<milliseconds>(ahead).count()) + " ms"};
+  }
+  return history_.add(stamp.time_since_epoch(), {status.pitch(), status.pitch_rate()});
+}
+
+}  // namespace usher::wire
