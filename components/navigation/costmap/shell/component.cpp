@@ -34,6 +34,8 @@ grid::OccupancyGrid viewed(const grid::Grid<std::uint8_t>& costs) {
 CostmapComponent::CostmapComponent(runtime::Host& host)
     : host_(host),
       rejected_scans_(host.health().counter("scan: rejected")),
+      late_scans_(host.health().counter("scan: late")),
+      placeless_scans_(host.health().counter("scan: without pose")),
       rejected_maps_(host.health().counter("map: rejected")),
       transforms_(host) {
   auto& parameters = host.parameters();
@@ -102,19 +104,21 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   scan_ = host.input(
       topics::kScanFiltered,
       {.max_age = kScanAge, .on_loss = "publishes no local costs: the local planner stops"},
-      [this](const auto&, const auto&) { take_scan(scan_.share(), laser_beams_, &Map::laser); },
+      [this](const auto&, const auto& info) {
+        take_scan(scan_.share(), info, laser_beams_, &Map::laser);
+      },
       [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
   ultrasonic_ = host.input(
       topics::kUltrasonicFiltered,
       {.max_age = milliseconds(500), .on_loss = "goes on without glass", .optional = true},
-      [this](const auto&, const auto&) {
-        take_scan(ultrasonic_.share(), ultrasonic_beams_, &Map::ultrasonic);
+      [this](const auto&, const auto& info) {
+        take_scan(ultrasonic_.share(), info, ultrasonic_beams_, &Map::ultrasonic);
       });
   read_depth();
   whiskers_ =
       host.input(topics::kWhiskers,
                  {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
-                 [this](const auto& message, const auto&) { take_whiskers(message); });
+                 [this](const auto&, const auto&) { take_whiskers(whiskers_.share()); });
   request_ = host.input(topics::kCostmapRequest, {.optional = true},
                         [this](const auto& request, const auto&) {
                           if (request.id() == last_request_) return;
@@ -159,8 +163,8 @@ void CostmapComponent::read_depth() {
                         {.max_age = kDepthAge,
                          .on_loss = "keeps what this camera saw, goes on with the others",
                          .optional = true},
-                        [this, &input, &beams, layer](const auto&, const auto&) {
-                          take_scan(input.share(), beams, layer);
+                        [this, &input, &beams, layer](const auto&, const auto& info) {
+                          take_scan(input.share(), info, beams, layer);
                         });
   };
   read(topics::kKinectScan, depth_, depth_beams_, &Map::depth);
@@ -241,7 +245,8 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
 }
 
 void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
-                                 Beams& beams, Costmap::LayerId Map::*layer) {
+                                 const runtime::SampleInfo& info, Beams& beams,
+                                 Costmap::LayerId Map::*layer) {
   if (const auto status = wire::check(*scan); !status) {
     ++rejected_scans_;
     return;
@@ -254,8 +259,13 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   const std::string frame = scan->header().frame_id();
   transforms_.when_known(frames::kOdom, frame, stamp,
-                         [this, scan = std::move(scan), &beams, layer, stamp](const auto& pose) {
-                           place_scan(*scan, beams, layer, stamp, geometry::to_plane(pose));
+                         [this, scan = std::move(scan), &beams, layer, stamp,
+                          since = info.effective](const auto& pose) {
+                           if (layer == &Map::laser && host_.now() - since > kScanAge) {
+                             ++late_scans_;  // nobody drives on what was
+                           } else {
+                             place_scan(*scan, beams, layer, stamp, geometry::to_plane(pose));
+                           }
                          });
 }
 
@@ -263,9 +273,10 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
                                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                                   const geometry::Pose2& odom_T_sensor) {
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
-  if (!odom_T_base) return;
-  const bool is_laser = layer == &Map::laser;
-  if (is_laser && host_.now() - stamp > kScanAge) return;  // nobody drives on what was
+  if (!odom_T_base) {
+    ++placeless_scans_;
+    return;
+  }
   const std::span<const float> ranges = layer == &Map::ultrasonic
                                             ? unexplained(scan, odom_T_sensor)
                                             : std::span<const float>(scan.ranges());
@@ -278,7 +289,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
     if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
     observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
   }
-  if (is_laser && host_.now() - local_published_ >= local_period_) publish_local();
+  if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
 /// The echoes that the newest laser scan does not explain.
@@ -308,10 +319,16 @@ void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry:
   if (&map == &global_ || layer == map.laser) map.newest = std::max(map.newest, stamp);
 }
 
-void CostmapComponent::take_whiskers(const usher_msgs::msg::Whiskers& message) {
-  const runtime::Time stamp = wire::from_message(message.header().stamp());
-  const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
-  if (!odom_T_base) return;
+void CostmapComponent::take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message) {
+  const runtime::Time stamp = wire::from_message(message->header().stamp());
+  transforms_.when_known(frames::kOdom, frames::kBaseFootprint, stamp,
+                         [this, message = std::move(message), stamp](const auto& pose) {
+                           place_whiskers(*message, stamp, geometry::to_plane(pose));
+                         });
+}
+
+void CostmapComponent::place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
+                                      const geometry::Pose2& odom_T_base) {
   double front = 0.0, back = 0.0, side = 0.0;  // the footprint's corners
   for (const auto& corner : footprint_) {
     front = std::max(front, corner.x());
@@ -320,7 +337,7 @@ void CostmapComponent::take_whiskers(const usher_msgs::msg::Whiskers& message) {
   }
   std::vector<geometry::Point2> touched;
   const auto touch = [&](bool pressed, double x, double y) {
-    if (pressed) touched.push_back(*odom_T_base * geometry::Point2(x, y));
+    if (pressed) touched.push_back(odom_T_base * geometry::Point2(x, y));
   };
   // What bends a whisker is just beyond the corner; on it, the robot would stand in an obstacle and
   // not find a way out.

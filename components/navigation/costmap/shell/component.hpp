@@ -39,14 +39,16 @@ class CostmapComponent final : public runtime::Component {
   void read_depth_settings(runtime::Parameters& parameters);
   void read_depth();
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
-  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan, Beams& beams,
-                 Costmap::LayerId Map::*layer);
+  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
+                 const runtime::SampleInfo& info, Beams& beams, Costmap::LayerId Map::*layer);
   void place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                   const geometry::Pose2& odom_T_sensor);
   std::span<const float> unexplained(const sensor_msgs::msg::LaserScan& sonar,
                                      const geometry::Pose2& odom_T_sonar);
-  void take_whiskers(const usher_msgs::msg::Whiskers& message);
+  void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
+  void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
+                      const geometry::Pose2& odom_T_base);
   void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
                std::span<const float> ranges, runtime::Time stamp);
   void publish_local();
@@ -66,6 +68,8 @@ class CostmapComponent final : public runtime::Component {
   std::vector<float> echoes_;
 
   std::uint64_t& rejected_scans_;
+  std::uint64_t& late_scans_;
+  std::uint64_t& placeless_scans_;
   std::uint64_t& rejected_maps_;
   Map local_, global_;
   std::optional<Costmap> static_costs_;  ///< of the map alone, like global_

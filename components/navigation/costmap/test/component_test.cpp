@@ -141,6 +141,56 @@ TEST_F(Component, KeepsTheLastContactsOfWhiskersThatFallSilent) {
   EXPECT_EQ(local_cost(0.4, 0.3), kLethalCost);
 }
 
+TEST_F(Component, DropsAndCountsLateScansOfItsOwnHost) {
+  give_map();
+  run(1000);
+  auto late = scan("laser", 1.0F);
+  late.header(wire::header(host.now() - milliseconds(400), "laser"));
+  host.publish(topics::kScanFiltered, late);
+  run(600, false);
+  EXPECT_EQ(host.counter("scan: late"), 1U);
+  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost);
+}
+
+TEST_F(Component, JudgesNoOtherHostsStampsByItsOwnClock) {
+  give_map();
+  for (int i = 0; i < 20; ++i) {  // the clock of the scanner's host is 0.4 s behind
+    run(40, false);
+    auto message = scan("laser", 1.0F);
+    message.header(wire::header(host.now() - milliseconds(400), "laser"));
+    host.world().publish(topics::kScanFiltered, message, "scan_filter", "sensing");
+  }
+  EXPECT_EQ(host.counter("scan: late"), 0U);
+  EXPECT_EQ(local_cost(1.0, 0.0), kLethalCost);
+}
+
+TEST_F(Component, CountsAScanWithoutTheRobotsPose) {
+  give_map();
+  tf2_msgs::msg::TFMessage fixed;
+  fixed.transforms().push_back(
+      wire::transform(host.now(), frames::kOdom, "wall scanner", geometry::Pose3{}));
+  host.publish(topics::kTfStatic, fixed);
+  host.run_for(milliseconds(200));
+  host.publish(topics::kScanFiltered, scan("wall scanner"));
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(host.counter("scan: without pose"), 1U);
+}
+
+TEST_F(Component, WhiskersWaitForTheirTransform) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  whiskers.header(wire::header(host.now() + milliseconds(30), frames::kBaseLink));
+  whiskers.front_left(true);
+  host.publish(topics::kWhiskers, whiskers);
+  run(200);
+  EXPECT_EQ(local_cost(0.4, 0.3), kLethalCost) << "beyond the reach at first";
+  whiskers.header(wire::header(host.now() + std::chrono::seconds(5), frames::kBaseLink));
+  host.publish(topics::kWhiskers, whiskers);
+  run(400);
+  EXPECT_EQ(host.counter("tf: dropped"), 1U);
+}
+
 TEST_F(Component, RejectsAndCountsNonsense) {
   give_map();
   run(500);
