@@ -59,6 +59,8 @@ GlobalPlannerComponent::GlobalPlannerComponent(runtime::Host& host)
 
 void GlobalPlannerComponent::take_costs(const usher_msgs::msg::Costmap& message) {
   auto costs = wire::from_message(message);
+  if (costs && message.header().frame_id() != frames::kMap)
+    costs = Error{"expected the frame map, got '" + message.header().frame_id() + "'"};
   if (!costs) {
     ++rejected_costs_;
     host_.health().set(HealthState::kDegraded, "global costs refused: " + costs.error());
@@ -69,8 +71,11 @@ void GlobalPlannerComponent::take_costs(const usher_msgs::msg::Costmap& message)
 }
 
 void GlobalPlannerComponent::answer(const usher_msgs::msg::PlanRequest& request) {
-  if (last_reply_.id() != request.id() || request.id() == 0) {
+  const bool repeated =
+      request.id() != 0 && request.id() == last_reply_.id() && request.client() == last_client_;
+  if (!repeated) {
     last_reply_ = plan(request);
+    last_client_ = request.client();
     ++plans_;
     if (last_reply_.state() == usher_msgs::msg::GoalStatus_Constants::STATE_FAILED) ++failures_;
     view_.publish(last_reply_.path());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "idl/topics.hpp"
 #include "navigation/global_planner/core/grid_planner.hpp"
@@ -23,6 +24,7 @@ class GlobalPlannerComponent final : public runtime::Component {
   std::optional<GridPlanner> planner_;
   std::optional<CostGrid> costs_;
   usher_msgs::msg::PlanReply last_reply_;
+  std::string last_client_;  ///< who was given it
   std::uint64_t& rejected_costs_;
   std::uint64_t& plans_;
   std::uint64_t& failures_;

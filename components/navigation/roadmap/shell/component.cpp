@@ -128,8 +128,11 @@ void RoadmapComponent::look_for_obstacles(const Point2& robot) {
 }
 
 void RoadmapComponent::answer(const usher_msgs::msg::PlanRequest& request) {
-  if (last_reply_.id() != request.id() || request.id() == 0) {
+  const bool repeated =
+      request.id() != 0 && request.id() == last_reply_.id() && request.client() == last_client_;
+  if (!repeated) {
     last_reply_ = plan(request);
+    last_client_ = request.client();
     ++plans_;
     if (last_reply_.state() == usher_msgs::msg::GoalStatus_Constants::STATE_FAILED) ++failures_;
     view_.publish(last_reply_.path());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "idl/topics.hpp"
@@ -34,6 +35,7 @@ class RoadmapComponent final : public runtime::Component {
   std::optional<grid::Grid<std::uint8_t>> costs_;
   std::vector<Point2> obstacles_;
   usher_msgs::msg::PlanReply last_reply_;
+  std::string last_client_;  ///< who was given it
   std::uint64_t& rejected_;
   std::uint64_t& plans_;
   std::uint64_t& failures_;
