@@ -181,7 +181,7 @@ TEST_F(HostLaw, SamplesRunInOrderOfArrivalThenOfDeclaration) {
   EXPECT_TRUE(same || stage_->tolerance() > Duration::zero());
 }
 
-TEST_F(HostLaw, WhatIsDueRunsInOrderOfTimeThenOfDeclaration) {
+TEST_F(HostLaw, OfWhatIsDueLossesRunFirstThenByTimeThenByDeclaration) {
   auto& order = make<Log<std::string>>();
   struct State {
     Timer late, early, twin;
@@ -195,7 +195,7 @@ TEST_F(HostLaw, WhatIsDueRunsInOrderOfTimeThenOfDeclaration) {
   stage_->run_for(milliseconds(20));
   stage_->hold("subject", milliseconds(340));
   ASSERT_TRUE(wait_for(order, 4));
-  EXPECT_THAT(order.all(), ElementsAre("early", "twin", "stale", "late"));
+  EXPECT_THAT(order.all(), ElementsAre("stale", "early", "twin", "late"));
 }
 
 TEST_F(HostLaw, SamplesRunBeforeWhatIsDue) {

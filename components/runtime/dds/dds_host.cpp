@@ -101,6 +101,7 @@ class DdsPlatform final : public Platform {
   Result<Bytes> kept(const std::string& key) override { return store_.kept(key); }
 
   int wake_descriptor() const { return wake_; }
+  void stop_jobs() { worker_.stop(); }
 
  private:
   const MonotonicClock clock_;
@@ -127,6 +128,10 @@ class DdsHost::Implementation {
         platform(file, clock),
         transport(std::move(given)),
         engine(std::move(file), platform, *transport) {}
+  /// A job may still keep() through the engine.
+  ~Implementation() { platform.stop_jobs(); }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
 
   /// Until there is work, the next turn is due, or the host shall stop.
   void wait() {

@@ -2,7 +2,7 @@
 
 namespace usher::runtime {
 
-Worker::~Worker() {
+void Worker::stop() {
   {
     const std::scoped_lock lock(mutex_);
     stop_ = true;
@@ -14,6 +14,7 @@ Worker::~Worker() {
 void Worker::submit(std::function<void()> job) {
   {
     const std::scoped_lock lock(mutex_);
+    if (stop_) return;
     jobs_.push_back(std::move(job));
     if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   }

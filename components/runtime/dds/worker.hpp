@@ -13,12 +13,13 @@ namespace usher::runtime {
 class Worker {
  public:
   Worker() = default;
-  /// Waits for the job that runs; the others are dropped.
-  ~Worker();
+  ~Worker() { stop(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
   void submit(std::function<void()> job);
+  /// Waits for the job that runs; the others are dropped, and so is what is submitted after.
+  void stop();
 
  private:
   void run();

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "idl/topics.hpp"
@@ -294,7 +295,7 @@ class Engine::State {
     return true;
   }
 
-  /// Whatever is due first: a timer, a loss or the heartbeat.
+  /// Whatever runs first: a loss that is due, else the timer, loss or heartbeat of the least time.
   struct Due {
     Time time = Time::max();
     std::uint32_t order = 0;
@@ -305,7 +306,9 @@ class Engine::State {
     Due first;
     const auto consider = [&](Time time, std::uint32_t order, EngineTimer* timer,
                               EngineInput* input) {
-      if (time < first.time || (time == first.time && order < first.order)) {
+      const bool lost = input != nullptr && time <= now;
+      const bool first_lost = first.input != nullptr && first.time <= now;
+      if (std::tuple(!lost, time, order) < std::tuple(!first_lost, first.time, first.order)) {
         first = {time, order, timer, input};
       }
     };

@@ -39,8 +39,9 @@ namespace usher::runtime {
 ///
 /// A turn takes what has arrived when it begins, at most `depth` samples per input and writer, and
 /// reads the clock once. It runs samples and posted events in order of arrival (ties: posted events
-/// first, then inputs by declaration), then what is due: timers, losses of freshness and the
-/// heartbeat, in order of time, ties by declaration, each at most once.
+/// first, then inputs by declaration), then what is due: losses of freshness, so that no timer
+/// finds an input stale before its loss is told, then timers and the heartbeat; each in order of
+/// time, ties by declaration, at most once.
 class Engine final : public Host {
  public:
   /// Events waiting for a turn (discovery, streams, offloaded jobs); one more is a fault.

@@ -273,6 +273,30 @@ TEST(DdsHost, KeepsValuesOverItsLife) {
   EXPECT_THAT(found, testing::ElementsAre("nothing", "42", "nothing"));
 }
 
+TEST(DdsHost, AJobUnderWayKeepsThoughTheHostEnds) {
+  const usher::test::Folder folder;
+  ParameterFile parameters = file("keeper");
+  parameters.run_directory = folder.path();
+  std::atomic<bool> started{false};
+  {
+    Running ending(parameters, Scripted::factory([&](Host& host) {
+                     host.timer("once", 10ms, [&, asked = false](std::uint64_t) mutable {
+                       if (std::exchange(asked, true)) return;
+                       host.offload(
+                           1ms,
+                           [&] {
+                             started = true;
+                             std::this_thread::sleep_for(200ms);  // the host ends meanwhile
+                             EXPECT_TRUE(host.keep("late", Bytes{'7'}).ok());
+                           },
+                           [] {});
+                     });
+                   }));
+    while (!started) std::this_thread::yield();
+  }
+  Running(parameters, Scripted::factory([](Host& host) { EXPECT_TRUE(host.kept("late").ok()); }));
+}
+
 TEST(DdsHost, ReportsWritersOfAWatchedTopicInHandlers) {
   std::vector<std::string> events;
   std::atomic<int> count{0};
