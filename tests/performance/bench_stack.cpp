@@ -283,9 +283,10 @@ double lockstep_realtime_factor() {
 }
 
 int run(int argc, char** argv) {
-  Bench bench("stack",
-              "deploy/demo.yaml: 15 components as processes, 30 s of driving; the same for 60 s in "
-              "lock-step");
+  Bench bench(
+      "stack",
+      "the components of deploy/demo.yaml as processes, 30 s of driving; the same for 60 s in "
+      "lock-step");
   Measurement measurement;
   const auto of_processes = [&](const char* key, double Processes::*figure) {
     bench.metric(key, [&measurement, figure] { return measurement.processes().*figure; });

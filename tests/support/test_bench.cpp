@@ -60,6 +60,19 @@ TEST(Bench, FailsWhenATargetIsMissed) {
   EXPECT_FALSE(YAML::Load(output.text)["pass"].as<bool>());
 }
 
+TEST(Bench, JudgesTimesByTheRatioOnASlowMachineOnly) {
+  Bench bench("slow", "none");
+  const auto ratio = [&] { return std::max(1.0, bench.metrics().at("machine_ratio")); };
+  bench.metric("in_time_ms", [&] { return 2.0 * ratio(); });
+  bench.metric("late_ms", [&] { return 2.01 * ratio(); });
+  bench.metric("exact", [&] { return 2.0; });
+  bench.target("in_time_ms", Bound::kAtMost, 2.0);
+  bench.target("exact", Bound::kAtMost, 2.0);
+  EXPECT_EQ(run(bench, {"--json"}).exit_code, 0);
+  bench.target("late_ms", Bound::kAtMost, 2.0);
+  EXPECT_EQ(run(bench, {"--json"}).exit_code, 1);
+}
+
 TEST(Bench, PrintsNullForWhatIsNotANumberAndMissesItsTarget) {
   Bench bench("nan", "none");
   bench.metric("speed", [] { return std::numeric_limits<double>::quiet_NaN(); });
