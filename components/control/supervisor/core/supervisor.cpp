@@ -263,6 +263,9 @@ void Supervisor::explain(Time now) {
         .append(base_ ? ": base/status is silent" : ": no base/status yet");
   } else if (base_->emergency) {
     reason_.assign("the base leaves its emergency stop");
+  } else if (!base_->ready) {
+    reason_.assign(parameters_.names.base)
+        .append(": the base is disconnected or its motors are off");
   } else if (!stopped_by_.empty()) {
     reason_.assign("stopped by ").append(stopped_by_.front());
     for (std::size_t i = 1; i < stopped_by_.size(); ++i)
@@ -283,7 +286,8 @@ void Supervisor::grant(bool able) {
 const Decision& Supervisor::step(Time now) {
   table_.judge(now);
   note_faults(now);
-  const bool able = !table_.missing_critical() && holder() && base_heard(now) && !base_->emergency;
+  const bool able = !table_.missing_critical() && holder() && base_heard(now) &&
+                    !base_->emergency && base_->ready;
   const bool fault = faults_.latched() != nullptr;
   decision_.state = behavior_.step(able, fault, now);
   grant(able);

@@ -105,6 +105,20 @@ TEST(Supervisor, ALostSerialLineIsNoDisobedience) {
   EXPECT_EQ(robot.state(), State::kFault);
 }
 
+TEST(Supervisor, NobodyDrivesABaseThatIsNotReady) {
+  Robot robot = guiding();
+  robot.base.ready = false;
+  robot.run(20);
+  EXPECT_FALSE(robot.granted());
+  EXPECT_EQ(robot.reason(), "segway_rmp: the base is disconnected or its motors are off");
+  robot.run(2000);
+  EXPECT_EQ(robot.state(), State::kInactive);
+  robot.base.ready = true;
+  robot.run(400);
+  EXPECT_TRUE(robot.granted());
+  EXPECT_EQ(robot.state(), State::kNavigationActive) << "the mission goes on";
+}
+
 TEST(Supervisor, AGapInTheBasesReportsProvesNoDisobedience) {
   Robot robot = guiding();
   robot.base_unheard = true;

@@ -75,6 +75,11 @@ void BaseObedience::grant(const Grant& grant, Time now) {
   }
 }
 
+bool BaseObedience::of_grantor(const WriterId& writer, Time now) const {
+  return grantor_at_ && now - *grantor_at_ < limits_.grant_expiry &&
+         same_participant(writer, grantor_);
+}
+
 Reason BaseObedience::grant_state(Time now) const {
   if (dispute_at_ && now - *dispute_at_ < limits_.grant_expiry) return Reason::kTwoGrantors;
   if (!granted_at_) return Reason::kNoGrant;

@@ -94,6 +94,9 @@ class BaseObedience {
   /// What to drive at `now`; call it in every cycle of the base.
   Decision permitted(Time now) const;
 
+  /// Whether this writer belongs to who grants the right to drive, and that one is heard.
+  bool of_grantor(const WriterId& writer, Time now) const;
+
   /// The highest epoch heard, for the base's status: a supervisor that lost its memory continues
   /// above it.
   std::uint64_t highest_epoch() const { return highest_epoch_; }

@@ -36,7 +36,8 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       obedience_(read_limits(host.parameters())),
       wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
                                              "Of the driven wheels; also the axle's height.")),
-      foreign_(host.health().counter("commands: foreign writer")) {
+      foreign_(host.health().counter("commands: foreign writer")),
+      foreign_requests_(host.health().counter("requests: foreign writer")) {
   grant_ = host.input(
       topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
@@ -61,8 +62,9 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
         device_.drive(decision_.twist);
       },
       [this] { cycle(); });
-  request_ = host.input(topics::kBaseRequest, {.optional = true},
-                        [this](const auto& request, const auto&) { take_request(request); });
+  request_ = host.input(
+      topics::kBaseRequest, {.optional = true},
+      [this](const auto& request, const auto& info) { take_request(request, info.writer); });
   status_ = host.output(topics::kBaseStatus);
   odom_ = host.output(topics::kOdom);
   transforms_ = host.output(topics::kTf);
@@ -77,8 +79,13 @@ void ObedientBase::cycle() {
   cycled_();
 }
 
-void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request) {
+void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request,
+                                const runtime::Guid& writer) {
   using namespace usher_msgs::msg::BaseRequest_Constants;
+  if (!obedience_.of_grantor(writer, host_.now().time_since_epoch())) {
+    ++foreign_requests_;
+    return;
+  }
   if (request.id() == last_request_) return;
   last_request_ = request.id();
   if (request.command() == COMMAND_EMERGENCY_STOP) device_.emergency_stop();

@@ -54,7 +54,7 @@ class ObedientBase {
 
  private:
   void cycle();
-  void take_request(const usher_msgs::msg::BaseRequest& request);
+  void take_request(const usher_msgs::msg::BaseRequest& request, const runtime::Guid& writer);
   void publish_status();
   void publish_battery();
 
@@ -68,6 +68,7 @@ class ObedientBase {
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;
   std::uint64_t& foreign_;
+  std::uint64_t& foreign_requests_;
 
   runtime::Input<usher_msgs::msg::DriveGrant> grant_;
   runtime::Input<usher_msgs::msg::DriveCommand> command_;

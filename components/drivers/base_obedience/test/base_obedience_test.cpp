@@ -26,6 +26,19 @@ constexpr WriterId kRogue = writer(66);
 constexpr WriterId kSupervisor = writer(7);
 constexpr WriterId kOtherSupervisor = writer(8);
 
+TEST(BaseObedience, OnlyWhoGrantsMayAskTheBase) {
+  WriterId request = kSupervisor;
+  request.back() = 9;  // another writer of the same participant
+  BaseObedience base;
+  EXPECT_FALSE(base.of_grantor(request, milliseconds(0)));
+  base.grant({kNobody, 1, kSupervisor}, milliseconds(0));
+  EXPECT_TRUE(base.of_grantor(request, milliseconds(119)));
+  EXPECT_FALSE(base.of_grantor(kRogue, milliseconds(119)));
+  base.grant({kRogue, 9, kRogue}, milliseconds(119));
+  EXPECT_FALSE(base.of_grantor(kRogue, milliseconds(119))) << "a second grantor";
+  EXPECT_FALSE(base.of_grantor(request, milliseconds(120))) << "silent";
+}
+
 struct GrantAt {
   int ms;
   WriterId to;

@@ -126,7 +126,7 @@ TEST_F(DeviceReal, StopsAtOnceInAnEmergency) {
   usher_msgs::msg::BaseRequest request;
   request.id(1);
   request.command(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
-  host.publish(topics::kBaseRequest, request);
+  host.publish(topics::kBaseRequest, request, "supervisor");
   right.run(300);
   EXPECT_GT(device->emergency_stops, 0);
   EXPECT_EQ(state(), STATE_EMERGENCY);

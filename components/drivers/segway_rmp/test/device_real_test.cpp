@@ -45,11 +45,11 @@ class Device final : public runtime::LockstepDevice {
 class DeviceReal : public testing::Test {
  protected:
   std::uint8_t state() const { return host.last(topics::kBaseStatus)->state(); }
-  void request(std::uint8_t command) {
+  void request(std::uint8_t command, const char* client = "supervisor") {
     usher_msgs::msg::BaseRequest message;
     message.id(++id);
     message.command(command);
-    host.publish(topics::kBaseRequest, message);
+    host.publish(topics::kBaseRequest, message, client);
   }
   std::shared_ptr<Device> device = std::make_shared<Device>();
   runtime::TestHost host{runtime::component_factory<SegwayRmpComponent>("segway_rmp"), "", device};
@@ -106,6 +106,21 @@ TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndReturnsByItself) {
   device->silent = false;
   right.run(1000);
   EXPECT_EQ(state(), STATE_BALANCING);
+}
+
+TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {
+  right.run(2000);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP, "stranger");
+  right.run(200);
+  EXPECT_EQ(device->shutdowns, 0);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  right.run(200);
+  const int balances = device->balances;
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_RESET, "stranger");
+  right.run(200);
+  EXPECT_EQ(device->balances, balances);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
 }
 
 TEST_F(DeviceReal, RemembersAnEmergencyStopOverARestart) {
