@@ -45,6 +45,7 @@ Status check(const NavigatorConfig& c) {
                  {"recovery_patience", c.recovery_patience, 0.1, 120.0},
                  {"stall_time", c.stall_time, 1.0, 120.0},
                  {"most_recoveries", static_cast<double>(c.most_recoveries), 0.0, 100.0},
+                 {"near_enough", c.near_enough, 0.0, 2.0},
                  {"recovery_progress", c.recovery_progress, 0.1, 100.0},
                  {"back_off_distance", c.back_off_distance, 0.0, 2.0},
                  {"rear_margin", c.rear_margin, 0.0, 2.0},
@@ -510,6 +511,12 @@ void Navigator::wait_blocked(const Situation& s) {
 // --- Recovering
 
 void Navigator::recover(const Situation& s, Failure failure, const std::string& reason) {
+  const double off = s.pose ? geometry::distance(*s.pose, status_.goal) : HUGE_VAL;
+  if (recoveries_in_a_row_ >= kRecoveryKinds && off <= config_.near_enough) {
+    status_.progress = 1.0;
+    return finish(GoalState::kSucceeded, Failure::kNone,
+                  text("%.2f m from the goal, which is blocked", off));
+  }
   if (recoveries_in_a_row_ >= config_.most_recoveries)
     return finish(GoalState::kFailed, failure, reason);
   const int kind = recoveries_in_a_row_++ % kRecoveryKinds;

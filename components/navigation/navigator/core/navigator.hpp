@@ -34,6 +34,7 @@ struct NavigatorConfig {
   double stall_time = 15.0;        ///< [s] without getting nearer counts as blocked
 
   int most_recoveries = 6;         ///< in a row without progress; clear, back off, look, clear, ...
+  double near_enough = 0.35;       ///< [m] of the goal: each recovery tried once, it has arrived
   double recovery_progress = 1.0;  ///< [m] on the way that forgives earlier recoveries
   double back_off_distance = 0.3;  ///< [m]
   double rear_margin = 0.2;        ///< [m] room that must stay behind the robot

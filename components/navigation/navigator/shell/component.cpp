@@ -52,6 +52,8 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
   number("time_factor", "-", 1, 100, c.time_factor, "This many times its path at the usual speed.");
   number("usual_speed", "m/s", 0.05, 2, c.usual_speed,
          "Kept on average: the first guess for the time of arrival.");
+  number("near_enough", "m", 0, 2, c.near_enough,
+         "Blocked so near the goal that no recovery helps, it has arrived.");
   c.most_recoveries =
       static_cast<int>(parameters.integer("most_recoveries", "-", {0, 100}, c.most_recoveries,
                                           "Recoveries in a row without progress."));

@@ -171,6 +171,21 @@ TEST(NavigatorInTrouble, WaitsBeforeItPlansRoundWhatBlocks) {
   }
 }
 
+TEST(NavigatorInTrouble, HasArrivedWhereNothingBringsItNearer) {
+  for (const bool near : {true, false}) {
+    Rig rig;
+    rig.go();  // to (8, 0)
+    rig.run(0.5);
+    rig.s.pose = Pose2{near ? 7.7 : 7.6, 0.0, 2.0};
+    rig.drive = Rig::stand_blocked;
+    ASSERT_FALSE(std::isnan(rig.run_to_end(300.0)));
+    EXPECT_EQ(rig.status().state, near ? GoalState::kSucceeded : GoalState::kFailed);
+    EXPECT_EQ(rig.status().recoveries, near ? 3u : 6u);
+    EXPECT_EQ(rig.status().reason,
+              near ? "0.30 m from the goal, which is blocked" : "an obstacle 0.4 m ahead");
+  }
+}
+
 TEST(NavigatorInTrouble, ReplansWhileAStandingRobotStillFollows) {
   Rig rig;
   rig.go();
