@@ -4,6 +4,7 @@
 
 #include "navigation/costmap/core/echo_check.hpp"
 #include "wire/conversions.hpp"
+#include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 
 namespace usher::costmap {
@@ -33,18 +34,13 @@ grid::OccupancyGrid viewed(const grid::Grid<std::uint8_t>& costs) {
 
 CostmapComponent::CostmapComponent(runtime::Host& host)
     : host_(host),
+      footprint_(wire::read_footprint(host)),
       rejected_scans_(host.health().counter("scan: rejected")),
       late_scans_(host.health().counter("scan: late")),
       placeless_scans_(host.health().counter("scan: without pose")),
       rejected_maps_(host.health().counter("map: rejected")),
       transforms_(host) {
   auto& parameters = host.parameters();
-  const auto corners = parameters.numbers(
-      "robot.footprint", "m", {-5, 5}, 6, 2 * geometry::Footprint::kMaxCorners,
-      "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
-  for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
-    footprint_.emplace_back(corners[i], corners[i + 1]);
-
   resolution_ =
       parameters.number("resolution", "m", {0.01, 0.5}, 0.05, "Side of a cell of the local costs.");
   local_size_ = parameters.number("local_size", "m", {2, 40}, 6.0,
@@ -92,12 +88,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
 
   local_.frame = frames::kOdom;
   global_.frame = frames::kMap;
-  if (!footprint_.empty()) {  // empty while the component is only described, or refused for its
-                              // parameters
-    const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
-    local_.costs.emplace(make(true, {cells, cells, resolution_, 0.0, 0.0}));
-    add_layers(local_);
-  }
+  const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
+  local_.costs.emplace(make(true, {cells, cells, resolution_, 0.0, 0.0}));
+  add_layers(local_);
 
   map_ =
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
@@ -176,7 +169,7 @@ CostmapConfig CostmapComponent::config(bool rolling, const grid::GridGeometry& w
   CostmapConfig config = settings_;
   config.window = window;
   config.rolling = rolling;
-  config.footprint = footprint_;
+  config.footprint.assign(footprint_.corners().begin(), footprint_.corners().end());
   return config;
 }
 
@@ -330,7 +323,7 @@ void CostmapComponent::take_whiskers(std::shared_ptr<const usher_msgs::msg::Whis
 void CostmapComponent::place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                                       const geometry::Pose2& odom_T_base) {
   double front = 0.0, back = 0.0, side = 0.0;  // the footprint's corners
-  for (const auto& corner : footprint_) {
+  for (const auto& corner : footprint_.corners()) {
     front = std::max(front, corner.x());
     back = std::min(back, corner.x());
     side = std::max(side, std::abs(corner.y()));

@@ -56,7 +56,7 @@ class CostmapComponent final : public runtime::Component {
   void report();
 
   runtime::Host& host_;
-  std::vector<geometry::Point2> footprint_;
+  geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
   double depth_blind_range_ = 0.0;

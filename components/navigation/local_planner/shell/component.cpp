@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "wire/conversions.hpp"
+#include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 
 namespace usher::local_planner {
@@ -31,17 +32,7 @@ constexpr double kPathTurn = 0.002;         // [rad]
 DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) {
   auto& p = host.parameters();
   DynamicWindowConfig c;
-  const auto corners =
-      p.numbers("robot.footprint", "m", {-5, 5}, 6, 2 * Footprint::kMaxCorners,
-                "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
-  std::vector<geometry::Point2> outline;
-  for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
-    outline.emplace_back(corners[i], corners[i + 1]);
-  if (!outline.empty()) {
-    auto footprint = Footprint::make(outline);
-    if (!footprint) host.fault("robot.footprint: " + footprint.error());
-    c.footprint = std::move(footprint).value();
-  }
+  c.footprint = wire::read_footprint(host);
   const auto speeds = p.numbers("robot.stopping.speeds", "m/s", {0, 5}, 1, 20, {1.0, 1.4},
                                 "Speeds at which the stopping distance was measured, rising.");
   const auto distances = p.numbers("robot.stopping.distances", "m", {0, 20}, 1, 20, {1.48, 2.08},

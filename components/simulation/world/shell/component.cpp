@@ -5,6 +5,7 @@
 
 #include "foundation/grid/map_file.hpp"
 #include "wire/conversions.hpp"
+#include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 
 namespace usher::world {
@@ -52,24 +53,13 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
   auto& p = host.parameters();
   WorldConfig config;
   RobotConfig& robot = config.robot;
-  const auto corners =
-      p.numbers("robot.footprint", "m", {-5, 5}, 6, 24,
-                "Corners of the robot's outline on the floor in base_footprint: x, y, x, y, ...");
-  if (!corners.empty()) robot.footprint.clear();
-  double front = 0.0, side = 0.0;
-  for (std::size_t i = 0; i + 1 < corners.size(); i += 2) {
-    robot.footprint.emplace_back(corners[i], corners[i + 1]);
-    front = std::max(front, corners[i]);
-    side = std::max(side, corners[i + 1]);
+  const auto footprint = wire::read_footprint(host);
+  robot.footprint.assign(footprint.corners().begin(), footprint.corners().end());
+  robot.whiskers.x = robot.whiskers.y = 0.0;
+  for (const auto& corner : robot.footprint) {
+    robot.whiskers.x = std::max(robot.whiskers.x, corner.x());
+    robot.whiskers.y = std::max(robot.whiskers.y, corner.y());
   }
-  // The world wants its polygons counter-clockwise.
-  double area = 0.0;
-  for (std::size_t i = 0; i < robot.footprint.size(); ++i) {
-    const auto& a = robot.footprint[i];
-    const auto& b = robot.footprint[(i + 1) % robot.footprint.size()];
-    area += a.x() * b.y() - a.y() * b.x();
-  }
-  if (area < 0.0) std::reverse(robot.footprint.begin(), robot.footprint.end());
   robot.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
                                "Of the driven wheels; also the axle's height.");
   robot.lasers.front().mount.x =
@@ -93,8 +83,6 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
                            "Ring of the ultrasonic sensors above the axle's middle.");
   robot.sonar.spacing = p.number("robot.ultrasonic.spacing", "rad", {0.05, 1.6},
                                  "Angle between two ultrasonic sensors.");
-  if (front > 0.0) robot.whiskers.x = front;
-  if (side > 0.0) robot.whiskers.y = side;
   return config;
 }
 
