@@ -7,10 +7,8 @@
 namespace usher::local_planner {
 namespace {
 
-constexpr double kBehind = 0.3;  // [m] of path behind the robot that still counts as near
-constexpr double kStandsStill =
-    0.3;                            // [m/s] a disc slower than this is in the way until it has gone
-constexpr double kForesight = 3.0;  // [s] that moving discs are foreseen
+constexpr double kBehind = 0.3;            // [m] of path behind the robot that still counts as near
+constexpr double kForesight = 3.0;         // [s] that moving discs are foreseen
 constexpr double kPolylineStep = 0.1;      // [m] 3 mm off an arc of 0.5 m
 constexpr double kTurnOnSpot = 0.15;       // [m/s] slower than this a turn is one on the spot
 constexpr double kTurnMatters = 0.05;      // [rad/s]
@@ -51,11 +49,6 @@ void DynamicWindow::choose_local_goal(const Input& input) {
   }
   const grid::Cell goal_cell = geometry.cell_at(path_.point(local_goal_arc_));
   wavefront_.set_obstacles(input.costs, kCostInscribed, config_.unknown_is_lethal);
-  for (const MovingDisc& disc : input.discs) {
-    if (disc.velocity.norm() > kStandsStill) continue;  // who walks will be elsewhere
-    wavefront_.close(disc.position.x(), disc.position.y(),
-                     disc.radius + config_.footprint.inscribed_radius(), geometry);
-  }
   way_open_ = false;
   if (!geometry.contains(goal_cell)) {  // the path is outside of the window
     goal_lengths_.assign(geometry.size(), Wavefront::kUnreachable);
@@ -118,9 +111,9 @@ void DynamicWindow::sample(const Input& input, double fastest) {
                         config_.response.time_constant, config_.response.acceleration};
   // Who walks is looked at for longer: there is time to let them pass.
   const double step = rollout_.settings().step;
-  const int least_steps = input.discs.empty() ? config_.steps
-                                              : std::clamp(static_cast<int>(kForesight / step),
-                                                           config_.steps, Rollout::kMostSteps);
+  const int least_steps = input.walkers.empty() ? config_.steps
+                                                : std::clamp(static_cast<int>(kForesight / step),
+                                                             config_.steps, Rollout::kMostSteps);
   int most_steps = least_steps;
   const double anticipated = config_.response.time_constant + config_.response.latency;
   for (int i = 0; i < config_.speed_samples + reverse; ++i) {

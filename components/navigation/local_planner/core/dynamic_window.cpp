@@ -26,6 +26,7 @@ constexpr double kSweep =
 constexpr double kLaneGap = 0.05;   // [m] beside the clearance, to what stands on its side
 constexpr double kMeeting = 1.2;    // [m] of path within which somebody is met
 constexpr double kWalksOn = 0.2;    // [m/s] the same way: no meeting
+constexpr double kWalks = 0.3;      // [m/s] slower, the costs say all
 constexpr double kPolite = 6.0;     // [s] that it gives way
 constexpr double kMetAnew = 3.0;    // [s] without anybody, until it does so again
 constexpr double kSamePlace = 0.3;  // [m]
@@ -178,9 +179,20 @@ bool DynamicWindow::valid(const Input& input) const {
   const double x = (input.pose.x - g.origin_x) / g.resolution;
   const double y = (input.pose.y - g.origin_y) / g.resolution;
   if (!(x >= 0.0 && y >= 0.0 && x < g.width && y < g.height)) return false;
-  return std::all_of(input.discs.begin(), input.discs.end(), [](const MovingDisc& d) {
+  return std::all_of(input.people.begin(), input.people.end(), [](const MovingDisc& d) {
     return d.position.allFinite() && d.velocity.allFinite() && d.radius >= 0.0 && d.radius < 100.0;
   });
+}
+
+/// Whoever comes from behind sees the robot.
+void DynamicWindow::find_walkers(const Pose2& pose, std::span<const MovingDisc> people) {
+  const geometry::Point2 ahead(std::cos(pose.yaw), std::sin(pose.yaw));
+  walkers_.clear();
+  for (const MovingDisc& person : people) {
+    if (person.velocity.norm() < kWalks) continue;
+    if ((person.position - pose.position()).dot(ahead) < 0.0) continue;
+    walkers_.push_back(person);
+  }
 }
 
 void DynamicWindow::load(const Input& input) {
@@ -212,9 +224,9 @@ Decision DynamicWindow::brake(const Input& input) {
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
   if (standing) return decision;
-  if (!input.discs.empty()) {
+  if (!input.walkers.empty()) {
     Input alone = input;
-    alone.discs = {};
+    alone.walkers = {};
     drive(alone, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
   }
   const Trajectory* best = nullptr;
@@ -238,11 +250,13 @@ Decision DynamicWindow::brake(const Input& input) {
 
 Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                const Twist2& measured, const Twist2& last_command,
-                               double seconds_since_last, std::span<const MovingDisc> discs) {
+                               double seconds_since_last, std::span<const MovingDisc> people) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
-  const Input input{costs, pose, measured, last_command, seconds, discs};
+  Input input{costs, pose, measured, last_command, seconds, people, {}};
   if (!valid(input)) return refused();
+  find_walkers(pose, people);
+  input.walkers = walkers_;
   trail_.add(pose);
   if (path_.empty()) return halt(input, Reason::kNoPath, config_.limits.deceleration);
   path_.advance(pose.position());
@@ -374,18 +388,19 @@ bool DynamicWindow::must_turn_first(const Input& input, double& heading) {
 
 /// Who meets a robot waits for it to stand before squeezing past: creeping on drives them back.
 bool DynamicWindow::gives_way(const Input& input) {
-  const bool met = std::any_of(people_.begin(), people_.end(), [&](const MovingDisc& person) {
-    const geometry::Point2 way = person.position - input.pose.position();
-    const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
-    if (way.dot(heading) < 0.0 || person.velocity.dot(heading) > kWalksOn) return false;
-    constexpr double kStep = 0.1;  // [m]
-    for (int i = 0; kStep * i < kMeeting; ++i) {
-      if ((path_.point(path_.progress() + kStep * i) - person.position).norm() <
-          config_.footprint.inscribed_radius() + person.radius)
-        return true;
-    }
-    return false;
-  });
+  const bool met =
+      std::any_of(input.people.begin(), input.people.end(), [&](const MovingDisc& person) {
+        const geometry::Point2 way = person.position - input.pose.position();
+        const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
+        if (way.dot(heading) < 0.0 || person.velocity.dot(heading) > kWalksOn) return false;
+        constexpr double kStep = 0.1;  // [m]
+        for (int i = 0; kStep * i < kMeeting; ++i) {
+          if ((path_.point(path_.progress() + kStep * i) - person.position).norm() <
+              config_.footprint.inscribed_radius() + person.radius)
+            return true;
+        }
+        return false;
+      });
   met_nobody_ = met ? 0.0 : met_nobody_ + input.seconds;
   gave_way_ = met ? gave_way_ + input.seconds : met_nobody_ > kMetAnew ? 0.0 : gave_way_;
   return met && gave_way_ < kPolite;
@@ -406,7 +421,7 @@ Decision DynamicWindow::follow(const Input& input) {
     turning_ = 0;  // no room to turn: perhaps an arc leads out
   }
   choose_local_goal(input);
-  lane_.choose(path_, input.costs, input.discs, input.seconds);
+  lane_.choose(path_, input.costs, input.walkers, input.seconds);
   if (gives_way(input)) {
     drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
     Decision decision = brake(input);
@@ -459,7 +474,7 @@ Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, 
   sample(input, fastest);
   const RolloutStart start{input.pose, input.measured, input.last_command};
   rollout_.run(start, speeds_, turns_, input.costs, bits_, contacts, config_.footprint,
-               input.discs);
+               input.walkers);
   Decision decision;
   decision.reason = Reason::kFollowing;
   decision.trajectories = static_cast<int>(rollout_.trajectories().size());
@@ -511,7 +526,7 @@ Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Po
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   if (!pose.finite()) return refused();
   const double turn = trail_.turn_rate_back(pose, speed);
-  const Input input{costs, pose, measured, last_command, seconds, {}};
+  const Input input{costs, pose, measured, last_command, seconds, {}, {}};
   const Decision back = recover(input, {-speed, turn});
   return back.blocked ? recover(input, {-speed, 0.0}) : back;
 }
@@ -521,7 +536,7 @@ Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose
                                double seconds_since_last, double rate) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
-  const Input input{costs, pose, measured, last_command, seconds, {}};
+  const Input input{costs, pose, measured, last_command, seconds, {}, {}};
   if (!valid(input) || !std::isfinite(rate)) return refused();
   load(input);
   // Looking around is worth no touch: only with room.

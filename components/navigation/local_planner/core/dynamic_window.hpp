@@ -136,7 +136,7 @@ struct Decision {
 };
 
 /// Follows a path on a local cost grid [fox1997dynamic, gerkey2008planning]. Grid, path, poses and
-/// discs are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
+/// people are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
 /// microseconds and allocates only when grid or samples grow. Same inputs, same decisions, on every
 /// processor.
 class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
@@ -152,17 +152,15 @@ class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): ther
   /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
   /// has been taken away: forward from a touch behind, backward from one in front.
   void set_touches(const Touches& touches) { touches_ = touches; }
-  /// Everybody who is known to be a person, also who stands, in the frame of the costs. Before
-  /// whom it meets on its way it stands for a while and lets them pass.
-  void set_people(std::span<const MovingDisc> people) {
-    people_.assign(people.begin(), people.end());
-  }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
   Status set_pace(double pace);
 
+  /// `people`: everybody who is known to be one, also who stands, in the frame of the costs. Who
+  /// walks, not behind the axle, is foreseen; who stands is where the costs say. Before whom it
+  /// meets on its way it stands for a while and lets them pass.
   Decision decide(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                  double seconds_since_last, std::span<const MovingDisc> discs = {});
+                  double seconds_since_last, std::span<const MovingDisc> people = {});
 
   /// Recovery: back the way it came at `speed` [m/s, positive], straight where it does not know
   /// that way, while the footprint meets nothing that it does not touch already. Stops (kBlocked)
@@ -185,12 +183,14 @@ class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): ther
     geometry::Twist2 measured;
     geometry::Twist2 last_command;
     double seconds = 0.0;
-    std::span<const MovingDisc> discs;
+    std::span<const MovingDisc> people;
+    std::span<const MovingDisc> walkers;  // of them
   };
 
   DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd);
 
   bool valid(const Input& input) const;
+  void find_walkers(const geometry::Pose2& pose, std::span<const MovingDisc> people);
   void load(const Input& input);
 
   // What to do (dynamic_window.cpp).
@@ -232,7 +232,7 @@ class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): ther
   ReferencePath path_;
   PolylineDistance path_distance_;
   Lane lane_;
-  std::vector<MovingDisc> people_;
+  std::vector<MovingDisc> walkers_;
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]
   LethalBits bits_;
 

@@ -13,7 +13,7 @@
 namespace usher::local_planner {
 
 /// Something that moves at a constant velocity, a person for example; in the frame of the cost
-/// grid. The cost grid should not hold it as well.
+/// grid, which may hold the place where it is now as well.
 struct MovingDisc {
   geometry::Point2 position{0.0, 0.0};
   geometry::Point2 velocity{0.0, 0.0};  ///< [m/s]

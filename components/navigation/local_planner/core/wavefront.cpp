@@ -146,22 +146,6 @@ void Wavefront::set_obstacles(const grid::Grid<std::uint8_t>& costs, std::uint8_
             upright_.height, lying_.closed.data() + lying_.index(0, 0), lying_.stride);
 }
 
-void Wavefront::close(double x, double y, double radius, const grid::GridGeometry& geometry) {
-  const double u = (x - geometry.origin_x) / geometry.resolution - 0.5;
-  const double v = (y - geometry.origin_y) / geometry.resolution - 0.5;
-  const double r = radius / geometry.resolution;
-  if (!(u > -r && v > -r && u < upright_.width + r && v < upright_.height + r)) return;
-  for (int row = std::max(0, static_cast<int>(v - r));
-       row < std::min<double>(upright_.height, v + r + 1.0); ++row) {
-    for (int column = std::max(0, static_cast<int>(u - r));
-         column < std::min<double>(upright_.width, u + r + 1.0); ++column) {
-      if ((column - u) * (column - u) + (row - v) * (row - v) > r * r) continue;
-      upright_.closed[upright_.index(column, row)] = 0xffff;
-      lying_.closed[lying_.index(row, column)] = 0xffff;
-    }
-  }
-}
-
 bool Wavefront::sweep(Plane& plane) const {
   const auto kernel = avx2_ ? sweep_avx2 : sweep_portable;
   // Whole vectors: the columns after the last are closed and stay unreachable.

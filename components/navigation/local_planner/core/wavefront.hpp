@@ -30,9 +30,6 @@ class Wavefront {
   void set_obstacles(const grid::Grid<std::uint8_t>& costs, std::uint8_t closed_from,
                      bool unknown_is_closed);
 
-  /// Closes the cells whose centers lie in a disc, given in the frame of `geometry`, the grid's.
-  void close(double x, double y, double radius, const grid::GridGeometry& geometry);
-
   /// Lengths to `target`, which must be inside the grid and may be closed. Lengths beyond
   /// kUnreachable count as it.
   void spread(grid::Cell target, std::vector<std::uint16_t>& lengths);

@@ -21,7 +21,6 @@ constexpr auto kOdomAge = milliseconds(150);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kBody = 0.25;              // [m] radius of a person
-constexpr double kWalks = 0.3;              // [m/s] slower, the costs say all
 constexpr double kSeenLately = 0.5;         // [s]
 constexpr double kLongestPrediction = 0.1;  // [s] from the odometry's stamp to now
 constexpr double kPathShift = 0.005;        // [m] less is not worth placing the path anew
@@ -202,7 +201,7 @@ void LocalPlannerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtim
     stand(STATE_WAITING, pose_then ? measured.error() : pose_then.error());
     return;
   }
-  const double age = runtime::seconds(host_.now() - wire::from_message(odom->header().stamp()));
+  const double age = runtime::seconds(host_.now() - odom_.info()->effective);
   const auto pose =
       geometry::integrate(*pose_then, *measured, std::clamp(age, 0.0, kLongestPrediction));
   if (mode_ == MODE_PATH && !place_path()) {
@@ -231,29 +230,22 @@ Decision LocalPlannerComponent::decision(const grid::Grid<std::uint8_t>& costs,
   if (mode_ == MODE_ROTATE)
     return planner_->rotate(costs, pose, measured, last_command_, elapsed,
                             std::copysign(turn_rate_, amount_));
-  foresee(pose);
-  planner_->set_people(everybody_);
-  return planner_->decide(costs, pose, measured, last_command_, elapsed, walkers_);
+  place_people();
+  return planner_->decide(costs, pose, measured, last_command_, elapsed, everybody_);
 }
 
-/// Everybody, and who walks in front of the axle or beside it; whoever comes from behind sees the
-/// robot.
-void LocalPlannerComponent::foresee(const geometry::Pose2& pose) {
-  walkers_.clear();
+/// Everybody who was seen lately, where they are by now.
+void LocalPlannerComponent::place_people() {
   everybody_.clear();
   const auto* message = people_.fresh();
   if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
-  const double age = runtime::seconds(host_.now() - wire::from_message(message->header().stamp()));
-  const geometry::Point2 ahead{std::cos(pose.yaw), std::sin(pose.yaw)};
+  const double age = runtime::seconds(host_.now() - people_.info()->effective);
   for (const auto& person : message->people()) {
     const geometry::Point2 velocity{person.vx(), person.vy()};
     const geometry::Point2 position = geometry::Point2{person.x(), person.y()} + age * velocity;
     if (!position.allFinite() || !velocity.allFinite()) continue;
     if (static_cast<double>(person.unseen()) > kSeenLately) continue;
     everybody_.push_back({position, velocity, kBody});
-    if (velocity.norm() < kWalks) continue;
-    if ((position - pose.position()).dot(ahead) < 0.0) continue;
-    walkers_.push_back({position, velocity, kBody});
   }
 }
 

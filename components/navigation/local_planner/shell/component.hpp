@@ -24,7 +24,7 @@ class LocalPlannerComponent final : public runtime::Component {
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured);
-  void foresee(const geometry::Pose2& pose);
+  void place_people();
   bool place_path();
   void conclude(const Decision& decision, const geometry::Pose2& pose);
   void stand(std::uint8_t state, const std::string& reason);
@@ -47,7 +47,7 @@ class LocalPlannerComponent final : public runtime::Component {
   std::optional<geometry::Pose2>
       path_placed_by_;  ///< odom_T_map that the planner's path was placed with
 
-  std::vector<MovingDisc> everybody_, walkers_;
+  std::vector<MovingDisc> everybody_;
   geometry::Twist2 last_command_;
   runtime::Time last_decision_{};
   std::optional<runtime::Time> blocked_since_;

@@ -213,19 +213,28 @@ TEST(Decide, YieldsToSomebodyWhoComesTowardsIt) {
   EXPECT_TRUE(met.target.v < 0.6 || std::abs(met.target.w) > 0.2);
 }
 
+TEST(Decide, ForeseesWhoWalksAndIsNotBehind) {
+  DynamicWindow planner = planner_to(8.0);
+  const auto admissible = [&](const std::vector<MovingDisc>& people) {
+    return planner.decide(empty_window(), {}, {1.0, 0}, {1.0, 0}, 0.05, people).admissible;
+  };
+  const int alone = admissible({});
+  EXPECT_LT(admissible({{{2.0, 1.0}, {-0.5, -0.5}, 0.25}}), alone);
+  EXPECT_EQ(admissible({{{2.0, 1.0}, {-0.2, -0.2}, 0.25}}), alone) << "the costs say where";
+  EXPECT_EQ(admissible({{{-0.5, 1.0}, {1.0, -0.5}, 0.25}}), alone) << "they see the robot";
+}
+
 TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
   DynamicWindow planner = planner_to(8.0);
   const auto reason = [&](const std::vector<MovingDisc>& people) {
-    planner.set_people(people);
-    return planner.decide(empty_window(), {}, {}, {}, 0.05).reason;
+    return planner.decide(empty_window(), {}, {}, {}, 0.05, people).reason;
   };
   const std::vector<MovingDisc> met{{{1.3, 0.1}, {-0.2, 0}, 0.25}};
   const std::vector<MovingDisc> elsewhere[] = {{},
                                                {{{2.5, 0}, {-0.5, 0}, 0.25}},
                                                {{{1.0, 0.9}, {-0.5, 0}, 0.25}},
                                                {{{1.0, 0}, {0.6, 0}, 0.25}},
-                                               {{{-0.6, 0}, {0, 0}, 0.25}},
-                                               {{{kNaN, kNaN}, {kNaN, 0}, 0.25}}};
+                                               {{{-0.6, 0}, {0, 0}, 0.25}}};
   for (const auto& people : elsewhere) EXPECT_EQ(reason(people), Reason::kFollowing);
   EXPECT_EQ(reason(met), Reason::kGivingWay);
   for (double waited = 0.0; waited < 5.0; waited += 0.05)

@@ -191,6 +191,28 @@ inline std::optional<std::vector<Pose2>> World::plan(const Pose2& start, const P
   return path;
 }
 
+/// Where somebody is now, as a sensor would mark it.
+inline void mark(const MovingDisc& disc, double inscribed, Costs& costs, double inflation = 0.55,
+                 double scaling = 6.0) {
+  const grid::GridGeometry& g = costs.geometry();
+  const double reach = disc.radius + inflation;
+  const grid::Cell first = g.cell_at(disc.position - Point2(reach, reach));
+  const grid::Cell last = g.cell_at(disc.position + Point2(reach, reach));
+  for (int y = std::max(0, first.y); y <= std::min(last.y, g.height - 1); ++y) {
+    for (int x = std::max(0, first.x); x <= std::min(last.x, g.width - 1); ++x) {
+      const double off = (g.center({x, y}) - disc.position).norm() - disc.radius;
+      if (off > inflation) continue;
+      std::uint8_t cost = kCostLethal;
+      if (off > 0.5 * g.resolution) {
+        cost = off <= inscribed
+                   ? kCostInscribed
+                   : static_cast<std::uint8_t>(252.0 * std::exp(-scaling * (off - inscribed)));
+      }
+      costs.at({x, y}) = std::max(costs.at({x, y}), cost);
+    }
+  }
+}
+
 /// A base that follows commands after a dead time as a first-order lag with a bounded acceleration.
 struct Base {
   double dead_time = 0.0;
@@ -237,7 +259,7 @@ struct Drive {
 };
 
 /// Drives until the goal is reached, or `limit` seconds are over, or blocked for `patience`
-/// seconds.
+/// seconds. People walk on without looking; the planner knows them, and the costs where they are.
 inline Drive drive(DynamicWindow& planner, const World& world, Base& base, double limit,
                    double patience = 5.0, double window = 6.0,
                    std::span<const MovingDisc> people = {}) {
@@ -251,6 +273,8 @@ inline Drive drive(DynamicWindow& planner, const World& world, Base& base, doubl
   double last_turn = 0.0;
   while (result.seconds < limit) {
     world.window(base.pose, window, local);
+    for (const MovingDisc& disc : discs)
+      mark(disc, planner.config().footprint.inscribed_radius(), local);
     const Decision decision = planner.decide(local, base.pose, base.twist, command, kCycle, discs);
     result.largest_step = std::max(result.largest_step, std::abs(decision.command.v - command.v));
     command = decision.command;
