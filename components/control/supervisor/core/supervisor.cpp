@@ -104,8 +104,10 @@ void Supervisor::navigation(std::uint64_t id, NavigationState state) {
   navigation_ = state;
   if (!behavior_.navigation_wanted()) return;
   const bool active = state == NavigationState::kActive || state == NavigationState::kWaiting;
-  if (active && behavior_.navigation_going()) seen_active_ = true;
-  if (over(state) && (id != id_before_goal_ || seen_active_)) behavior_.navigation_end();
+  if (active && behavior_.navigation_going()) active_goal_ = id;
+  // The navigator also says the last words of goals that it refused while another one runs.
+  const bool ours = active_goal_ ? id == *active_goal_ : id != id_before_goal_;
+  if (over(state) && ours) behavior_.navigation_end();
 }
 
 Answer Supervisor::request(const Request& request, Time now) {
@@ -177,7 +179,7 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       behavior_.navigation_start();
       goal_ = request.goal;
       id_before_goal_ = navigation_id_;
-      seen_active_ = false;
+      active_goal_.reset();
       return {};
     }
     case Command::kNavigationGo:

@@ -250,7 +250,7 @@ class Supervisor {
   std::uint64_t navigation_id_ = 0;
   NavigationState navigation_ = NavigationState::kIdle;
   std::uint64_t id_before_goal_ = 0;  ///< the navigator's goal when the present one was chosen
-  bool seen_active_ = false;          ///< that one was active while the navigation drove
+  std::optional<std::uint64_t> active_goal_;  ///< the last that was active while it drove
 
   std::array<Handled, 16> handled_;  ///< the last requests, a ring
   std::size_t next_handled_ = 0;

@@ -154,6 +154,21 @@ TEST(Supervisor, AReplacedGoalIsNoEnd) {
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
 }
 
+TEST(Supervisor, ARefusedForeignGoalDoesNotEndTheOneThatRuns) {
+  Robot robot = guiding();
+  for (const auto state : {NavigationState::kFailed, NavigationState::kCancelled}) {
+    robot.supervisor.navigation(99, state);
+    robot.run(1000);
+    EXPECT_EQ(robot.state(), State::kNavigationActive);
+  }
+  robot.supervisor.navigation(41, NavigationState::kWaiting);
+  robot.run(100);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  robot.supervisor.navigation(41, NavigationState::kSucceeded);
+  robot.run(20);
+  EXPECT_EQ(robot.state(), State::kNavigationEnd);
+}
+
 TEST(Supervisor, StopHoldsUntilMovementOn) {
   Robot robot = guiding();
   EXPECT_TRUE(robot.ask(Command::kStop).done);

@@ -18,12 +18,16 @@ constexpr double kSlowestKept =
     0.02;                        // [m/s] slower than this tells nothing about the time of arrival
 constexpr double kBarred = 1.5;  // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
+constexpr double kPersonAhead = 3.0;   // [m] along the path,
+constexpr double kPersonBeside = 0.8;  // [m] beside it: half a robot, half a person and some room
 
 std::string text(const char* format, double value) {
   char buffer[160];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
 }
+
+std::string no_word_from(const std::string& whom) { return "no word from " + whom; }
 
 bool finite(const std::vector<geometry::Pose2>& path) {
   return std::ranges::all_of(path, &geometry::Pose2::finite);
@@ -204,6 +208,11 @@ void Navigator::plan_reply(PlanReply reply) { reply_ = std::move(reply); }
 
 // --- The state machine
 
+bool Navigator::on_the_way(const geometry::Point2& point) const {
+  return !route_.empty() && point.allFinite() &&
+         route_.distance_ahead(point, kPersonAhead) <= kPersonBeside;
+}
+
 Decision Navigator::step(const Situation& s) {
   if (fresh_) start(s);
   step_state(s);
@@ -243,7 +252,7 @@ void Navigator::step_state(const Situation& s) {
         if (open()) pursue(s);
       } else if (open() && s.time - started_at_ > config_.ready_timeout) {
         finish(GoalState::kFailed, Failure::kNotReady,
-               s.missing + text(" not there after %g s", config_.ready_timeout));
+               no_word_from(s.missing) + text(" for %g s", config_.ready_timeout));
       }
       break;
     case State::kSuccess:
@@ -287,9 +296,11 @@ void Navigator::pursue(const Situation& s) {
 bool Navigator::pause_if_unfit(const Situation& s) {
   Failure cause = Failure::kNone;
   std::string reason;
-  if (!s.missing.empty() || !s.stale.empty()) {
+  // A path in hand is good without the planner that made it.
+  const bool has_path = phase_ == Phase::kFollowing || phase_ == Phase::kBlocked;
+  if (!s.stale.empty() || (!s.missing.empty() && !has_path)) {
     cause = Failure::kInputsStale;
-    reason = "no fresh " + (s.missing.empty() ? s.stale : s.missing);
+    reason = no_word_from(s.stale.empty() ? s.missing : s.stale);
   } else if (s.localization == Localization::kLost || !s.pose || !s.pose->finite()) {
     cause = Failure::kLocalizationLost;
     reason = "robot not localized";
@@ -612,7 +623,7 @@ void Navigator::finish(GoalState outcome, Failure failure, const std::string& re
 
 void Navigator::update_status(const Situation& s) {
   if (!open()) return;
-  if (state_ == State::kInitialise) waiting_for_ = s.missing + " not there yet";
+  if (state_ == State::kInitialise) waiting_for_ = no_word_from(s.missing) + " yet";
   const bool stands =
       state_ == State::kInitialise || (phase_ != Phase::kFollowing && !waiting_for_.empty());
   status_.state = stands ? GoalState::kWaiting : GoalState::kActive;

@@ -128,17 +128,17 @@ enum class Localization : std::uint8_t { kLost, kDegraded, kGood };
 
 /// What the robot knows now.
 struct Situation {
-  double time = 0.0;  ///< [s]
-  std::string
-      missing;  ///< planners not heard yet, for people; empty = all are there (Initialise ends)
-  std::string stale;  ///< an input that is too old to drive on, for people; empty = none
-  std::string hold;   ///< why the robot may not drive now, for people ("movement is switched off");
-                      ///< empty = it may
+  double time = 0.0;    ///< [s]
+  std::string missing;  ///< a planner that is not there ("the global planner"); empty = all are
+                        ///< there (Initialise ends)
+  std::string stale;    ///< an input that is too old to drive on ("the odometry"); empty = none
+  std::string hold;  ///< why the robot may not drive now, for people ("movement is switched off");
+                     ///< empty = it may
   Localization localization = Localization::kLost;
   std::optional<geometry::Pose2> pose;  ///< in map; absent or not finite counts as lost
   geometry::Twist2 velocity;            ///< measured
   FollowReport follow;
-  bool person_ahead = false;  ///< what blocks is probably a person
+  bool person_ahead = false;  ///< somebody is on_the_way(): what blocks is probably a person
   double rear_clearance =
       0.0;  ///< [m] known to be free behind the robot; 0 when nobody sees behind
 };
@@ -209,6 +209,9 @@ class Navigator {
   /// Answers other than to the newest plan request are ignored.
   void plan_reply(PlanReply reply);
   Decision step(const Situation& situation);
+
+  /// Whether a point in map lies on the next metres of the path or close beside them.
+  bool on_the_way(const geometry::Point2& point) const;
 
   State state() const { return state_; }
   Phase phase() const { return phase_; }  ///< meaningful in kNewRequest and kActive

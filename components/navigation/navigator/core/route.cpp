@@ -20,7 +20,7 @@ void Route::set(std::vector<geometry::Pose2> path) {
   place_ = offset_ = 0.0;
 }
 
-Route::Projection Route::project(const geometry::Pose2& robot, double from, double to) const {
+Route::Projection Route::project(const geometry::Point2& point, double from, double to) const {
   Projection best{0.0, std::numeric_limits<double>::infinity()};
   const auto after = [&](double place) {
     return static_cast<std::size_t>(std::upper_bound(length_.begin(), length_.end(), place) -
@@ -33,16 +33,16 @@ Route::Projection Route::project(const geometry::Pose2& robot, double from, doub
     const geometry::Point2 along = (i < last ? path_[i + 1].position() : a) - a;
     const double squared = along.squaredNorm();
     const double part =
-        squared > 0.0 ? std::clamp((robot.position() - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-    const double distance = (a + part * along - robot.position()).norm();
+        squared > 0.0 ? std::clamp((point - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+    const double distance = (a + part * along - point).norm();
     if (distance < best.distance) best = {length_[i] + part * std::sqrt(squared), distance};
   }
   return best;
 }
 
 double Route::track(const geometry::Pose2& robot) {
-  Projection found = project(robot, place_ - kBehind, place_ + kAhead);
-  if (found.distance > kLostOffset) found = project(robot, 0.0, length());
+  Projection found = project(robot.position(), place_ - kBehind, place_ + kAhead);
+  if (found.distance > kLostOffset) found = project(robot.position(), 0.0, length());
   const double advance = found.place - place_;
   place_ = found.place;
   offset_ = found.distance;

@@ -28,6 +28,10 @@ class Route {
     return length_.empty() ? 0.0 : length_.back();
   }                                                       ///< [m] of the whole path
   double remaining() const { return length() - place_; }  ///< [m] from the place to the end
+  /// [m] of a point from the path between the place and `reach` farther on. Not for an empty path.
+  double distance_ahead(const geometry::Point2& point, double reach) const {
+    return project(point, place_, place_ + reach).distance;
+  }
   double offset() const { return offset_; }  ///< [m] of the robot from the path, when last tracked
 
  private:
@@ -35,7 +39,7 @@ class Route {
     double place;
     double distance;
   };
-  Projection project(const geometry::Pose2& robot, double from, double to) const;
+  Projection project(const geometry::Point2& point, double from, double to) const;
 
   std::vector<geometry::Pose2> path_;
   std::vector<double> length_;  // [m] from the beginning to each pose

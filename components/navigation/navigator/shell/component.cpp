@@ -1,5 +1,6 @@
 #include "navigation/navigator/shell/component.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "wire/conversions.hpp"
@@ -15,13 +16,17 @@ using std::chrono::milliseconds;
 namespace supervisor_state = usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr auto kPeriod = milliseconds(100);
-constexpr int kStatusEvery = 2;  // of those periods: 5 Hz
+constexpr int kStatusEvery = 2;                 // of those periods: 5 Hz
+constexpr auto kWordStands = milliseconds(80);  // less than a period
+constexpr std::size_t kMostWords = 8;
 constexpr auto kFollowAge = milliseconds(500);
 constexpr auto kOdomAge = milliseconds(200);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr double kTrail = 1.2;  // [m] of its own way that is taken for free
 constexpr auto kPoseAge = milliseconds(300);
+constexpr auto kPeopleAge = milliseconds(400);
+constexpr double kSeenLately = 1.0;  // [s]
 
 }  // namespace
 
@@ -121,6 +126,9 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
   whiskers_ =
       host.input(topics::kWhiskers,
                  {.max_age = milliseconds(300), .on_loss = "does not back off", .optional = true});
+  people_ = host.input(topics::kPeople, {.max_age = kPeopleAge,
+                                         .on_loss = "takes whoever blocks the way for a thing",
+                                         .optional = true});
   plan_ = host.output(topics::kPlanRequest);
   motion_ = host.output(topics::kFollowGoal);
   clear_ = host.output(topics::kCostmapRequest);
@@ -128,7 +136,7 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
   locations_ = host.output(topics::kLocations);
   timer_ = host.timer("step", kPeriod, [this](auto) {
     step();
-    if (++status_share_ % kStatusEvery == 0) publish(core_.status());
+    speak(++status_share_ % kStatusEvery == 0);
   });
   publish_locations();
   publish(core_.status());
@@ -143,7 +151,7 @@ void NavigatorComponent::take_goal(const usher_msgs::msg::NavigateGoal& goal) {
   core_.request({goal.id(), goal.client(), goal.location(),
                  usable ? *pose : geometry::Pose2{kNaN, kNaN, kNaN}, goal.max_speed()});
   step();
-  publish(core_.status());
+  speak(true);
 }
 
 /// rviz's goal: a pose without an id.
@@ -184,19 +192,31 @@ std::string NavigatorComponent::hold() const {
   return {};
 }
 
+bool NavigatorComponent::somebody_ahead() const {
+  const auto* people = people_.fresh();
+  const auto newest = transforms_.buffer().newest(frames::kMap, frames::kOdom);
+  if (people == nullptr || people->header().frame_id() != frames::kOdom || !newest) return false;
+  const auto map_T_odom =
+      transforms_.lookup_planar(frames::kMap, frames::kOdom, runtime::Time(*newest));
+  return map_T_odom && std::ranges::any_of(people->people(), [&](const auto& person) {
+           return static_cast<double>(person.unseen()) <= kSeenLately &&
+                  core_.on_the_way(*map_T_odom * geometry::Point2{person.x(), person.y()});
+         });
+}
+
 Situation NavigatorComponent::situation() {
   Situation s;
   s.time = now();
   if (reply_.writers().empty()) {
-    s.missing = "no global planner";
+    s.missing = "the global planner";
   } else if (follow_.latest() == nullptr) {
-    s.missing = "no local planner";
+    s.missing = "the local planner";
   }
   if (const auto* status = follow_.fresh()) {
     s.follow = {status->id(), static_cast<GoalState>(std::min<std::uint8_t>(status->state(), 6)),
                 status->reason(), status->obstacle_distance()};
   } else {
-    s.stale = "the local planner is silent";
+    s.stale = "the local planner";
   }
   if (const auto* status = localization_.fresh())
     s.localization = static_cast<Localization>(std::min<std::uint8_t>(status->state(), 2));
@@ -207,7 +227,7 @@ Situation NavigatorComponent::situation() {
       ++rejected_;
     }
   } else {
-    s.stale = "no odometry";
+    s.stale = "the odometry";
   }
   if (const auto newest = transforms_.buffer().newest(frames::kMap, frames::kBaseFootprint)) {
     const runtime::Time stamp(*newest);
@@ -220,13 +240,14 @@ Situation NavigatorComponent::situation() {
   if (t != nullptr && (!t->back_left() || t->front_left()) &&
       (!t->back_right() || t->front_right()))
     s.rear_clearance = kTrail;
+  s.person_ahead = somebody_ahead();
   s.hold = hold();
   return s;
 }
 
 void NavigatorComponent::step() {
   const Decision decision = core_.step(situation());
-  for (const auto& aside : decision.asides) publish(aside);
+  for (const auto& aside : decision.asides) remember_last_word(aside);
   if (decision.plan) send_plan(*decision.plan);
   if (decision.motion) send_motion(*decision.motion);
   if (decision.clear_costmap) {
@@ -237,7 +258,16 @@ void NavigatorComponent::step() {
     clear_.publish(request);
   }
   const auto& status = core_.status();
-  if (status.id != last_published_ || status.state != last_state_) publish(status);
+  if (status.id != last_id_ || status.state != last_state_) {
+    last_id_ = status.id;
+    last_state_ = status.state;
+    if (status.state >= GoalState::kSucceeded) {
+      remember_last_word(status);
+    } else {
+      unsaid_ = true;
+    }
+  }
+  speak(false);
   const bool ready = core_.state() != State::kInitialise;
   host_.health().set(ready ? HealthState::kOk : HealthState::kDegraded,
                      ready ? "" : "waits for the planners");
@@ -281,6 +311,31 @@ void NavigatorComponent::publish_locations() {
   locations_.publish(message);
 }
 
+/// Who asks repeats a goal that is not answered, so no more than these need to wait.
+void NavigatorComponent::remember_last_word(const NavigationStatus& status) {
+  const bool waits = std::ranges::any_of(last_words_, [&](const NavigationStatus& word) {
+    return word.id == status.id && word.client == status.client;
+  });
+  if (!waits && last_words_.size() < kMostWords) last_words_.push_back(status);
+}
+
+/// A reader may keep the newest status only. So the last word of a goal stands alone for a moment,
+/// and after each the present goal has its turn: whoever asked learns what became of it.
+void NavigatorComponent::speak(bool due) {
+  if (host_.now() - last_word_at_ < kWordStands) return;
+  if (!last_words_.empty() && turn_of_words_) {
+    publish(last_words_.front());
+    last_words_.pop_front();
+    last_word_at_ = host_.now();
+    turn_of_words_ = false;
+    unsaid_ = true;
+  } else if (unsaid_ || due) {
+    publish(core_.status());
+    turn_of_words_ = true;
+    unsaid_ = false;
+  }
+}
+
 void NavigatorComponent::publish(const NavigationStatus& status) {
   usher_msgs::msg::NavigateStatus message;
   message.header(wire::header(host_.now(), frames::kMap));
@@ -297,8 +352,6 @@ void NavigatorComponent::publish(const NavigationStatus& status) {
   message.recoveries(status.recoveries);
   message.replans(status.replans);
   status_.publish(message);
-  last_published_ = status.id;
-  last_state_ = status.state;
 }
 
 }  // namespace usher::navigator

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -25,8 +26,11 @@ class NavigatorComponent final : public runtime::Component {
   void take_reply(const usher_msgs::msg::PlanReply& reply);
   Situation situation();
   std::string hold() const;
+  bool somebody_ahead() const;
   void step();
   void publish_locations();
+  void remember_last_word(const NavigationStatus& status);
+  void speak(bool due);
   void publish(const NavigationStatus& status);
   void send_plan(const PlanRequest& request);
   void send_motion(const Motion& motion);
@@ -36,8 +40,12 @@ class NavigatorComponent final : public runtime::Component {
   Navigator core_;
   std::uint64_t viewer_goals_ = 0;
   std::uint64_t clear_requests_ = 0;
-  std::uint64_t last_published_ = 0;
-  GoalState last_state_ = GoalState::kIdle;
+  std::deque<NavigationStatus> last_words_;  ///< of goals with an outcome, not published yet
+  runtime::Time last_word_at_{};
+  std::uint64_t last_id_ = 0;
+  GoalState last_state_ = GoalState::kIdle;  ///< of the core, when it was looked at last
+  bool unsaid_ = true;                       ///< the core's status has changed since it was said
+  bool turn_of_words_ = true;                ///< it was said since the last word
   int status_share_ = 0;
   std::uint64_t& rejected_;
 
@@ -51,6 +59,7 @@ class NavigatorComponent final : public runtime::Component {
   runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
+  runtime::Input<usher_msgs::msg::People> people_;
   runtime::Output<usher_msgs::msg::PlanRequest> plan_;
   runtime::Output<usher_msgs::msg::FollowGoal> motion_;
   runtime::Output<usher_msgs::msg::CostmapRequest> clear_;

@@ -243,13 +243,13 @@ TEST(Navigator, CancelsByIdOrWhateverRuns) {
 
 TEST(Navigator, WaitsForPlannersThatAreNotThereYet) {
   Rig rig;
-  rig.s.missing = "local_planner";
+  rig.s.missing = "the local planner";
   rig.step();
   rig.go();
   rig.run(5.0);
   EXPECT_EQ(rig.navigator.state(), State::kInitialise);
   EXPECT_EQ(rig.status().state, GoalState::kWaiting);
-  EXPECT_EQ(rig.status().reason, "local_planner not there yet");
+  EXPECT_EQ(rig.status().reason, "no word from the local planner yet");
   EXPECT_TRUE(rig.plans.empty());
   rig.s.missing.clear();
   rig.run(0.3);
@@ -258,7 +258,7 @@ TEST(Navigator, WaitsForPlannersThatAreNotThereYet) {
 
 TEST(Navigator, CancelsAGoalThatWaitsForPlanners) {
   Rig rig;
-  rig.s.missing = "local_planner";
+  rig.s.missing = "the local planner";
   rig.step();
   rig.go();
   rig.step();

@@ -54,6 +54,17 @@ TEST(Route, OfOnePoseIsAtItsEnd) {
   EXPECT_NEAR(route.offset(), 1.0, 1e-12);
 }
 
+TEST(Route, KnowsHowFarFromTheNextMetresAPointIs) {
+  Route route;
+  route.set(straight(10.0, 0.05));
+  route.track({2.0, 0.1, 0.0});
+  EXPECT_NEAR(route.distance_ahead({3.0, -0.4}, 3.0), 0.4, 1e-9);
+  EXPECT_NEAR(route.distance_ahead({1.5, 0.0}, 3.0), 0.5, 1e-9) << "behind the robot";
+  EXPECT_NEAR(route.distance_ahead({6.0, 0.0}, 3.0), 1.0, 0.051) << "a segment's length";
+  route.track({9.9, 0.0, 0.0});
+  EXPECT_NEAR(route.distance_ahead({10.3, 0.0}, 3.0), 0.3, 1e-9) << "beyond the end";
+}
+
 TEST(Route, TakesDoubledPoses) {
   Route route;
   route.set({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}});

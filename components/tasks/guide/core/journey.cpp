@@ -111,16 +111,19 @@ void Guide::watch_navigation(Time now) {
   const auto& navigation = surroundings_.navigation;
   const bool ours = navigation && navigation->goal_id == goal_id_;
   if (!ours) {
-    const bool forgot = navigation && navigation->goal_id == 0;
-    if (acknowledged_ && forgot && given_again_ < kMostGivenAgain) {
-      ++given_again_;
+    const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
+    if (forgot) {
+      if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
       acknowledged_ = false;
       unheard_since_.reset();
       goal_at_ = now;
       actions_.goal = Goal{goal_id_, place_.name};
       return;
     }
-    if (acknowledged_ && navigation) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    // One that was refused leaves ours alone; it is in the status for a moment only.
+    const bool taken = navigation && (navigation->state == NavigationState::kActive ||
+                                      navigation->state == NavigationState::kWaiting);
+    if (acknowledged_ && taken) return fail(Text::kOtherGoal, Cause::kFailure, now);
     if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
     if (now - *unheard_since_ >= parameters_.acknowledge) {
       fail(Text::kPartSilent, Cause::kFailure, now);

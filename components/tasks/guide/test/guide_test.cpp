@@ -326,6 +326,24 @@ TEST(Guide, GivesTheGoalAgainToANavigatorThatForgotIt) {
   EXPECT_EQ(rig.state(), "guide_error") << "not for ever";
 }
 
+TEST(Guide, ARefusedForeignGoalDoesNotEndTheVisit) {
+  Rig rig;
+  rig.to_active();
+  const auto foreign = [&](NavigationState state) {
+    rig.around.navigation->goal_id = 99;
+    rig.around.navigation->state = state;
+    rig.wait(200);
+  };
+  for (const auto refused : {NavigationState::kFailed, NavigationState::kReplaced}) {
+    foreign(refused);
+    EXPECT_EQ(rig.state(), "guide_active");
+    rig.navigate(NavigationState::kActive);
+  }
+  EXPECT_EQ(rig.taken(), "");
+  foreign(NavigationState::kActive);
+  EXPECT_EQ(rig.state(), "guide_error") << "one that runs has taken its place";
+}
+
 TEST(Guide, StartsTheNavigationAgainAtASupervisorThatForgotIt) {
   Rig rig;
   rig.to_active();
