@@ -20,11 +20,14 @@ constexpr auto kCostsAge = milliseconds(250);
 constexpr auto kOdomAge = milliseconds(150);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
-constexpr double kBody = 0.25;              // [m] radius of a person
-constexpr double kSeenLately = 0.5;         // [s]
-constexpr double kLongestPrediction = 0.1;  // [s] from the odometry's stamp to now
-constexpr double kPathShift = 0.005;        // [m] less is not worth placing the path anew
-constexpr double kPathTurn = 0.002;         // [rad]
+constexpr auto kNavigatorAge = milliseconds(600);  // it speaks five times a second
+constexpr double kFarthestBack = 3.0;              // [m] of its own way that the planner knows
+constexpr double kFarthestTurn = 6.4;              // [rad] once around
+constexpr double kBody = 0.25;                     // [m] radius of a person
+constexpr double kSeenLately = 0.5;                // [s]
+constexpr double kLongestPrediction = 0.1;         // [s] from the odometry's stamp to now
+constexpr double kPathShift = 0.005;               // [m] less is not worth placing the path anew
+constexpr double kPathTurn = 0.002;                // [rad]
 
 }  // namespace
 
@@ -119,6 +122,9 @@ LocalPlannerComponent::LocalPlannerComponent(runtime::Host& host)
 
   goal_ = host.input(topics::kFollowGoal, {.optional = true},
                      [this](const auto& goal, const auto&) { take_goal(goal); });
+  navigator_ = host.input(
+      topics::kNavigateStatus,
+      {.max_age = kNavigatorAge, .on_loss = "stands and forgets its goal until it is given again"});
   cancel_ = host.input(topics::kFollowCancel, {.optional = true},
                        [this](const auto& message, const auto&) { cancel(message); });
   costs_ = host.input(
@@ -141,7 +147,8 @@ LocalPlannerComponent::LocalPlannerComponent(runtime::Host& host)
 void LocalPlannerComponent::take_goal(const usher_msgs::msg::FollowGoal& goal) {
   auto path = wire::from_message(goal.path());
   const bool wants_path = goal.mode() == MODE_PATH;
-  if (!path || !std::isfinite(goal.amount()) || !std::isfinite(goal.max_speed()) ||
+  const double farthest = goal.mode() == MODE_BACK_OFF ? kFarthestBack : kFarthestTurn;
+  if (!path || !(std::abs(goal.amount()) <= farthest) || !std::isfinite(goal.max_speed()) ||
       goal.mode() > MODE_BACK_OFF ||
       (wants_path && (path->empty() || goal.path().header().frame_id() != frames::kMap))) {
     ++rejected_;
@@ -174,6 +181,17 @@ void LocalPlannerComponent::cancel(const usher_msgs::msg::GoalCancel& cancel) {
   stand(STATE_CANCELLED, "cancelled");
 }
 
+/// As after a restart: a navigator that lives hears that its goal is not known here and gives it
+/// again, one that was restarted knows better than to go on as before.
+void LocalPlannerComponent::forget_goal(const std::string& reason) {
+  mode_ = MODE_STOP;
+  goal_id_ = 0;
+  client_.clear();
+  planner_->clear_path();
+  blocked_since_.reset();
+  stand(STATE_IDLE, reason);
+}
+
 void LocalPlannerComponent::take_costs(const usher_msgs::msg::Costmap& message) {
   const auto costs = wire::from_message(message);
   if (!costs || message.header().frame_id() != frames::kOdom) {
@@ -191,6 +209,7 @@ void LocalPlannerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtim
     host_.health().set(HealthState::kOk);
     return;
   }
+  if (navigator_.fresh() == nullptr) return forget_goal("no navigator");
   const auto* odom = odom_.fresh();
   const auto pose_then =
       odom ? wire::to_planar(odom->pose().pose()) : Result<geometry::Pose2>(Error{"no odometry"});

@@ -20,6 +20,7 @@ class LocalPlannerComponent final : public runtime::Component {
   static DynamicWindowConfig read_parameters(runtime::Host& host);
   void take_goal(const usher_msgs::msg::FollowGoal& goal);
   void cancel(const usher_msgs::msg::GoalCancel& cancel);
+  void forget_goal(const std::string& reason);
   void take_costs(const usher_msgs::msg::Costmap& message);
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
@@ -55,6 +56,7 @@ class LocalPlannerComponent final : public runtime::Component {
 
   wire::TransformInput transforms_;
   runtime::Input<usher_msgs::msg::FollowGoal> goal_;
+  runtime::Input<usher_msgs::msg::NavigateStatus> navigator_;
   runtime::Input<usher_msgs::msg::GoalCancel> cancel_;
   runtime::Input<usher_msgs::msg::Costmap> costs_;
   runtime::Input<nav_msgs::msg::Odometry> odom_;
