@@ -107,10 +107,27 @@ TEST_F(Commands, GotoListsTheLocations) {
   EXPECT_TRUE(contains(row(text, "meeting_room"), "Meeting room")) << text;
 }
 
-TEST_F(Commands, GotoOfAnUnknownLocationNamesTheCloseOnes) {
+TEST_F(Commands, AGotoThatCannotBeAsksNobodyAnything) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const auto asked = robot_->status()->last_request();
   const auto text = errors({"goto", "kichen"});
-  EXPECT_TRUE(contains(text, "kichen")) << text;
-  EXPECT_TRUE(contains(text, "kitchen")) << text;
+  EXPECT_TRUE(contains(text, "unknown location \"kichen\", did you mean kitchen?")) << text;
+  EXPECT_TRUE(contains(text, "\nlocations: ")) << text;
+  EXPECT_TRUE(contains(text, " meeting_room")) << text;
+  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--max-speed=-1"}), "--max-speed"));
+  EXPECT_TRUE(contains(errors({"goto", "--pose", "nan", "0", "0"}), "--pose"));
+  EXPECT_EQ(robot_->status()->last_request(), asked) << "a visit that runs goes on";
+}
+
+TEST_F(Commands, AWordThatIsNoCommandIsNamed) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"nosuch"}, {"nosuch", "--domain", "3"}}) {
+    std::vector<std::string> all{usher_program()};
+    all.insert(all.end(), words.begin(), words.end());
+    Process command(all);
+    EXPECT_EQ(command.wait(), 2);
+    EXPECT_EQ(command.errors(), "usher: unknown command 'nosuch'; see usher --help\n");
+  }
 }
 
 TEST_F(Commands, GotoDrivesThere) {
@@ -160,6 +177,24 @@ TEST_F(Commands, GotoThatIsInterruptedIsCancelled) {
   EXPECT_EQ(command->wait(), 1);
   EXPECT_EQ(command->errors(), "usher: cancelled\n");
   EXPECT_TRUE(became(usher_msgs::msg::GoalStatus_Constants::STATE_CANCELLED)) << int{state};
+}
+
+TEST_F(Commands, GotoEndsWhenTheLaunchDoes) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const auto command = robot_->command({"goto", "kitchen"});
+  ASSERT_TRUE(robot_->wait_for(
+      [] {
+        return robot_->status()->state() ==
+               usher_msgs::msg::SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+      },
+      Seconds(20)));
+  robot_->wait_for([] { return false; }, Seconds(1));  // the goal is taken
+  robot_->launcher().signal(SIGTERM);
+  EXPECT_EQ(command->wait(std::chrono::seconds(40)), 1);
+  EXPECT_TRUE(contains(command->errors(), "usher: ")) << command->errors();
+  robot_->launcher().wait(std::chrono::seconds(30));
+  robot_->launch();
+  ASSERT_TRUE(robot_->wait_for([] { return robot_->status().has_value(); }, Seconds(60)));
 }
 
 TEST_F(Commands, MapSaveWritesTheMapThatTheRobotHas) {

@@ -1,3 +1,5 @@
+#include <iostream>
+
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
 
@@ -19,6 +21,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // CLI11 only says that a command is missing.
+    const auto rest = app.remaining();
+    if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-')) {
+      std::cerr << "usher: unknown command '" << rest.front() << "'; see usher --help\n";
+      return 2;
+    }
     const int code = app.exit(error);
     return code == 0 ? 0 : 2;
   }

@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "foundation/grid/map_file.hpp"
 #include "idl/topics.hpp"
 #include "mapping/map_server/core/map_from_log.hpp"
+#include "navigation/navigator/core/locations.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
@@ -28,6 +30,8 @@ using std::chrono::milliseconds;
 using namespace usher_msgs::msg;
 
 constexpr auto kRepeat = milliseconds(200);
+constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
 constexpr const char* kClient = kOperatorName;
 
 std::atomic<bool> stop_asked{false};
@@ -52,20 +56,42 @@ struct GoalArguments {
   bool no_wait = false;
 };
 
-int list_locations(Observer& observer) {
+/// What the running navigator knows.
+Result<navigator::Locations> locations_of(Observer& observer, std::uint32_t domain) {
   auto reader = observer.reader(topics::kLocations);
-  if (!reader) return fail(reader.error());
-  const auto message = reader->take(std::chrono::seconds(3));
-  if (!message) return fail("no navigator in this domain");
-  Table table({"location", "title", "x", "y", "yaw"});
+  if (!reader) return Error{reader.error()};
+  const auto message = reader->take(kPatience);
+  if (!message) return Error{"no navigator in domain " + std::to_string(domain)};
+  std::vector<navigator::Location> locations;
   for (const auto& location : message->locations()) {
     const auto pose = wire::to_planar(location.pose());
-    if (pose)
-      table.add({location.name(), location.title(), format("%.2f", pose->x),
-                 format("%.2f", pose->y), format("%.2f", pose->yaw)});
+    if (pose) locations.push_back({location.name(), location.title(), *pose});
+  }
+  return navigator::Locations::create(std::move(locations));
+}
+
+int list(const navigator::Locations& locations) {
+  Table table({"location", "title", "x", "y", "yaw"});
+  for (const auto& location : locations.all()) {
+    table.add({location.name, location.title, format("%.2f", location.pose.x),
+               format("%.2f", location.pose.y), format("%.2f", location.pose.yaw)});
   }
   std::cout << table.text();
   return 0;
+}
+
+/// What the navigator would refuse, before anybody is asked for anything: what runs goes on.
+Status judge(const GoalArguments& arguments, const navigator::Locations& locations) {
+  if (!std::isfinite(arguments.max_speed) || arguments.max_speed < 0.0)
+    return Error{"--max-speed must be 0 or more, got " + format("%g m/s", arguments.max_speed)};
+  if (!std::ranges::all_of(arguments.pose, [](double value) { return std::isfinite(value); }))
+    return Error{"--pose must be finite"};
+  if (arguments.location.empty()) return {};
+  const auto found = locations.find(arguments.location);
+  if (found) return {};
+  std::string names;
+  for (const auto& location : locations.all()) names += (names.empty() ? "" : " ") + location.name;
+  return Error{found.error() + "\nlocations: " + names};
 }
 
 /// One line that is rewritten while the robot drives.
@@ -98,15 +124,7 @@ Status cancel(Observer& observer, Observer::Reader<NavigateStatus>& reader, std:
   return Error{"the navigator did not cancel the goal within 3 s"};
 }
 
-/// Sends the goal and watches it to its end; Ctrl-C cancels it.
-int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& arguments) {
-  auto writer = observer.writer(topics::kNavigateGoal);
-  auto reader = observer.reader(topics::kNavigateStatus);
-  if (!writer) return fail(writer.error());
-  if (!reader) return fail(reader.error());
-  if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
-    return fail("no navigator in domain " + std::to_string(domain));
-
+NavigateGoal goal_from(const GoalArguments& arguments) {
   NavigateGoal goal;
   goal.id(fresh_id());
   goal.client(kClient);
@@ -117,40 +135,75 @@ int pursue(Observer& observer, std::uint32_t domain, const GoalArguments& argume
     goal.pose().pose(
         wire::to_message(geometry::Pose2{arguments.pose[0], arguments.pose[1], arguments.pose[2]}));
   }
-  auto told = std::chrono::steady_clock::time_point{};
+  return goal;
+}
+
+enum class Outcome { kUnderWay, kArrived, kFailed, kReplaced };
+
+/// Sends the goal and watches it to its end; Ctrl-C cancels it.
+Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& arguments) {
+  const auto failed = [](const std::string& reason) {
+    fail(reason);
+    return Outcome::kFailed;
+  };
+  auto writer = observer.writer(topics::kNavigateGoal);
+  auto reader = observer.reader(topics::kNavigateStatus);
+  if (!writer) return failed(writer.error());
+  if (!reader) return failed(reader.error());
+  if (!writer->wait_for_readers(1, kPatience))
+    return failed("no navigator in domain " + std::to_string(domain));
+
+  const NavigateGoal goal = goal_from(arguments);
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point told{}, heard = Clock::now(), given = heard;
   bool accepted = false;
   const bool terminal = isatty(STDOUT_FILENO) != 0;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(3);
-  while (accepted || std::chrono::steady_clock::now() < deadline) {
+  const auto end_line = [&] { std::cout << (terminal ? "\n" : "") << std::flush; };
+  for (;;) {
     if (stop_asked) {
       const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
-      if (terminal) std::cout << "\n";
-      return fail(cancelled ? "cancelled" : cancelled.error());
+      end_line();
+      return failed(cancelled ? "cancelled" : cancelled.error());
     }
-    if (!accepted && std::chrono::steady_clock::now() - told > kRepeat) {
+    if (!accepted && Clock::now() - given > kPatience)
+      return failed("the navigator did not take the goal within 3 s");
+    if (!accepted && Clock::now() - told > kRepeat) {
       writer->write(goal);
-      told = std::chrono::steady_clock::now();
+      told = Clock::now();
     }
     const auto status = reader->take(milliseconds(100));
-    if (!status || status->id() != goal.id()) continue;
-    accepted = true;
-    const bool ended = status->state() >= GoalStatus_Constants::STATE_SUCCEEDED;
-    if (arguments.no_wait && !ended) return 0;
-    if (terminal) show_progress(*status);
-    switch (status->state()) {
-      case GoalStatus_Constants::STATE_SUCCEEDED:
-        std::cout << (terminal ? "\n" : "") << "arrived\n";
-        return 0;
-      case GoalStatus_Constants::STATE_FAILED:
-      case GoalStatus_Constants::STATE_CANCELLED:
-      case GoalStatus_Constants::STATE_REPLACED:
-        if (terminal) std::cout << "\n";
-        return fail(status->reason().empty() ? "another goal took its place" : status->reason());
-      default:
-        break;
+    if (status) heard = Clock::now();
+    if (Clock::now() - heard > kGone) {
+      end_line();
+      return failed(
+          "the navigator has been silent for 5 s; what it did with the goal is not known");
     }
+    if (!status) continue;
+    const bool runs = status->state() == GoalStatus_Constants::STATE_ACTIVE ||
+                      status->state() == GoalStatus_Constants::STATE_WAITING;
+    if (status->id() != goal.id()) {
+      if (accepted && status->id() == 0) {  // restarted: it has forgotten everything
+        accepted = false;
+        given = Clock::now();
+      }
+      if (!accepted || !runs) continue;
+      end_line();
+      fail("another goal took its place");
+      return Outcome::kReplaced;
+    }
+    accepted = true;
+    if (arguments.no_wait && runs) return Outcome::kUnderWay;
+    if (terminal) show_progress(*status);
+    if (runs) continue;
+    end_line();
+    if (status->state() == GoalStatus_Constants::STATE_SUCCEEDED) {
+      std::cout << "arrived\n";
+      return Outcome::kArrived;
+    }
+    fail(status->reason());
+    return status->state() == GoalStatus_Constants::STATE_REPLACED ? Outcome::kReplaced
+                                                                   : Outcome::kFailed;
   }
-  return fail("the navigator did not take the goal within 3 s");
 }
 
 /// The supervisor lets the navigation drive from the start to the end of a goal.
@@ -158,7 +211,10 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   using namespace SupervisorRequest_Constants;
   auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
-  if (arguments.location.empty() && arguments.pose.empty()) return list_locations(**observer);
+  const auto locations = locations_of(**observer, domain);
+  if (!locations) return fail(locations.error());
+  if (arguments.location.empty() && arguments.pose.empty()) return list(*locations);
+  if (const auto sound = judge(arguments, *locations); !sound) return fail(sound.error());
   struct sigaction action {};
   action.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &action, nullptr);
@@ -168,13 +224,13 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
     if (const auto told = tell_supervisor(**observer, command, name); !told)
       return fail(told.error());
   }
-  const int code = pursue(**observer, domain, arguments);
-  if (code != 0) {
+  const Outcome outcome = pursue(**observer, domain, arguments);
+  if (outcome == Outcome::kFailed) {  // one that was replaced leaves the navigation to the other
     if (const auto told = tell_supervisor(**observer, COMMAND_NAVIGATION_END); !told) {
       std::cerr << "usher: the navigation could not be ended: " << told.error() << "\n";
     }
   }
-  return code;
+  return outcome == Outcome::kUnderWay || outcome == Outcome::kArrived ? 0 : 1;
 }
 
 int save_map(std::uint32_t domain, const std::string& path) {
