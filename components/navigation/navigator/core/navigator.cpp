@@ -150,7 +150,7 @@ Navigator::Navigator(const NavigatorConfig& config, Locations locations, std::ui
 
 // --- Requests
 
-void Navigator::request(GoalRequest goal) {
+void Navigator::request(const GoalRequest& goal) {
   if (goal.id == status_.id && goal.id != 0 && goal.client == status_.client) return;
   NavigationStatus status;
   status.id = goal.id;
@@ -531,15 +531,15 @@ void Navigator::recover(const Situation& s, Failure failure, const std::string& 
   if (recoveries_in_a_row_ >= config_.most_recoveries)
     return finish(GoalState::kFailed, failure, reason);
   const int kind = recoveries_in_a_row_++ % kRecoveryKinds;
-  const bool left = recoveries_in_a_row_ / kRecoveryKinds % 2 == 1;
+  const int round = recoveries_in_a_row_ / kRecoveryKinds;
+  const bool left = round % 2 == 1;
   ++status_.recoveries;
   recovered_at_ = advanced_;
   waiting_for_ = reason;
   pending_.reset();
   // What did not help is tried over a longer way.
   const double back =
-      std::min(config_.back_off_distance * (1 + recoveries_in_a_row_ / kRecoveryKinds),
-               s.rear_clearance - config_.rear_margin);
+      std::min(config_.back_off_distance * (1 + round), s.rear_clearance - config_.rear_margin);
   const bool room_behind = back >= config_.back_off_distance;
   if (kind == 0) {
     decision_.clear_costmap = true;

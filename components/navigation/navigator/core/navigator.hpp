@@ -200,7 +200,7 @@ class Navigator {
   /// The newest goal wins; the same id of the same client changes nothing. A goal that is refused
   /// (kBadGoal, kUnknownLocation) is answered in the status, or aside while another one runs, which
   /// then goes on.
-  void request(GoalRequest goal);
+  void request(const GoalRequest& goal);
   /// Another pace for the goal of this id and client while it runs [m/s]; 0 = the planner's own
   /// limit. Returns whether there was one; a pace that is negative or not finite is none.
   bool pace(std::uint64_t id, const std::string& client, double max_speed);
@@ -268,11 +268,11 @@ class Navigator {
   NavigationStatus status_;
   State state_ = State::kInitialise;
   Phase phase_ = Phase::kPlanning;
-  double phase_since_ = 0.0;
   Failure pause_cause_ = Failure::kNone;
+  bool fresh_ = false;  // a goal was requested, but there was no step yet
+  double phase_since_ = 0.0;
 
   // The goal.
-  bool fresh_ = false;  // requested, but no step yet
   double goal_max_speed_ = 0.0;
   double started_at_ = 0.0;
   double longest_ = 0.0;     // [m] way of this goal by the longest of its plans
@@ -299,9 +299,9 @@ class Navigator {
 
   // Blocked and recovering.
   double blocked_since_ = 0.0;
-  bool blocked_by_person_ = false;
   std::optional<double> replanned_at_;
   int recoveries_in_a_row_ = 0;
+  bool blocked_by_person_ = false;
   double recovered_at_ = 0.0;  // [m] of advanced_
 
   Motion motion_;

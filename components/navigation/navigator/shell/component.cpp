@@ -75,6 +75,7 @@ Locations NavigatorComponent::read_locations(runtime::Host& host) {
        {"y", ParameterKind::kNumber, "m", {-1e4, 1e4}, "The same."},
        {"yaw", ParameterKind::kNumber, "rad", {-6.3, 6.3}, "Which way it looks."}},
       "Known locations of the site.");
+  locations.reserve(records.size());
   for (const auto& record : records) {
     locations.push_back({record.text("name"),
                          record.text("title"),
