@@ -392,7 +392,12 @@ bool DynamicWindow::gives_way(const Input& input) {
       std::any_of(input.people.begin(), input.people.end(), [&](const MovingDisc& person) {
         const geometry::Point2 way = person.position - input.pose.position();
         const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
-        if (way.dot(heading) < 0.0 || person.velocity.dot(heading) > kWalksOn) return false;
+        const double along = person.velocity.dot(heading);
+        if (way.dot(heading) < 0.0 || along > kWalksOn) return false;
+        // Who crosses is let by, or passed, by the trajectories: stopping on their way is no help.
+        const double across =
+            std::abs(person.velocity.y() * heading.x() - person.velocity.x() * heading.y());
+        if (across > kWalks && across > std::abs(along)) return false;
         constexpr double kStep = 0.1;  // [m]
         for (int i = 0; kStep * i < kMeeting; ++i) {
           if ((path_.point(path_.progress() + kStep * i) - person.position).norm() <

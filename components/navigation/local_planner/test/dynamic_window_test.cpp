@@ -234,6 +234,7 @@ TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
                                                {{{2.5, 0}, {-0.5, 0}, 0.25}},
                                                {{{1.0, 0.9}, {-0.5, 0}, 0.25}},
                                                {{{1.0, 0}, {0.6, 0}, 0.25}},
+                                               {{{1.1, 0.3}, {0.1, 0.7}, 0.25}},
                                                {{{-0.6, 0}, {0, 0}, 0.25}}};
   for (const auto& people : elsewhere) EXPECT_EQ(reason(people), Reason::kFollowing);
   EXPECT_EQ(reason(met), Reason::kGivingWay);
