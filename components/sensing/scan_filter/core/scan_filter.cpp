@@ -46,13 +46,14 @@ Result<ScanFilter> ScanFilter::make(const ScanFilterConfig& c) {
 }
 
 Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> ranges,
-                          const Pitch& pitch, PlanarScan& out) {
+                          const Pitch& at_first, const Pitch& at_last, PlanarScan& out) {
   const auto reject = [&](Error error) {
     ++counts_.rejected;
     return error;
   };
-  if (!(std::abs(pitch.angle) <= kSteepest) || !std::isfinite(pitch.rate)) {
-    return reject({"pitch must be within 0.6 rad, got " + std::to_string(pitch.angle)});
+  for (const Pitch& p : {at_first, at_last}) {
+    if (!(std::abs(p.angle) <= kSteepest) || !std::isfinite(p.rate))
+      return reject({"pitch must be within 0.6 rad, got " + std::to_string(p.angle)});
   }
   if (geometry != geometry_ || ranges.size() != beams_) {
     if (const Status status = adopt(geometry, ranges.size()); !status) {
@@ -69,7 +70,7 @@ Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> r
                    " beams have an echo, expected " + std::to_string(config_.least_echoes) +
                    " at least: the sensor is blind"});
   }
-  project(ranges, pitch);
+  project(ranges, at_first, at_last);
   out.base_T_scan = {config_.mount_x, config_.mount_y, config_.mount_yaw};
   out.geometry = {geometry.angle_min + static_cast<double>(first_) * geometry.angle_increment,
                   geometry.angle_increment, 0.5 * geometry.range_min, geometry.range_max + 0.5};
@@ -124,34 +125,52 @@ Status ScanFilter::adopt(const ScanGeometry& g, std::size_t beams) {
   return {};
 }
 
-// Where each beam ends, seen from the upright sensor's place (4.2, 4.3), and whether that is an
-// obstacle.
-void ScanFilter::project(std::span<const float> ranges, const Pitch& pitch) {
-  const Eigen::Quaterniond lean = geometry::from_roll_pitch_yaw(0.0, pitch.angle, 0.0);
+// (4.2, 4.3)
+ScanFilter::View ScanFilter::view(double pitch) const {
+  const Eigen::Quaterniond lean = geometry::from_roll_pitch_yaw(0.0, pitch, 0.0);
   const Eigen::Quaterniond mount =
       geometry::from_roll_pitch_yaw(0.0, config_.mount_pitch, config_.mount_yaw);
   const Eigen::Vector3d place(config_.mount_x, config_.mount_y, config_.mount_z);
   const Eigen::Quaterniond to_scan(Eigen::AngleAxisd(-config_.mount_yaw, Eigen::Vector3d::UnitZ()));
-  const Eigen::Vector3f origin =
-      (to_scan * (lean * place - Eigen::Vector3d(config_.mount_x, config_.mount_y, 0.0)) +
-       Eigen::Vector3d(0.0, 0.0, config_.axle_height))
-          .cast<float>();
-  const Eigen::Matrix3f turn = (to_scan * lean * mount).toRotationMatrix().cast<float>();
+  const Eigen::Vector3d origin =
+      to_scan * (lean * place - Eigen::Vector3d(config_.mount_x, config_.mount_y, 0.0)) +
+      Eigen::Vector3d(0.0, 0.0, config_.axle_height);
+  const Eigen::Matrix3d turn = (to_scan * lean * mount).toRotationMatrix();
+  return {origin.cast<float>(), turn.col(0).cast<float>(), turn.col(1).cast<float>()};
+}
+
+// Where each beam ends, seen from the upright sensor's place, and whether that is an obstacle.
+void ScanFilter::project(std::span<const float> ranges, const Pitch& at_first,
+                         const Pitch& at_last) {
+  // The view turns by less than 0.1 rad during a scan: a straight line between its ends is off by
+  // 1e-3 of the range at most, at 1 rad/s and 15 ms by 3e-5.
+  const View first = view(at_first.angle);
+  const View last = view(at_last.angle);
+  const float share = beams_ > 1 ? 1.0f / static_cast<float>(beams_ - 1) : 0.0f;
+  const Eigen::Vector3f moves = share * (last.origin - first.origin);  // from beam to beam
+  const Eigen::Vector3f ahead_turns = share * (last.ahead - first.ahead);
+  const Eigen::Vector3f left_turns = share * (last.left - first.left);
 
   const float range_min = static_cast<float>(geometry_.range_min);
   const float range_max = static_cast<float>(geometry_.range_max);
   const float margin = static_cast<float>(config_.floor_margin);
-  const float margin_slope =
-      static_cast<float>(config_.floor_angle + config_.floor_time * std::abs(pitch.rate));
+  const float margin_slope = static_cast<float>(
+      config_.floor_angle +
+      config_.floor_time * std::max(std::abs(at_first.rate), std::abs(at_last.rate)));
   const float max_height = static_cast<float>(config_.max_height);
   for (std::size_t i = 0; i < cos_.size(); ++i) {
     const float range = ranges[first_ + i];
     const bool echo = range <= range_max;
     const float length = echo ? range : range_max;
-    x_[i] = origin.x() + length * (cos_[i] * turn(0, 0) + sin_[i] * turn(0, 1));
-    y_[i] = origin.y() + length * (cos_[i] * turn(1, 0) + sin_[i] * turn(1, 1));
+    const auto beam = static_cast<float>(first_ + i);
+    const Eigen::Vector3f ahead = first.ahead + beam * ahead_turns;
+    const Eigen::Vector3f left = first.left + beam * left_turns;
+    const Eigen::Vector3f end =
+        first.origin + beam * moves + length * (cos_[i] * ahead + sin_[i] * left);
+    x_[i] = end.x();
+    y_[i] = end.y();
     away_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i]);
-    const float height = origin.z() + length * (cos_[i] * turn(2, 0) + sin_[i] * turn(2, 1));
+    const float height = end.z();
     if (!(range >= range_min)) {  // NaN too
       kind_[i] = Kind::kUnknown;
       ++counts_.invalid;

@@ -6,6 +6,7 @@
 
 #include "foundation/estimation/pitch_history.hpp"
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/geometry/pose3.hpp"
 #include "foundation/result/result.hpp"
 
 namespace usher::scan_filter {
@@ -66,8 +67,8 @@ struct FilterCounts {
 ///
 /// 1. Bearings beyond the limit are cut off (figure 4.4).
 /// 2. Sensor transform (4.2, 4.3): the mount is turned with the body about the axle by the pitch of
-/// the measurement's
-///    time.
+/// each beam's own time,
+///    on a straight line from the first beam's to the last one's.
 /// 3. Ground (4.4 to 4.6): a beam that ends lower than a margin above the floor has met the floor.
 /// Said in height and
 ///    not, as the thesis does, in range, because an error of the pitch moves the predicted range
@@ -88,11 +89,17 @@ class ScanFilter {
   /// Errors name the value that is out of range.
   static Result<ScanFilter> make(const ScanFilterConfig& config);
 
-  /// Ranges as REP 117 has them: +infinity, or beyond range_max: no echo; NaN, -infinity or below
-  /// range_min: invalid. A scan whose geometry is impossible or larger than kMaxBeams, without
-  /// beams, or a pitch beyond 0.6 rad is rejected as a whole, counted, and leaves `out` alone.
+  /// `at_first` and `at_last`: the pitch at the first and at the last beam's time. Ranges as REP
+  /// 117 has them: +infinity, or beyond range_max: no echo; NaN, -infinity or below range_min:
+  /// invalid. A scan whose geometry is impossible or larger than kMaxBeams, without beams, or a
+  /// pitch beyond 0.6 rad is rejected as a whole, counted, and leaves `out` alone.
+  Status filter(const ScanGeometry& geometry, std::span<const float> ranges, const Pitch& at_first,
+                const Pitch& at_last, PlanarScan& out);
+  /// Of a scan that was made at one time.
   Status filter(const ScanGeometry& geometry, std::span<const float> ranges, const Pitch& pitch,
-                PlanarScan& out);
+                PlanarScan& out) {
+    return filter(geometry, ranges, pitch, pitch, out);
+  }
 
   const FilterCounts& counts() const { return counts_; }
   const ScanFilterConfig& config() const { return config_; }
@@ -105,7 +112,12 @@ class ScanFilter {
   explicit ScanFilter(const ScanFilterConfig& config) : config_(config) {}
 
   Status adopt(const ScanGeometry& geometry, std::size_t beams);
-  void project(std::span<const float> ranges, const Pitch& pitch);
+  /// The sensor's place and the axes of its plane, seen from base_T_scan above the floor.
+  struct View {
+    Eigen::Vector3f origin, ahead, left;
+  };
+  View view(double pitch) const;
+  void project(std::span<const float> ranges, const Pitch& at_first, const Pitch& at_last);
   void find_surfaces();
   void join_ends(std::vector<float>& out) const;
   void place_lone_ends(std::vector<float>& out) const;

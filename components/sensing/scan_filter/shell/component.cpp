@@ -11,6 +11,7 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(200);
+constexpr double kLongestScan = 0.2;  // [s] from the first beam to the last
 
 ScanFilterConfig laser_config(runtime::Parameters& p) {
   ScanFilterConfig c;
@@ -104,11 +105,19 @@ void ScanFilterComponent::take_scan(Channel& channel,
 /// False while the pitch of the scan's time is not known yet.
 bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::LaserScan& scan) {
   const runtime::Time stamp = wire::from_message(scan.header().stamp());
-  const auto pitch = pitch_.at(stamp);
-  if (!pitch) return false;
+  const double duration = static_cast<double>(scan.time_increment()) *
+                          (static_cast<double>(scan.ranges().size()) - 1.0);
+  if (!(duration >= 0.0 && duration <= kLongestScan)) {
+    ++rejected_;
+    return true;
+  }
+  const auto at_first = pitch_.at(stamp);
+  const auto at_last = pitch_.at(stamp + runtime::from_seconds(duration));
+  if (!at_first || !at_last) return false;
   const ScanGeometry geometry{scan.angle_min(), scan.angle_increment(), scan.range_min(),
                               scan.range_max()};
-  const auto filtered = channel.filter->filter(geometry, scan.ranges(), *pitch, channel.planar);
+  const auto filtered =
+      channel.filter->filter(geometry, scan.ranges(), *at_first, *at_last, channel.planar);
   if (!filtered) {
     ++rejected_;
     if (&channel == &laser_)

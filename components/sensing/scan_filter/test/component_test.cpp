@@ -34,6 +34,7 @@ class Component : public testing::Test {
     message.angle_min(static_cast<float>(geometry::radians(-135)));
     message.angle_increment(static_cast<float>(geometry::radians(0.5)));
     message.angle_max(static_cast<float>(geometry::radians(135)));
+    message.time_increment(time_increment);
     message.range_min(0.05F);
     message.range_max(20.0F);
     message.ranges().assign(541, range);
@@ -73,7 +74,7 @@ class Component : public testing::Test {
   milliseconds status_ahead{0}, scans_ahead{0};
   std::uint8_t state = STATE_BALANCING;
   double pitch = 0.0;
-  float range = 2.0F;
+  float range = 2.0F, time_increment = 0.0F;
 };
 
 TEST_F(Component, PublishesEachScanWithItsStampOnThePlane) {
@@ -168,6 +169,40 @@ TEST_F(Component, WaitsForThePitchOfTheScan) {
   host.publish(topics::kBaseStatus, status());
   host.run_for(milliseconds(1));
   EXPECT_EQ(left(), 1U) << "with the pitch that reaches its time";
+}
+
+TEST_F(Component, CorrectsEachBeamWithThePitchOfItsOwnTime) {
+  sonars = scans = false;
+  const auto range_ahead = [&](float increment) {
+    time_increment = increment;
+    pitch = 0.0;
+    run(100);
+    pitch = geometry::radians(-10.0);
+    run(10);
+    scans_ahead = milliseconds(-20);  // begun when the body stood upright, ended when it leant
+    host.clear();
+    host.publish(topics::kScan, scan());
+    host.run_for(milliseconds(1));
+    const auto planar = host.last(topics::kScanFiltered).value();
+    return planar.ranges()[static_cast<std::size_t>(
+        std::lround(-planar.angle_min() / planar.angle_increment()))];
+  };
+  EXPECT_NEAR(range_ahead(0.0F), 2.0F, 1e-5F);
+  const double half = geometry::radians(-5.0);  // within the turn
+  EXPECT_NEAR(range_ahead(10e-3F / 540.0F),
+              2.0 * std::cos(half) + 0.28 * std::cos(half) + 0.065 * std::sin(half) - 0.28, 0.01);
+}
+
+TEST_F(Component, RefusesScansThatTakeTooLong) {
+  run(500);
+  for (const float increment : {std::numeric_limits<float>::quiet_NaN(), -1e-5F, 1.0F}) {
+    time_increment = increment;
+    host.publish(topics::kScan, scan());
+    host.run_for(milliseconds(1));
+  }
+  time_increment = 0.0F;
+  run(120);
+  EXPECT_EQ(host.counter("scans: rejected"), 3U);
 }
 
 TEST_F(Component, SaysThatScansAndPitchDoNotMeet) {

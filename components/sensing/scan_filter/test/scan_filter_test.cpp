@@ -139,6 +139,43 @@ TEST(ScanFilter, KeepsWallsWhereTheyAreAndFindsNoFloor) {
   }
 }
 
+// A turn of the LMS100 takes 15 ms from its first beam to its last.
+TEST(ScanFilter, CorrectsEachBeamWithThePitchOfItsOwnTime) {
+  const std::vector<Wall> walls{{0.0, 3.0}};
+  double worst = 0.0;
+  double worst_of_one_pitch = 0.0;
+  for (double degrees = -9.0; degrees <= 3.0; degrees += 3.0) {
+    for (const double swing : {-1.5, 1.5}) {  // degrees within the turn: 1.7 rad/s
+      const auto pitch_of = [&](int beam) { return radians(degrees + swing * beam / 540.0); };
+      std::vector<float> ranges;
+      for (int i = 0; i < 541; ++i)
+        ranges.push_back(see(walls, pitch_of(i))[static_cast<std::size_t>(i)]);
+      const double rate = radians(swing) / 0.015;
+      const auto farthest_off = [&](const Pitch& first, const Pitch& last) {
+        ScanFilter f = filter();
+        PlanarScan out;
+        EXPECT_TRUE(f.filter(lms100(), ranges, first, last, out).ok());
+        double farthest = 0.0;
+        for (std::size_t i = 0; i < out.ranges.size(); ++i) {
+          if (!std::isfinite(out.ranges[i])) continue;
+          double off = 1e9;
+          for (const Wall& wall : walls) {
+            const Point2 n(std::cos(wall.direction), std::sin(wall.direction));
+            off = std::min(off, std::abs(n.dot(end_of(out, i)) - wall.offset));
+          }
+          farthest = std::max(farthest, off);
+        }
+        return farthest;
+      };
+      const Pitch first{pitch_of(0), rate};
+      worst = std::max(worst, farthest_off(first, {pitch_of(540), rate}));
+      worst_of_one_pitch = std::max(worst_of_one_pitch, farthest_off(first, first));
+    }
+  }
+  EXPECT_LT(worst, 0.001);
+  EXPECT_GT(worst_of_one_pitch, 0.01) << "the test would not see one pitch for all";
+}
+
 TEST(ScanFilter, LeavesNoHoleInAWallThatIsSeen) {
   const std::vector<Wall> walls{{0.0, 3.0}};
   for (const double degrees : {-9.0, -3.0, 0.5, 3.0}) {
