@@ -1,6 +1,12 @@
 #include "control/movement_control/shell/component.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "wire/conversions.hpp"
+#include "wire/footprint.hpp"
+#include "wire/stopping.hpp"
 
 namespace usher::movement_control {
 
@@ -13,8 +19,14 @@ constexpr auto kCommandAge = milliseconds(250);
 constexpr auto kSensorAge = milliseconds(300);
 constexpr auto kBaseAge = milliseconds(150);
 constexpr auto kLocalizationAge = milliseconds(1000);
+constexpr double kStanding = 0.01;  // [m/s]
 
 float single(double value) { return static_cast<float>(value); }
+double front_of(const geometry::Footprint& outline) {
+  double front = 0.0;
+  for (const auto& corner : outline.corners()) front = std::max(front, corner.x());
+  return front;
+}
 float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
 
 }  // namespace
@@ -59,11 +71,15 @@ Parameters MovementControlComponent::read_parameters(runtime::Parameters& parame
 
 MovementControlComponent::MovementControlComponent(runtime::Host& host)
     : host_(host),
+      front_(front_of(wire::read_footprint(host))),
+      stopping_(wire::read_stopping(host)),
       core_(read_parameters(host.parameters())),
       rejected_(host.health().counter("cmd_vel: rejected")) {
   auto& parameters = host.parameters();
   free_space_.half_width =
       parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  free_space_.base_T_sensor.x = parameters.number("robot.laser.mount_x", "m", {-2, 2}, 0.0,
+                                                  "Laser ahead of the axle's middle.");
   assume_person_ = parameters.flag("assume_person_ahead", true,
                                    "Without a people detector, drive as if a person were ahead.");
   low_battery_ = parameters.number("low_battery_percent", "%", {0, 100}, 15.0,
@@ -188,6 +204,17 @@ void MovementControlComponent::publish_status() {
   m.source(static_cast<std::uint8_t>(s.source));
   m.situation(static_cast<std::uint8_t>(s.situation));
   m.limit_reason(std::string(text(s.limit)));
+  const auto* scan = scan_.fresh();
+  const double way = scan != nullptr && wire::check(*scan)
+                         ? free_way(scan->ranges(), scan->angle_min(), scan->angle_increment(),
+                                    s.current, front_, free_space_)
+                         : 0.0;  // nobody knows
+  m.person_ahead(assume_person_);
+  m.obstacle_distance(single(way));
+  m.stopping_distance(single(stopping_.distance(s.measured.v)));
+  const bool stands = std::abs(s.measured.v) < kStanding;
+  m.time_to_collision(stands ? std::numeric_limits<float>::infinity()
+                             : single(way / std::abs(s.measured.v)));
   status_.publish(m);
   host_.health().set(s.ok ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
                      s.ok ? "" : std::string(text(s.limit)));

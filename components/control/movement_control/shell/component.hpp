@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "control/movement_control/core/movement_control.hpp"
+#include "foundation/kinematics/stopping_distance.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -25,6 +26,8 @@ class MovementControlComponent final : public runtime::Component {
 
   runtime::Host& host_;
   FreeSpaceParameters free_space_;
+  double front_;  ///< [m] of the outline, ahead of the axle
+  kinematics::StoppingDistance stopping_;
   bool assume_person_;
   double low_battery_;
   MovementControl core_;

@@ -6,6 +6,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/stopping.hpp"
 
 namespace usher::local_planner {
 
@@ -35,19 +36,7 @@ DynamicWindowConfig LocalPlannerComponent::read_parameters(runtime::Host& host) 
   auto& p = host.parameters();
   DynamicWindowConfig c;
   c.footprint = wire::read_footprint(host);
-  const auto speeds = p.numbers("robot.stopping.speeds", "m/s", {0, 5}, 1, 20, {1.0, 1.4},
-                                "Speeds at which the stopping distance was measured, rising.");
-  const auto distances = p.numbers("robot.stopping.distances", "m", {0, 20}, 1, 20, {1.48, 2.08},
-                                   "Measured stopping distances, one for each speed.");
-  std::vector<kinematics::StoppingPoint> points;
-  for (std::size_t i = 0; i < std::min(speeds.size(), distances.size()); ++i) {
-    points.push_back({speeds[i], distances[i]});
-  }
-  auto measured = kinematics::StoppingDistance::make(points);
-  if (speeds.size() != distances.size()) host.fault("robot.stopping: as many speeds as distances");
-  if (!measured) host.fault("robot.stopping: " + measured.error());
-  c.stopping = std::move(measured).value();
-
+  c.stopping = wire::read_stopping(host);
   c.pace = p.number("pace", "m/s", {0.1, 1.4}, c.pace, "Speed to keep where it can be stopped.");
   c.slowest = p.number("slowest", "m/s", {0.01, 0.5}, c.slowest,
                        "The base does not follow slower commands well.");

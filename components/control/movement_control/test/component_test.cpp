@@ -1,0 +1,144 @@
+// The rows of the README's table of losses, through the ports.
+#include "control/movement_control/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::movement_control {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr const char* kRobot = R"(
+robot.half_width: 0.3 m
+robot.footprint: [0.3, 0.3, -0.2, 0.3, -0.2, -0.3, 0.3, -0.3]
+robot.laser.mount_x: 0.28 m
+assume_person_ahead: false
+)";
+
+/// A robot in a hall that is told to drive at 1 m/s, its base at 0.5 m/s; each voice until it is
+/// silent.
+class Component : public testing::Test {
+ protected:
+  void run(int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      speak();
+      host.run_for(milliseconds(20));
+    }
+  }
+  double commanded() { return host.last(topics::kDriveCommand)->v(); }
+  usher_msgs::msg::MovementStatus status() { return host.last(topics::kMovementStatus).value(); }
+
+  runtime::TestHost host{runtime::component_factory<MovementControlComponent>("movement_control"),
+                         kRobot};
+  std::set<std::string> silent;
+  double wall = 100.0;  ///< [m] ahead of the laser
+
+ private:
+  void speak() {
+    const auto speaks = [this](const char* topic) { return !silent.contains(topic); };
+    const auto header = wire::header(host.now(), "base_link");
+    if (speaks("movement/enable")) {
+      usher_msgs::msg::MovementEnable enable;
+      enable.header(header);
+      enable.movement(true), enable.navigation(true);
+      enable.speed_factor(1.0F);
+      enable.epoch(7);
+      host.publish(topics::kMovementEnable, enable, "supervisor");
+    }
+    if (speaks("whiskers")) {
+      usher_msgs::msg::Whiskers whiskers;
+      whiskers.header(header);
+      host.publish(topics::kWhiskers, whiskers);
+    }
+    if (speaks("base/status")) {
+      usher_msgs::msg::BaseStatus base;
+      base.header(header);
+      base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+      base.v(0.5);
+      base.battery_percent(80.0F);
+      host.publish(topics::kBaseStatus, base);
+    }
+    if (speaks("localization/status")) {
+      usher_msgs::msg::LocalizationStatus localization;
+      localization.header(header);
+      localization.state(usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD);
+      host.publish(topics::kLocalizationStatus, localization);
+    }
+    if (speaks("scan/filtered")) {
+      sensor_msgs::msg::LaserScan scan;
+      scan.header(wire::header(host.now(), "laser"));
+      scan.angle_min(-1.0F), scan.angle_max(1.0F), scan.angle_increment(0.01F);
+      scan.range_min(0.05F), scan.range_max(20.0F);
+      for (int i = 0; i <= 200; ++i) {
+        const double range = wall / std::cos(-1.0 + 0.01 * i);
+        scan.ranges().push_back(range > 20.0 ? std::numeric_limits<float>::infinity()
+                                             : static_cast<float>(range));
+      }
+      host.publish(topics::kScanFiltered, scan);
+    }
+    if (speaks("cmd_vel/navigation")) {
+      geometry_msgs::msg::TwistStamped wanted;
+      wanted.header(header);
+      wanted.twist().linear().x(1.0);
+      host.publish(topics::kCmdVelNavigation, wanted, "local_planner");
+    }
+  }
+};
+
+TEST_F(Component, DrivesWhatIsWantedUnderTheEpochOfTheEnable) {
+  run(3000);
+  EXPECT_NEAR(commanded(), 1.0, 1e-6);
+  EXPECT_EQ(host.last(topics::kDriveCommand)->epoch(), 7U);
+  EXPECT_TRUE(status().ok()) << status().limit_reason();
+}
+
+TEST_F(Component, WhatFallsSilentStopsIt) {
+  const struct {
+    const char* topic;
+    int age;
+  } rows[] = {{"movement/enable", 120},
+              {"whiskers", 300},
+              {"base/status", 150},
+              {"localization/status", 1000},
+              {"cmd_vel/navigation", 250}};
+  for (const auto& row : rows) {
+    silent.clear();
+    run(3000);
+    ASSERT_GT(commanded(), 0.9) << row.topic;
+    silent.insert(row.topic);
+    run(row.age - 60);
+    EXPECT_GT(commanded(), 0.5) << row.topic << ": not yet";
+    run(100);
+    EXPECT_EQ(commanded(), 0.0) << row.topic;
+  }
+}
+
+TEST_F(Component, WithoutAScanItDrivesAsInAConfinedPlace) {
+  run(3000);
+  silent.insert("scan/filtered");
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6);
+  EXPECT_EQ(status().obstacle_distance(), 0.0F) << "nobody knows";
+}
+
+TEST_F(Component, TheStatusTellsWhatIsAhead) {
+  run(3000);
+  EXPECT_FALSE(status().person_ahead());
+  EXPECT_EQ(status().obstacle_distance(), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(status().time_to_collision(), std::numeric_limits<float>::infinity());
+  wall = 3.02;
+  run(300);
+  EXPECT_NEAR(status().obstacle_distance(), 3.02 + 0.28 - 0.3, 0.01) << "from the outline's front";
+  EXPECT_NEAR(status().time_to_collision(), 6.0, 0.05) << "at the base's 0.5 m/s";
+  EXPECT_NEAR(status().stopping_distance(), 0.74, 0.01);
+}
+
+}  // namespace
+}  // namespace usher::movement_control
