@@ -385,12 +385,12 @@ Status Engine::construct(const ComponentFactory& factory) {
       if (!state.fault) state.fault = "the constructor threw something";
     }
     // Wrong parameters explain most faults of a constructor: they are told instead.
-    const Status parameters = state.parameters.finish();
+    Status parameters = state.parameters.finish();
     if (!parameters.ok()) return parameters;
     if (!state.wrong_declarations.empty()) return Status(Error{state.wrong_declarations});
     return Status();
   };
-  const Status status = make();
+  Status status = make();
   if (!status.ok()) {
     state.fault.reset();
     state.outbox.drop();
