@@ -142,8 +142,25 @@ TEST_F(Commands, StopHoldsTheRobotUntilMove) {
   const auto status = robot_->command({"status"});
   status->wait();
   EXPECT_TRUE(contains(status->output(), "stands: stopped by ")) << status->output();
-  EXPECT_EQ(output({"move"}), "may move\n");
+  EXPECT_EQ(output({"move"}), "the stop is lifted\n");
   EXPECT_TRUE(robot_->wait_for([] { return robot_->status()->enable_movement(); }, Seconds(5)));
+}
+
+TEST_F(Commands, AnEmergencyStopEndsAGoto) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const auto drive = robot_->command({"goto", "--pose", "4.5", "3.6", "0.0"});
+  EXPECT_TRUE(robot_->wait_for(
+      [] {
+        return robot_->status()->state() ==
+               usher_msgs::msg::SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+      },
+      Seconds(20)));
+  EXPECT_EQ(output({"stop", "--emergency"}), "emergency stop\n");
+  EXPECT_EQ(drive->wait(), 1);
+  EXPECT_TRUE(contains(drive->errors(), "the supervisor ended the navigation: "))
+      << drive->errors();
+  EXPECT_EQ(output({"clear"}), "cleared\n");
+  EXPECT_TRUE(well()) << robot_->complaints();
 }
 
 TEST_F(Commands, EmergencyStopIsAFaultUntilCleared) {

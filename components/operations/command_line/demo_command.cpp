@@ -149,6 +149,10 @@ int demo(const DemoArguments& arguments) {
     overrides.push_back({kVisitor, "destination", arguments.destination});
   overrides.push_back({"tablet", "pictures",
                        std::filesystem::absolute(arguments.out + "/screens").lexically_normal()});
+  // What an earlier run left would pass for this one's.
+  std::error_code ignored;
+  std::filesystem::remove_all(arguments.out + "/screens", ignored);
+  std::filesystem::remove(arguments.out + "/result.json", ignored);
   auto deployment = load_deployment(manifest, installation, overrides);
   if (!deployment) return fail(deployment.error());
   for (auto& file : deployment->files) file.seed = arguments.seed;

@@ -52,7 +52,7 @@ int status(std::uint32_t domain, double patience) {
   auto reader = (*observer)->reader(topics::kSupervisorStatus);
   if (!reader) return fail(reader.error());
   const auto message = reader->take(runtime::from_seconds(patience));
-  if (!message) return fail("no supervisor in domain " + std::to_string(domain));
+  if (!message) return fail(nobody_there("supervisor", domain));
   std::string stopped;
   for (const auto& client : message->stopped_by())
     stopped += (stopped.empty() ? "" : ", ") + client;

@@ -61,7 +61,7 @@ Result<navigator::Locations> locations_of(Observer& observer, std::uint32_t doma
   auto reader = observer.reader(topics::kLocations);
   if (!reader) return Error{reader.error()};
   const auto message = reader->take(kPatience);
-  if (!message) return Error{"no navigator in domain " + std::to_string(domain)};
+  if (!message) return Error{nobody_there("navigator", domain)};
   std::vector<navigator::Location> locations;
   for (const auto& location : message->locations()) {
     const auto pose = wire::to_planar(location.pose());
@@ -138,6 +138,35 @@ NavigateGoal goal_from(const GoalArguments& arguments) {
   return goal;
 }
 
+/// Notices that the supervisor will let the navigation drive no further: after a latched fault or
+/// manual driving nobody starts it again.
+class SupervisorWatch {
+ public:
+  explicit SupervisorWatch(Observer::Reader<SupervisorStatus>& reader) : reader_(reader) {}
+
+  /// Why, once that has been so for longer than it takes a goal to end.
+  std::optional<std::string> ended_navigation() {
+    using namespace SupervisorStatus_Constants;
+    const auto now = std::chrono::steady_clock::now();
+    while (const auto status = reader_.take(milliseconds(0))) {
+      const bool over = status->state() == STATE_FAULT || status->state() == STATE_MANUAL ||
+                        status->state() == STATE_INTERACTION;
+      if (!over) over_since_.reset();
+      if (over && !over_since_) over_since_ = now;
+      if (status->state() == STATE_FAULT) why_ = status->reason();
+      if (status->state() == STATE_MANUAL) why_ = "driven by hand";
+    }
+    if (!over_since_ || now - *over_since_ < kOver) return std::nullopt;
+    return "the supervisor ended the navigation" + (why_.empty() ? "" : ": " + why_);
+  }
+
+ private:
+  static constexpr auto kOver = std::chrono::seconds(2);
+  Observer::Reader<SupervisorStatus>& reader_;
+  std::optional<std::chrono::steady_clock::time_point> over_since_;
+  std::string why_;
+};
+
 enum class Outcome { kUnderWay, kArrived, kFailed, kReplaced };
 
 /// Sends the goal and watches it to its end; Ctrl-C cancels it.
@@ -148,15 +177,17 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
   };
   auto writer = observer.writer(topics::kNavigateGoal);
   auto reader = observer.reader(topics::kNavigateStatus);
+  auto guard = observer.reader(topics::kSupervisorStatus);
   if (!writer) return failed(writer.error());
+  if (!guard) return failed(guard.error());
   if (!reader) return failed(reader.error());
-  if (!writer->wait_for_readers(1, kPatience))
-    return failed("no navigator in domain " + std::to_string(domain));
+  if (!writer->wait_for_readers(1, kPatience)) return failed(nobody_there("navigator", domain));
 
   const NavigateGoal goal = goal_from(arguments);
   using Clock = std::chrono::steady_clock;
   Clock::time_point told{}, heard = Clock::now(), given = heard;
   bool accepted = false;
+  SupervisorWatch supervisor(*guard);
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const auto end_line = [&] { std::cout << (terminal ? "\n" : "") << std::flush; };
   for (;;) {
@@ -177,6 +208,11 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
       end_line();
       return failed(
           "the navigator has been silent for 5 s; what it did with the goal is not known");
+    }
+    if (const auto why = supervisor.ended_navigation(); accepted && why) {
+      const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
+      end_line();
+      return failed(*why + (cancelled ? "" : "; " + cancelled.error()));
     }
     if (!status) continue;
     const bool runs = status->state() == GoalStatus_Constants::STATE_ACTIVE ||
@@ -298,11 +334,12 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
     exit_code = *emergency ? ask_supervisor(*domain, COMMAND_EMERGENCY_STOP, "emergency stop")
                            : ask_supervisor(*domain, COMMAND_STOP, "stopped");
   });
-  with_domain(app.add_subcommand("move", "Allow motion again after `usher stop`"))
+  with_domain(app.add_subcommand("move", "Lift `usher stop`; a latched fault needs `usher clear`"))
       ->callback([=, &exit_code] {
-        exit_code = ask_supervisor(*domain, COMMAND_MOVEMENT_ON, "may move");
+        exit_code = ask_supervisor(*domain, COMMAND_MOVEMENT_ON, "the stop is lifted");
       });
-  with_domain(app.add_subcommand("clear", "Clear latched faults whose cause is gone"))
+  with_domain(app.add_subcommand(
+                  "clear", "Clear latched faults (an emergency stop is one) whose cause is gone"))
       ->callback(
           [=, &exit_code] { exit_code = ask_supervisor(*domain, COMMAND_CLEAR, "cleared"); });
 

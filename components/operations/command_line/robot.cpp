@@ -49,4 +49,14 @@ runtime::Observer::Options reach_robot(const std::string& name, std::uint32_t do
   return options;
 }
 
+std::string nobody_there(const std::string& who, std::uint32_t domain) {
+  std::string text = "no " + who + " in domain " + std::to_string(domain);
+  for (const std::uint32_t other : launched_domains()) {
+    if (other == domain) continue;
+    text += "; a robot was launched here in domain " + std::to_string(other) + ": --domain " +
+            std::to_string(other);
+  }
+  return text;
+}
+
 }  // namespace usher::operations

@@ -19,4 +19,7 @@ std::string keys_folder();
 /// `operator`, whatever its name.
 runtime::Observer::Options reach_robot(const std::string& name, std::uint32_t domain);
 
+/// "no WHO in domain N", and where on this machine robots were launched instead.
+std::string nobody_there(const std::string& who, std::uint32_t domain);
+
 }  // namespace usher::operations

@@ -129,6 +129,21 @@ std::vector<std::string> operator_files(std::uint32_t domain) {
   return {runtime_directory() + name, kServiceDirectory + name};
 }
 
+std::vector<std::uint32_t> launched_domains() {
+  std::vector<std::uint32_t> domains;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(runtime_directory(), error)) {
+    unsigned domain = 0;
+    int end = 0;
+    const std::string name = entry.path().filename();
+    if (std::sscanf(name.c_str(), "domain-%u-operator.yaml%n", &domain, &end) == 1 &&
+        static_cast<std::size_t>(end) == name.size())
+      domains.push_back(domain);
+  }
+  std::ranges::sort(domains);
+  return domains;
+}
+
 std::string to_yaml(const runtime::ParameterFile& file) {
   std::ostringstream out;
   out << "component: " << file.component << "\nname: " << file.name << "\nhost: " << file.host

@@ -26,6 +26,7 @@ constexpr auto kCommandHold = milliseconds(400);
 /// loses.
 constexpr std::uint64_t kMostStepsAtOnce = 5;
 constexpr double kBehind = 0.1;  // [s] of lag from which the simulation says that it is behind
+constexpr auto kLately = std::chrono::seconds(5);  // since it lost time that it never makes up
 
 /// The defaults are MARVIN's SICK LMS100.
 void read_laser(runtime::Parameters& p, LaserConfig& laser) {
@@ -192,8 +193,10 @@ void WorldComponent::advance(std::uint64_t skipped) {
   if (board) publish_sensor_board();
   if (truth) publish_truth();
   const double lag = runtime::seconds(host_.now() - start_) - static_cast<double>(steps_) * kStep;
-  host_.health().set(lag > kBehind ? HealthState::kDegraded : HealthState::kOk,
-                     lag > kBehind ? "the simulation is " + std::to_string(lag) + " s behind" : "");
+  if (skipped + 1 > due) fell_behind_at_ = host_.now();
+  const bool behind = lag > kBehind && host_.now() - fell_behind_at_ < kLately;
+  host_.health().set(behind ? HealthState::kDegraded : HealthState::kOk,
+                     behind ? "the simulation is " + std::to_string(lag) + " s behind" : "");
 }
 
 void WorldComponent::publish_feedback() {

@@ -39,6 +39,7 @@ class WorldComponent final : public runtime::Component {
   usher_sim_msgs::msg::SensorBoardReading board_;
   std::uint64_t& rejected_;
   std::uint64_t& late_steps_;
+  runtime::Time fell_behind_at_{};
 
   runtime::Input<usher_sim_msgs::msg::BaseCommand> command_;
   runtime::Input<usher_sim_msgs::msg::PersonGoal> person_goal_;
