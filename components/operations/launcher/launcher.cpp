@@ -14,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -133,12 +134,11 @@ std::vector<std::uint32_t> launched_domains() {
   std::vector<std::uint32_t> domains;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(runtime_directory(), error)) {
-    unsigned domain = 0;
-    int end = 0;
+    static const std::regex kName("domain-([0-9]{1,9})-operator\\.yaml");
+    std::smatch match;
     const std::string name = entry.path().filename();
-    if (std::sscanf(name.c_str(), "domain-%u-operator.yaml%n", &domain, &end) == 1 &&
-        static_cast<std::size_t>(end) == name.size())
-      domains.push_back(domain);
+    if (std::regex_match(name, match, kName))
+      domains.push_back(static_cast<std::uint32_t>(std::stoul(match[1])));
   }
   std::ranges::sort(domains);
   return domains;

@@ -69,15 +69,15 @@ struct StreamHandlers {
 };
 
 /// Everything that a component may ask for. Called only from the component's constructor and
-/// handlers.
+/// handlers; keep() also from the jobs of offload().
 ///
 /// Laws (tests/conformance proves them for every host): handlers of one component never overlap;
 /// now() is constant inside a handler and never goes back; each turn runs at most `depth` samples
-/// per input and writer, ordered by arrival and then by declaration, then what is due, ordered by
-/// time and then by declaration; a latched input gets the last value of a living writer however
-/// late it starts; timers do not drift and count what they skipped; outputs leave when the handler
-/// returns without a fault, all or none; after a fault no handler runs; randomness comes in named
-/// streams seeded from (world seed, component, stream).
+/// per input and writer, ordered by arrival and then by declaration, then what is due, losses
+/// before timers, by time and then by declaration; a latched input gets a living writer's last
+/// value however late it starts; timers do not drift and count what they skipped; outputs leave
+/// when the handler returns without a fault, all or none; after a fault no handler runs; random
+/// streams have names and are seeded from (world seed, component, stream).
 class Host {
  public:
   virtual ~Host() = default;
