@@ -253,17 +253,37 @@ inline constexpr Topic<nav_msgs::msg::Path> kLocalPlan{"local_plan",
                                                        "local_planner waypoint_follower",
                                                        "The chosen trajectory, for viewers."};
 inline constexpr Topic<usher_msgs::msg::NavigateGoal> kNavigateGoal{
-    "navigate/goal", Kind::kEvent, 32, 0, "guide operator", "Where to go; the newest goal wins."};
+    "navigate/goal",
+    Kind::kEvent,
+    32,
+    0,
+    "guide explorer operator",
+    "Where to go; the newest goal wins."};
 inline constexpr Topic<geometry_msgs::msg::PoseStamped> kGoalPose{
     "goal_pose", Kind::kEvent, 32, 0, "operator", "The same from rviz."};
 inline constexpr Topic<usher_msgs::msg::GoalCancel> kNavigateCancel{
-    "navigate/cancel", Kind::kEvent, 32, 0, "guide operator", "Give up the goal."};
+    "navigate/cancel", Kind::kEvent, 32, 0, "guide explorer operator", "Give up the goal."};
 inline constexpr Topic<usher_msgs::msg::NavigateStatus> kNavigateStatus{
     "navigate/status", Kind::kLatched, 1, 5, "navigator", "Progress, time left, outcome."};
 inline constexpr Topic<usher_msgs::msg::NavigatePace> kNavigatePace{
     "navigate/pace", Kind::kCommand, 1, 5, "guide", "How fast the visitor can follow."};
 inline constexpr Topic<usher_msgs::msg::Locations> kLocations{
     "locations", Kind::kLatched, 1, 0, "navigator", "Known locations of the site."};
+
+// --- Exploration
+inline constexpr Topic<usher_msgs::msg::ExploreGoal> kExploreGoal{
+    "explore/goal", Kind::kEvent, 32, 0, "meeting operator", "Look at everything; newest wins."};
+inline constexpr Topic<usher_msgs::msg::GoalCancel> kExploreCancel{
+    "explore/cancel", Kind::kEvent, 32, 0, "meeting operator", "Give up exploring."};
+inline constexpr Topic<usher_msgs::msg::ExploreStatus> kExploreStatus{
+    "explore/status", Kind::kLatched, 1, 5, "explorer", "What was seen, what comes next, outcome."};
+inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kExploreCoverage{
+    "explore/coverage",
+    Kind::kLatched,
+    1,
+    1,
+    "explorer",
+    "For viewers: 100 not seen in this round, 0 seen, -1 not to be looked at; frame map."};
 
 // --- Dialogue
 inline constexpr Topic<usher_msgs::msg::DialogueScreen> kDialogueScreen{
@@ -336,10 +356,11 @@ inline constexpr auto kAll = std::tie(
     kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus,
     kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest,
     kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,
-    kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kDialogueScreen,
-    kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback,
-    kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor,
-    kSimKinectInfo, kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan,
-    kSimGroundTruth, kSimPersonGoal);
+    kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kExploreGoal,
+    kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen, kDialogueAnswer,
+    kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback, kSimScan,
+    kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo,
+    kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimGroundTruth,
+    kSimPersonGoal);
 
 }  // namespace usher::topics

@@ -57,6 +57,8 @@
   TYPE(usher_msgs::msg::Costmap)                      \
   TYPE(usher_msgs::msg::CostmapRequest)               \
   TYPE(usher_msgs::msg::GoalCancel)                   \
+  TYPE(usher_msgs::msg::ExploreGoal)                  \
+  TYPE(usher_msgs::msg::ExploreStatus)                \
   TYPE(usher_msgs::msg::PlanRequest)                  \
   TYPE(usher_msgs::msg::PlanReply)                    \
   TYPE(usher_msgs::msg::FollowGoal)                   \
