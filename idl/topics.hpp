@@ -172,6 +172,9 @@ inline constexpr Topic<usher_msgs::msg::PersonAhead> kPersonAhead{
     15,
     "people_detector",
     "Whether somebody is where the robot drives."};
+inline constexpr Topic<usher_msgs::msg::Faces> kFaces{
+    "faces", Kind::kStream,   1,
+    10,      "face_detector", "Faces that the Kinect sees, one message a pair of images."};
 
 // --- Supervisor
 inline constexpr Topic<usher_msgs::msg::SupervisorStatus> kSupervisorStatus{
@@ -352,7 +355,7 @@ inline constexpr auto kAll = std::tie(
     kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan, kKinectTilt,
     kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
     kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
-    kMovementStatus, kPeople, kPersonAhead, kJoy, kInteractionTarget, kSupervisorStatus,
+    kMovementStatus, kPeople, kPersonAhead, kFaces, kJoy, kInteractionTarget, kSupervisorStatus,
     kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus,
     kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest,
     kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,

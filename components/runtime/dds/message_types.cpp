@@ -51,6 +51,7 @@
   TYPE(usher_msgs::msg::FaceTarget)                   \
   TYPE(usher_msgs::msg::People)                       \
   TYPE(usher_msgs::msg::PersonAhead)                  \
+  TYPE(usher_msgs::msg::Faces)                        \
   TYPE(usher_msgs::msg::SupervisorStatus)             \
   TYPE(usher_msgs::msg::SupervisorRequest)            \
   TYPE(usher_msgs::msg::LocalizationStatus)           \
