@@ -38,6 +38,31 @@ void to_color_message(runtime::Time stamp, std::string_view frame, int width,
   fill(stamp, frame, width, height, 3, "rgb8", rgb.data(), message);
 }
 
+Result<imaging::ColorImage> color_image(const sensor_msgs::msg::Image& message,
+                                        std::vector<std::uint8_t>& rgb) {
+  const bool gray = message.encoding() == "mono8";
+  const bool swapped = message.encoding() == "bgr8";
+  if (!gray && !swapped && message.encoding() != "rgb8")
+    return Error{"a color image is rgb8, bgr8 or mono8, got '" + message.encoding() + "'"};
+  const std::uint32_t width = message.width(), height = message.height();
+  const std::uint64_t row = std::uint64_t{width} * (gray ? 1 : 3);
+  if (width == 0 || height == 0 || width > kMostPixels || height > kMostPixels ||
+      message.step() != row || message.data().size() != row * height) {
+    return Error{"a color image of " + std::to_string(width) + " x " + std::to_string(height) +
+                 " with rows of " + std::to_string(message.step()) + " bytes carries " +
+                 std::to_string(message.data().size())};
+  }
+  const auto& data = message.data();
+  const std::size_t pixels = std::size_t{width} * height;
+  const int columns = static_cast<int>(width), rows = static_cast<int>(height);
+  if (!gray && !swapped) return imaging::ColorImage{columns, rows, data};
+  rgb.resize(3 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) rgb[3 * i + k] = gray ? data[i] : data[3 * i + 2 - k];
+  }
+  return imaging::ColorImage{columns, rows, rgb};
+}
+
 Result<imaging::DepthImage> depth_image(const sensor_msgs::msg::Image& message, double far,
                                         std::vector<std::uint16_t>& millimeters) {
   const bool wide = message.encoding() == "16UC1" || message.encoding() == "mono16";

@@ -41,6 +41,41 @@ TEST(DepthImageMessage, OfEightBitsIsThatOfTheThesis) {
   EXPECT_THAT(read, testing::ElementsAre(0, 4706, 0, 94));
 }
 
+TEST(ColorImageMessage, IsReadInEachOrderOfItsColors) {
+  const std::vector<std::uint8_t> values{1, 2, 3, 4, 5, 6};
+  sensor_msgs::msg::Image message;
+  to_color_message(runtime::Time(std::chrono::seconds(3)), "camera", 2, values, message);
+  std::vector<std::uint8_t> copy;
+  const auto image = color_image(message, copy);
+  ASSERT_TRUE(image.ok()) << image.error();
+  EXPECT_EQ(image->width, 2);
+  EXPECT_EQ(image->height, 1);
+  EXPECT_THAT(image->rgb, testing::ElementsAreArray(values));
+  message.encoding("bgr8");
+  EXPECT_THAT(color_image(message, copy)->rgb, testing::ElementsAre(3, 2, 1, 6, 5, 4));
+  message.encoding("mono8");
+  message.step(2);
+  message.data() = {7, 8};
+  EXPECT_THAT(color_image(message, copy)->rgb, testing::ElementsAre(7, 7, 7, 8, 8, 8));
+}
+
+TEST(ColorImageMessage, IsRefusedWhenItsBytesDoNotFit) {
+  const std::vector<std::uint8_t> values{1, 2, 3, 4, 5, 6};
+  std::vector<std::uint8_t> copy;
+  sensor_msgs::msg::Image good;
+  to_color_message(runtime::Time(std::chrono::seconds(3)), "camera", 2, values, good);
+  auto message = good;
+  message.data().pop_back();
+  EXPECT_THAT(color_image(message, copy).error(), HasSubstr("carries 5"));
+  message = good;
+  message.encoding("yuv422");
+  EXPECT_THAT(color_image(message, copy).error(), HasSubstr("yuv422"));
+  message = good;
+  message.width(0x80000000U);
+  EXPECT_FALSE(color_image(message, copy).ok());
+  EXPECT_FALSE(color_image({}, copy).ok());
+}
+
 TEST(DepthImageMessage, IsRefusedWhenItsBytesDoNotFit) {
   std::vector<std::uint16_t> read;
   auto message = message_of({1, 2, 3, 4}, 2);
