@@ -187,6 +187,7 @@ Launcher::Launcher(Launcher&& other) noexcept
       processes_(std::move(other.processes_)),
       events_(std::move(other.events_)),
       operator_file_(std::exchange(other.operator_file_, {})),
+      precedence_(other.precedence_),
       locks_(std::exchange(other.locks_, {})),
       last_poll_(other.last_poll_),
       trusted_from_(other.trusted_from_) {
@@ -238,6 +239,12 @@ Status Launcher::prepare(const Deployment& deployment) {
     std::filesystem::remove_all(options_.run_directory + "/kept", error);
     if (error) return Error{"cannot empty " + options_.run_directory + "/kept: " + error.message()};
   }
+  precedence_ = permitted_precedence();
+  if (precedence_ != Precedence::kRealTime) {
+    events_.push_back(
+        "the drive chain cannot run in real time here, so a busy machine may stop the robot "
+        "(permit it with CAP_SYS_NICE or RLIMIT_RTPRIO 10)");
+  }
   const std::int64_t anchor = clock_anchor();
   if (auto status = leave_operator_file(deployment, anchor); !status) return status;
   if (auto status = add_discovery_server(deployment, anchor); !status) return status;
@@ -272,6 +279,7 @@ Status Launcher::prepare(const Deployment& deployment) {
     if (const auto found = deployment.movement.find(component.name);
         found != deployment.movement.end())
       process->movement = std::max(process->movement, found->second);
+    process->goes_first = process->goes_first || file.critical;
     process->components.push_back(component.name);
     process->arguments.push_back("--parameters");
     process->arguments.push_back(path);
@@ -334,6 +342,7 @@ void Launcher::start(Process& process) {
     const int null = open("/dev/null", O_RDONLY);
     if (log >= 0) dup2(log, STDOUT_FILENO), dup2(log, STDERR_FILENO);
     if (null >= 0) dup2(null, STDIN_FILENO);
+    if (process.goes_first) take(precedence_);
     execv(arguments[0], arguments.data());
     _exit(127);
   }

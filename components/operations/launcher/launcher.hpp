@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "foundation/result/result.hpp"
+#include "operations/launcher/precedence.hpp"
 #include "operations/manifest/resolve.hpp"
 
 namespace usher::operations {
@@ -41,6 +42,7 @@ struct Process {
   Criticality criticality = Criticality::kNotify;  ///< the highest of its components
   Movement movement = Movement::kNone;
   std::string log;
+  bool goes_first = false;  ///< before all other programs of this machine, where that is permitted
 
   State state = State::kWaiting;
   pid_t pid = 0;
@@ -118,7 +120,8 @@ class Launcher {
   std::vector<Process> processes_;
   std::vector<std::string> events_;
   std::string operator_file_;
-  std::vector<int> locks_;  ///< open files, locked while this launcher lives
+  Precedence precedence_ = Precedence::kNone;  ///< what is permitted
+  std::vector<int> locks_;                     ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
   std::chrono::steady_clock::time_point logs_bounded_{};

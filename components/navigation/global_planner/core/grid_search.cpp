@@ -166,6 +166,9 @@ void GridSearch::expand(const CostField& field, const Target& target, std::uint3
       const std::uint32_t reached = value + step;
       if (reached >= best) return;
       best = reached;
+      // The values of a whole map do not fit into a core's own cache: what lies behind is wanted
+      // when this cell's turn comes.
+      __builtin_prefetch(values + cell + 2 * offset(direction), 1);
       // Two's complement carries a step to the left or down through both halves.
       const std::uint32_t there =
           here + packed(kDx[direction & 7], 0) + packed(0, kDy[direction & 7]);

@@ -1,6 +1,7 @@
 #include "operations/launcher/launcher.hpp"
 
 #include <gmock/gmock.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -110,6 +111,27 @@ TEST_F(Launching, ReadsBackWhatItWritesForAComponentWithoutParameters) {
   const auto read = runtime::parse_parameter_file(to_yaml(deployment_.files[0]), "legs.yaml");
   ASSERT_TRUE(read) << read.error();
   EXPECT_TRUE(read->values.empty());
+}
+
+TEST_F(Launching, LetsWhatMustAnswerInTimeGoFirst) {
+  const int before = sched_getscheduler(0);
+  const Precedence permitted = permitted_precedence();
+  EXPECT_EQ(sched_getscheduler(0), before) << "asking changes nothing";
+  component("legs", "sleeper");
+  component("ears", "sleeper");
+  deployment_.files[0].critical = true;
+  auto made = launcher();
+  const auto policy = [&](const char* name) {
+    const pid_t pid = made.find(name)->pid;
+    return pid > 0 ? sched_getscheduler(pid) : -1;
+  };
+  if (permitted == Precedence::kRealTime) {
+    EXPECT_TRUE(wait_for(made, [&] { return policy("legs") == SCHED_RR; }));
+  } else {
+    EXPECT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
+    EXPECT_THAT(events_, Contains(HasSubstr("cannot run in real time")));
+  }
+  EXPECT_TRUE(wait_for(made, [&] { return policy("ears") == before; }));
 }
 
 TEST_F(Launching, RestartsAtOnceWhatWasKilled) {

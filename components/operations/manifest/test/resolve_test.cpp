@@ -126,6 +126,10 @@ TEST_F(Resolving, GivesTheFactsOfRobotAndSite) {
   EXPECT_EQ(deployment.files[0].name, "legs");
   EXPECT_EQ(deployment.files[0].host, "nuc");
   EXPECT_TRUE(deployment.files[0].critical);
+  EXPECT_FALSE(resolved("  legs: {host: nuc, criticality: notify}\n").files[0].critical);
+  contracts_.at("legs").outputs.emplace_back().topic = "cmd_vel/legs";
+  EXPECT_TRUE(resolved("  legs: {host: nuc, criticality: notify}\n").files[0].critical)
+      << "who may move the robot shows life at 50 Hz";
 }
 
 TEST_F(Resolving, RefusesFactsThatAreSetElsewhere) {
