@@ -153,8 +153,8 @@ class Resolver {
     // Who may move the robot shows life at 50 Hz, so that an impostor of its name is soon found
     // out; what stands in for a device must be as prompt as one.
     for (const auto& output : contract->second.outputs) {
-      file.critical = file.critical || output.topic.starts_with("cmd_vel/") ||
-                      output.topic.starts_with("sim/");
+      file.critical =
+          file.critical || output.topic.starts_with("cmd_vel/") || output.topic.starts_with("sim/");
     }
     auto own = layers_of(component, overrides);
     for (const auto& parameter : contract->second.parameters) {
