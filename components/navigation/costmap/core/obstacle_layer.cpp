@@ -67,6 +67,7 @@ void ObstacleLayer::shift(int dx, int dy) {
     shift_cells(marked_at_, states_.width(), states_.height(), dx, dy, std::uint32_t{0});
   }
   seen_ = seen_.moved(-dx, -dy).within({0, 0, states_.width(), states_.height()});
+  if (seen_.empty()) seen_ = {};  // all of it has left
 }
 
 Result<CellRect> ObstacleLayer::observe(const RangeObservation& observation, const Raster& raster) {

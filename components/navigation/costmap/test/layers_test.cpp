@@ -52,6 +52,16 @@ TEST(ObstacleLayer, ClearsUpToTheEchoAndMarksIt) {
   EXPECT_EQ(touched, (CellRect{20, 20, 41, 21}));
 }
 
+TEST(ObstacleLayer, HasNothingToForgetWhenTheWindowHasLeftAllThatItSaw) {
+  for (const int away : {150, -150}) {
+    ObstacleLayer layer(config(), raster());
+    see(layer, 1.0F);
+    layer.shift(away, 0);  // beside what it saw: the rows are the same
+    EXPECT_TRUE(layer.forget().empty());
+    EXPECT_TRUE(layer.replace({}, 0.0, raster())->empty());
+  }
+}
+
 TEST(ObstacleLayer, ForgetsAnObstacleThatItSeesThrough) {
   ObstacleLayer layer(config(), raster());
   see(layer, 1.0F);
