@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "simulation/rendering/core/depth_sensor.hpp"
@@ -59,6 +60,7 @@ class WorldRenderer {
   /// The people and, when it changed, the scene of this moment.
   Status update(const World& world);
   rendering::Renderer& renderer() { return *renderer_; }
+  std::span<const rendering::Body> bodies() const { return bodies_; }  ///< of the people
 
  private:
   std::optional<rendering::Renderer> renderer_;

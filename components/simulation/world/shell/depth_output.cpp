@@ -23,6 +23,14 @@ DepthScanModelConfig model_for(const DepthCameraConfig& camera) {
   return config;
 }
 
+std::vector<rendering::Texture> drawn_faces() {
+  constexpr std::uint64_t kFaces = 16;
+  std::vector<rendering::Texture> faces;
+  for (std::uint64_t number = 0; number < kFaces; ++number)
+    faces.push_back(rendering::drawn_face(number));
+  return faces;
+}
+
 }  // namespace
 
 DepthCameraConfig DepthOutput::read_kinect(runtime::Parameters& p) {
@@ -69,7 +77,8 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
       "Depth cameras: rendered pixels, or the scans of the model that is fitted to them.");
   if (kind == "model") kind_ = Kind::kModel;
   if (kind == "pixels") kind_ = Kind::kPixels;
-  color_ = host.parameters().flag("color", false, "Whether colour images are painted too.");
+  if (host.parameters().flag("color", false, "Whether colour images are painted too."))
+    painter_.emplace(drawn_faces());
   kinect_model_.emplace(model_for(kinect_.config()), seed);
   rear_model_.emplace(model_for(rear_.config()), seed + 1);
   kinect_depth_ = host.output(topics::kSimKinectDepth);
@@ -117,8 +126,8 @@ void DepthOutput::publish_kinect() {
   wire::to_message(stepped_, kKinectFrame, imaging::DepthImage{lens.width, lens.height, depth_},
                    image_);
   kinect_depth_.publish(image_);
-  if (!color_) return;
-  rendering::paint(kinect_.truth(), rgb_);
+  if (!painter_) return;
+  painter_->paint(kinect_.truth(), lens, kinect_.pose(*world_), renderer_.bodies(), rgb_);
   wire::to_color_message(stepped_, kKinectFrame, lens.width, rgb_, image_);
   kinect_color_.publish(image_);
 }

@@ -6,6 +6,7 @@
 
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "simulation/rendering/core/painter.hpp"
 #include "simulation/world/core/depth_scan_model.hpp"
 
 namespace usher::world {
@@ -37,12 +38,12 @@ class DepthOutput {
   runtime::Host& host_;
   const World* world_;
   Kind kind_ = Kind::kOff;
-  bool color_ = false;
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
   WorldRenderer renderer_;
-  runtime::Time stepped_{};  ///< time of the world's last step
-  bool told_ = false;        ///< the intrinsics
+  std::optional<rendering::Painter> painter_;  // none: no color images
+  runtime::Time stepped_{};                    ///< time of the world's last step
+  bool told_ = false;                          ///< the intrinsics
   bool kinect_next_ = true;
   std::vector<std::uint16_t> depth_;
   std::vector<std::uint8_t> rgb_;
