@@ -93,8 +93,7 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 /// components that later work brings or that live in another's folder; a role that has become a
 /// folder must leave this list.
 const std::set<std::string> kRoles{"waypoint_follower", "explorer", "operator",
-                                   "segway_emulator",   "meeting",  "speech",
-                                   "face_detector"};
+                                   "segway_emulator",   "meeting",  "speech"};
 
 TEST(Catalogue, WritersAreComponentsOrKnownRoles) {
   std::set<std::string> types;
