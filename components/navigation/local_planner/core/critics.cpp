@@ -51,7 +51,7 @@ void DynamicWindow::choose_local_goal(const Input& input) {
   wavefront_.set_obstacles(input.costs, kCostInscribed, config_.unknown_is_lethal);
   way_open_ = false;
   if (!geometry.contains(goal_cell)) {  // the path is outside of the window
-    goal_lengths_.assign(geometry.size(), Wavefront::kUnreachable);
+    goal_lengths_.assign(geometry.size(), grid::Wavefront::kUnreachable);
     front_lengths_ = goal_lengths_;
     aligned_ = false;
     return;
@@ -61,7 +61,8 @@ void DynamicWindow::choose_local_goal(const Input& input) {
   for (int dy = -2; dy <= 2; ++dy) {
     for (int dx = -2; dx <= 2; ++dx) {
       const grid::Cell cell{here.x + dx, here.y + dy};
-      if (geometry.contains(cell) && goal_lengths_[geometry.index(cell)] < Wavefront::kUnreachable)
+      if (geometry.contains(cell) &&
+          goal_lengths_[geometry.index(cell)] < grid::Wavefront::kUnreachable)
         way_open_ = true;
     }
   }
@@ -194,12 +195,12 @@ double DynamicWindow::way_left(const std::vector<std::uint16_t>& lengths, const 
     const grid::Cell cell{column + (k & 1), row + (k >> 1)};
     if (!geometry.contains(cell)) continue;
     const std::uint16_t length = lengths[geometry.index(cell)];
-    if (length >= Wavefront::kUnreachable) continue;
+    if (length >= grid::Wavefront::kUnreachable) continue;
     const double weight = ((k & 1) ? fu : 1.0 - fu) * ((k >> 1) ? fv : 1.0 - fv) + 1e-6;
     sum += weight * length;
     weights += weight;
   }
-  if (weights > 0.0) return sum / weights * geometry.resolution / Wavefront::kUnitsPerCell;
+  if (weights > 0.0) return sum / weights * geometry.resolution / grid::Wavefront::kUnitsPerCell;
   const geometry::Point2 goal = path_.point(local_goal_arc_);
   return 0.5 + std::hypot(goal.x() - input.pose.x - x, goal.y() - input.pose.y - y);
 }

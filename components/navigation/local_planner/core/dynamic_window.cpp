@@ -171,8 +171,8 @@ Status DynamicWindow::set_pace(double pace) {
 
 bool DynamicWindow::valid(const Input& input) const {
   const grid::GridGeometry& g = input.costs.geometry();
-  const bool grid = g.width > 0 && g.height > 0 && g.width <= Wavefront::kLargestSide &&
-                    g.height <= Wavefront::kLargestSide && g.resolution > 1e-3 &&
+  const bool grid = g.width > 0 && g.height > 0 && g.width <= grid::Wavefront::kLargestSide &&
+                    g.height <= grid::Wavefront::kLargestSide && g.resolution > 1e-3 &&
                     g.resolution < 1.0 && std::isfinite(g.origin_x) && std::isfinite(g.origin_y);
   if (!grid || !input.pose.finite() || !plausible(input.measured) || !plausible(input.last_command))
     return false;

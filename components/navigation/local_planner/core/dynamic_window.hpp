@@ -9,6 +9,7 @@
 #include "foundation/cpu/cpu.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/grid/grid.hpp"
+#include "foundation/grid/wavefront.hpp"
 #include "foundation/kinematics/acceleration_limiter.hpp"
 #include "foundation/kinematics/stopping_distance.hpp"
 #include "foundation/result/result.hpp"
@@ -17,7 +18,6 @@
 #include "navigation/local_planner/core/reference_path.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
 #include "navigation/local_planner/core/trail.hpp"
-#include "navigation/local_planner/core/wavefront.hpp"
 
 namespace usher::local_planner {
 
@@ -228,7 +228,7 @@ class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): ther
   ContactTest whole_;   // whole cells
   ContactTest center_;  // centers of cells
   Rollout rollout_;
-  Wavefront wavefront_;
+  grid::Wavefront wavefront_;
   ReferencePath path_;
   PolylineDistance path_distance_;
   Lane lane_;

@@ -7,10 +7,13 @@
 #include <span>
 #include <vector>
 
+#include "foundation/grid/free_space.hpp"
 #include "foundation/random/random.hpp"
-#include "navigation/roadmap/core/free_space.hpp"
 
 namespace usher::roadmap {
+
+using geometry::Point2;
+using grid::FreeSpace;
 
 /// Which vertices a vertex is joined to (algorithm 3 of the meeting report).
 enum class Connection : std::uint8_t {

@@ -2,9 +2,11 @@
 
 #include <vector>
 
-#include "navigation/roadmap/core/free_space.hpp"
+#include "foundation/grid/free_space.hpp"
 
 namespace usher::roadmap {
+
+using geometry::Point2;
 
 /// What a costmap saw that the map does not have: middles of its lethal cells (254) within `radius`
 /// [m] of `robot` that are farther than `tolerance` [m] from everything in the map. `map_distances`

@@ -2,9 +2,12 @@
 
 #include <vector>
 
-#include "navigation/roadmap/core/free_space.hpp"
+#include "foundation/grid/free_space.hpp"
 
 namespace usher::roadmap {
+
+using geometry::Point2;
+using grid::FreeSpace;
 
 /// Algorithm 4 of the meeting report: passes over the path that leave out each way point whose
 /// neighbors see each other, until nothing changes or `passes` are done.

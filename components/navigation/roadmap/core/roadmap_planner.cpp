@@ -61,7 +61,7 @@ Status RoadmapPlanner::set_map(const grid::OccupancyGrid& map) {
 
 void RoadmapPlanner::generate() {
   std::vector<Point2> points;
-  sample_vertices(clear_space_, map_, config_.sampling, random_, points);
+  sample_points(clear_space_, map_, config_.sampling, random_, points);
   graph_.reset(points);
   graph_.connect(clear_space_, config_.connection, random_);
   if (config_.search == Search::kAstar) search_.prepare(graph_);

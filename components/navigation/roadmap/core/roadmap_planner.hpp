@@ -5,13 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "foundation/grid/sampling.hpp"
 #include "foundation/random/random.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/roadmap/core/graph.hpp"
 #include "navigation/roadmap/core/graph_search.hpp"
-#include "navigation/roadmap/core/sampling.hpp"
 
 namespace usher::roadmap {
+
+using grid::Sampling;
+using grid::SamplingParameters;
 
 enum class Search : std::uint8_t { kDijkstra, kAstar };
 

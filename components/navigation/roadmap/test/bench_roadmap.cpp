@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   GraphSearch search;
   const auto build = [&] {
     usher::Random random(1);
-    sample_vertices(space, map, defaults.sampling, random, points);
+    sample_points(space, map, defaults.sampling, random, points);
     graph.reset(points);
     graph.connect(space, defaults.connection, random);
     search.prepare(graph);

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "rooms.hpp"
+#include "foundation/grid/test/rooms.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::roadmap {
 namespace {
+
+using namespace grid;
 
 using std::chrono::milliseconds;
 using namespace usher_msgs::msg::GoalStatus_Constants;

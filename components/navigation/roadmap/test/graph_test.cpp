@@ -6,12 +6,14 @@
 #include <limits>
 #include <set>
 
+#include "foundation/grid/sampling.hpp"
+#include "foundation/grid/test/rooms.hpp"
 #include "navigation/roadmap/core/graph_search.hpp"
-#include "navigation/roadmap/core/sampling.hpp"
-#include "rooms.hpp"
 
 namespace usher::roadmap {
 namespace {
+
+using namespace grid;
 
 struct Made {
   grid::OccupancyGrid map;
@@ -25,7 +27,7 @@ Made make(const grid::OccupancyGrid& map, Connection connection, std::uint64_t s
   made.space.build(map, 0.24);
   Random random(seed);
   std::vector<Point2> points;
-  sample_vertices(made.space, map, {.sampling = sampling}, random, points);
+  sample_points(made.space, map, {.sampling = sampling}, random, points);
   made.graph.reset(points);
   made.graph.connect(made.space, {.connection = connection}, random);
   return made;
@@ -49,7 +51,7 @@ TEST(Sampling, PutsEveryVertexIntoFreeSpace) {
        {Sampling::kRandom, Sampling::kGrid, Sampling::kCell, Sampling::kMedialAxis}) {
     Random random(1);
     std::vector<Point2> points;
-    sample_vertices(space, map, {.sampling = sampling}, random, points);
+    sample_points(space, map, {.sampling = sampling}, random, points);
     EXPECT_GT(points.size(), 50U);
     for (const auto& point : points) ASSERT_TRUE(space.free(point));
   }
@@ -61,8 +63,8 @@ TEST(Sampling, CellsGiveEveryFreeSquareItsPoints) {
   space.build(map, 0.24);
   Random random(1);
   std::vector<Point2> points;
-  sample_vertices(space, map, {.sampling = Sampling::kCell, .cell_size = 1.0, .points_per_cell = 3},
-                  random, points);
+  sample_points(space, map, {.sampling = Sampling::kCell, .cell_size = 1.0, .points_per_cell = 3},
+                random, points);
   // The corridor is 0.7 m wide: 0.2 m are left of it in squares of its own.
   const auto in_corridor = std::count_if(points.begin(), points.end(), [](const Point2& p) {
     return p.x() > 16.0 && p.x() < 19.0 && p.y() > 4.0 && p.y() < 4.7;
@@ -76,7 +78,7 @@ TEST(Sampling, TheMedialAxisIsAsFarFromBothWalls) {
   space.build(map, 0.24);
   Random random(1);
   std::vector<Point2> points;
-  sample_vertices(space, map, {.sampling = Sampling::kMedialAxis}, random, points);
+  sample_points(space, map, {.sampling = Sampling::kMedialAxis}, random, points);
   int in_corridor = 0;
   for (const auto& p : points) {
     if (p.x() < 16.0 || p.x() > 19.0 || p.y() < 4.0 || p.y() > 4.7) continue;

@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "foundation/grid/test/rooms.hpp"
 #include "navigation/roadmap/core/new_obstacles.hpp"
 #include "navigation/roadmap/core/path_smoother.hpp"
 #include "navigation/roadmap/core/roadmap_planner.hpp"
-#include "rooms.hpp"
 
 namespace usher::roadmap {
 namespace {
+
+using namespace grid;
 
 RoadmapPlanner planner(const grid::OccupancyGrid& map, RoadmapConfig config = {},
                        std::uint64_t seed = 1) {

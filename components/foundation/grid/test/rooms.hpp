@@ -3,25 +3,25 @@
 #include "foundation/grid/grid.hpp"
 #include "foundation/random/random.hpp"
 
-namespace usher::roadmap {
+namespace usher::grid {
 
 /// 20 x 10 m of free floor in cells of 0.05 m with walls around.
-inline grid::OccupancyGrid hall() {
-  grid::OccupancyGrid map({.width = 400, .height = 200, .resolution = 0.05}, grid::kFree);
-  for (int x = 0; x < 400; ++x) map.at({x, 0}) = map.at({x, 199}) = grid::kOccupied;
-  for (int y = 0; y < 200; ++y) map.at({0, y}) = map.at({399, y}) = grid::kOccupied;
+inline OccupancyGrid hall() {
+  OccupancyGrid map({.width = 400, .height = 200, .resolution = 0.05}, kFree);
+  for (int x = 0; x < 400; ++x) map.at({x, 0}) = map.at({x, 199}) = kOccupied;
+  for (int y = 0; y < 200; ++y) map.at({0, y}) = map.at({399, y}) = kOccupied;
   return map;
 }
 
-inline void block(grid::OccupancyGrid& map, double x0, double y0, double x1, double y1) {
+inline void block(OccupancyGrid& map, double x0, double y0, double x1, double y1) {
   for (int y = static_cast<int>(y0 / 0.05); y < static_cast<int>(y1 / 0.05); ++y) {
     for (int x = static_cast<int>(x0 / 0.05); x < static_cast<int>(x1 / 0.05); ++x)
-      map.at({x, y}) = grid::kOccupied;
+      map.at({x, y}) = kOccupied;
   }
 }
 
 /// Two rooms and a wall between them with a door of 0.8 m; a narrow corridor of 0.7 m in the east.
-inline grid::OccupancyGrid two_rooms() {
+inline OccupancyGrid two_rooms() {
   auto map = hall();
   block(map, 9.9, 0.0, 10.1, 4.6);
   block(map, 9.9, 5.4, 10.1, 10.0);
@@ -31,7 +31,7 @@ inline grid::OccupancyGrid two_rooms() {
 }
 
 /// Random blocks in the hall.
-inline grid::OccupancyGrid clutter(std::uint64_t seed) {
+inline OccupancyGrid clutter(std::uint64_t seed) {
   auto map = hall();
   Random random(seed);
   for (int i = 0; i < 40; ++i) {
@@ -41,4 +41,4 @@ inline grid::OccupancyGrid clutter(std::uint64_t seed) {
   return map;
 }
 
-}  // namespace usher::roadmap
+}  // namespace usher::grid

@@ -1,17 +1,17 @@
-#include "navigation/roadmap/core/sampling.hpp"
+#include "foundation/grid/sampling.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-namespace usher::roadmap {
+namespace usher::grid {
 
 namespace {
 
 constexpr double kAxisRadius = 5.0;  // [m] the middle of wider places is not looked for
 constexpr double kRidge = -0.3;      // [cells] second difference of the distance
 
-Point2 anywhere_in(const grid::GridGeometry& g, grid::Cell cell, Random& random) {
+Point2 anywhere_in(const GridGeometry& g, Cell cell, Random& random) {
   const double x = cell.x + random.uniform();
   const double y = cell.y + random.uniform();
   return {g.origin_x + x * g.resolution, g.origin_y + y * g.resolution};
@@ -46,7 +46,7 @@ template <class Draw>
 void for_each_square(const FreeSpace& space, double size, Draw&& draw) {
   const auto& g = space.geometry();
   const int side = std::max(1, static_cast<int>(std::lround(size / g.resolution)));
-  std::vector<grid::Cell> cells;
+  std::vector<Cell> cells;
   cells.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   for (int top = 0; top < g.height; top += side) {
     for (int left = 0; left < g.width; left += side) {
@@ -63,8 +63,8 @@ void for_each_square(const FreeSpace& space, double size, Draw&& draw) {
 }
 
 /// Draws without putting back, so that a square of three free cells gets three points.
-void sample_square(const FreeSpace& space, std::vector<grid::Cell>& cells, int count,
-                   Random& random, std::vector<Point2>& points) {
+void sample_square(const FreeSpace& space, std::vector<Cell>& cells, int count, Random& random,
+                   std::vector<Point2>& points) {
   for (std::size_t i = 0; i < std::min(cells.size(), static_cast<std::size_t>(count)); ++i) {
     std::swap(cells[i], cells[i + random.below(cells.size() - i)]);
     points.push_back(anywhere_in(space.geometry(), cells[i], random));
@@ -73,7 +73,7 @@ void sample_square(const FreeSpace& space, std::vector<grid::Cell>& cells, int c
 
 /// Whether the distance to the nearest obstacle has a ridge here: to both sides another obstacle is
 /// nearer. Beside the axis it is as straight as the obstacle, or bent upward by a corner.
-bool on_axis(const grid::DistanceField& distances, grid::Cell c) {
+bool on_axis(const DistanceField& distances, Cell c) {
   const auto& squared = distances.squared_cells();
   if (c.x == 0 || c.y == 0 || c.x + 1 == squared.width() || c.y + 1 == squared.height())
     return false;
@@ -85,15 +85,15 @@ bool on_axis(const grid::DistanceField& distances, grid::Cell c) {
   return bend < kRidge;
 }
 
-void sample_medial_axis(const FreeSpace& space, const grid::OccupancyGrid& map,
+void sample_medial_axis(const FreeSpace& space, const OccupancyGrid& map,
                         const SamplingParameters& p, Random& random, std::vector<Point2>& points) {
-  grid::DistanceField distances;
-  distances.build(map, std::min(kAxisRadius, grid::DistanceField::kMaxRadius * map.resolution()));
-  std::vector<grid::Cell> axis;
-  for_each_square(space, p.cell_size, [&](std::vector<grid::Cell>& cells) {
+  DistanceField distances;
+  distances.build(map, std::min(kAxisRadius, DistanceField::kMaxRadius * map.resolution()));
+  std::vector<Cell> axis;
+  for_each_square(space, p.cell_size, [&](std::vector<Cell>& cells) {
     axis.clear();
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(axis),
-                 [&](grid::Cell c) { return on_axis(distances, c); });
+                 [&](Cell c) { return on_axis(distances, c); });
     if (axis.empty()) {
       sample_square(space, cells, 1, random, points);  // in the open there is no middle
     } else {
@@ -104,9 +104,9 @@ void sample_medial_axis(const FreeSpace& space, const grid::OccupancyGrid& map,
 
 }  // namespace
 
-void sample_vertices(const FreeSpace& space, const grid::OccupancyGrid& map,
-                     const SamplingParameters& parameters, Random& random,
-                     std::vector<Point2>& points) {
+void sample_points(const FreeSpace& space, const OccupancyGrid& map,
+                   const SamplingParameters& parameters, Random& random,
+                   std::vector<Point2>& points) {
   points.clear();
   switch (parameters.sampling) {
     case Sampling::kRandom:
@@ -116,7 +116,7 @@ void sample_vertices(const FreeSpace& space, const grid::OccupancyGrid& map,
       sample_grid(space, parameters.grid_step, points);
       break;
     case Sampling::kCell:
-      for_each_square(space, parameters.cell_size, [&](std::vector<grid::Cell>& cells) {
+      for_each_square(space, parameters.cell_size, [&](std::vector<Cell>& cells) {
         sample_square(space, cells, parameters.points_per_cell, random, points);
       });
       break;
@@ -126,4 +126,4 @@ void sample_vertices(const FreeSpace& space, const grid::OccupancyGrid& map,
   }
 }
 
-}  // namespace usher::roadmap
+}  // namespace usher::grid

@@ -1,4 +1,4 @@
-#include "navigation/local_planner/core/wavefront.hpp"
+#include "foundation/grid/wavefront.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -6,7 +6,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace usher::local_planner {
+namespace usher::grid {
 namespace {
 
 constexpr std::uint16_t kStraight = 5;
@@ -127,7 +127,7 @@ void transpose(const std::uint16_t* from, std::size_t from_stride, int width, in
 
 }  // namespace
 
-void Wavefront::set_obstacles(const grid::Grid<std::uint8_t>& costs, std::uint8_t closed_from,
+void Wavefront::set_obstacles(const Grid<std::uint8_t>& costs, std::uint8_t closed_from,
                               bool unknown_is_closed) {
   assert(costs.width() <= kLargestSide && costs.height() <= kLargestSide);
   upright_.resize(costs.width(), costs.height());
@@ -154,7 +154,7 @@ bool Wavefront::sweep(Plane& plane) const {
                 plane.stride, width, plane.height);
 }
 
-void Wavefront::spread(grid::Cell target, std::vector<std::uint16_t>& lengths) {
+void Wavefront::spread(Cell target, std::vector<std::uint16_t>& lengths) {
   assert(target.x >= 0 && target.y >= 0 && target.x < upright_.width && target.y < upright_.height);
   std::fill(upright_.lengths.begin(), upright_.lengths.end(), kUnreachable);
   upright_.lengths[upright_.index(target.x, target.y)] = 0;
@@ -182,4 +182,4 @@ void Wavefront::spread(grid::Cell target, std::vector<std::uint16_t>& lengths) {
   }
 }
 
-}  // namespace usher::local_planner
+}  // namespace usher::grid

@@ -1,21 +1,21 @@
-#include "navigation/roadmap/core/free_space.hpp"
+#include "foundation/grid/free_space.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "rooms.hpp"
+#include "foundation/grid/test/rooms.hpp"
 
-namespace usher::roadmap {
+namespace usher::grid {
 namespace {
 
 /// By the definition, cell by cell.
-bool blocked_by_definition(const grid::OccupancyGrid& map, grid::Cell c, double inflation) {
+bool blocked_by_definition(const OccupancyGrid& map, Cell c, double inflation) {
   if (map.at(c) < 0) return true;
   const int reach = static_cast<int>(inflation / map.resolution()) + 1;
   for (int y = c.y - reach; y <= c.y + reach; ++y) {
     for (int x = c.x - reach; x <= c.x + reach; ++x) {
-      if (map.value_or({x, y}, grid::kFree) == grid::kOccupied &&
+      if (map.value_or({x, y}, kFree) == kOccupied &&
           std::hypot(x - c.x, y - c.y) * map.resolution() <= inflation + 1e-9)
         return true;
     }
@@ -25,7 +25,7 @@ bool blocked_by_definition(const grid::OccupancyGrid& map, grid::Cell c, double 
 
 TEST(FreeSpace, GrowsObstaclesByADiscAndTheUnknownNotAtAll) {
   auto map = clutter(1);
-  for (int i = 0; i < 30; ++i) map.at({100 + i, 100}) = grid::kUnknown;
+  for (int i = 0; i < 30; ++i) map.at({100 + i, 100}) = kUnknown;
   FreeSpace space;
   space.build(map, 0.24);
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -82,4 +82,4 @@ TEST(FreeSpace, FindsTheNearestFreePoint) {
 }
 
 }  // namespace
-}  // namespace usher::roadmap
+}  // namespace usher::grid

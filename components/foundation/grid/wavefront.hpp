@@ -6,7 +6,7 @@
 #include "foundation/cpu/cpu.hpp"
 #include "foundation/grid/grid.hpp"
 
-namespace usher::local_planner {
+namespace usher::grid {
 
 /// Lengths of shortest ways around obstacles from every cell to one target cell: 8-connected,
 /// chamfer weights 5 and 7 (fifths of a cell, at most 8 % longer than straight)
@@ -24,15 +24,14 @@ class Wavefront {
 
   explicit Wavefront(cpu::Simd simd = cpu::best_simd()) : avx2_(simd == cpu::Simd::kAvx2) {}
 
-  /// Which cells are closed: those of at least `closed_from` (kCostInscribed: the base's center
-  /// cannot be there), unknown ones when `unknown_is_closed`. Serves any number of spread() calls.
-  /// Allocates only when the grid grows.
-  void set_obstacles(const grid::Grid<std::uint8_t>& costs, std::uint8_t closed_from,
+  /// Which cells are closed: those of at least `closed_from`, unknown ones (255) when
+  /// `unknown_is_closed`. Serves any number of spread() calls. Allocates only when the grid grows.
+  void set_obstacles(const Grid<std::uint8_t>& costs, std::uint8_t closed_from,
                      bool unknown_is_closed);
 
   /// Lengths to `target`, which must be inside the grid and may be closed. Lengths beyond
   /// kUnreachable count as it.
-  void spread(grid::Cell target, std::vector<std::uint16_t>& lengths);
+  void spread(Cell target, std::vector<std::uint16_t>& lengths);
 
   /// Of the last spread(): rounds that it took.
   int rounds() const { return rounds_; }
@@ -58,4 +57,4 @@ class Wavefront {
   Plane lying_;  // transposed
 };
 
-}  // namespace usher::local_planner
+}  // namespace usher::grid

@@ -1,4 +1,4 @@
-#include "navigation/roadmap/core/free_space.hpp"
+#include "foundation/grid/free_space.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "foundation/grid/ray_cast.hpp"
 
-namespace usher::roadmap {
+namespace usher::grid {
 
 namespace {
 
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> flights() {
 
 }  // namespace
 
-void FreeSpace::build(const grid::OccupancyGrid& map, double inflation) {
+void FreeSpace::build(const OccupancyGrid& map, double inflation) {
   static const std::vector<std::uint8_t> kFlights = flights();
   const double cells = inflation / map.resolution();
   field_.build(map, (std::floor(cells + 1e-9) + 1.5) * map.resolution());
@@ -33,15 +33,15 @@ void FreeSpace::build(const grid::OccupancyGrid& map, double inflation) {
   grown_ = map;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const bool blocked = map[i] < 0 || field_.squared_cells()[i] <= reach;
-    grown_[i] = blocked ? grid::kOccupied : grid::kFree;
+    grown_[i] = blocked ? kOccupied : kFree;
   }
   field_.build(grown_, (kFlight + 0.5) * map.resolution());
-  if (room_.geometry() != map.geometry()) room_ = grid::Grid<std::uint8_t>(map.geometry());
+  if (room_.geometry() != map.geometry()) room_ = Grid<std::uint8_t>(map.geometry());
   for (std::size_t i = 0; i < map.size(); ++i) room_[i] = kFlights[field_.squared_cells()[i]];
 }
 
 bool FreeSpace::line_free(const Point2& from, const Point2& to) const {
-  const grid::GridGeometry& g = geometry();
+  const GridGeometry& g = geometry();
   const double x = (from.x() - g.origin_x) / g.resolution;
   const double y = (from.y() - g.origin_y) / g.resolution;
   double dx = (to.x() - from.x()) / g.resolution;
@@ -52,13 +52,13 @@ bool FreeSpace::line_free(const Point2& from, const Point2& to) const {
   if (!free(to)) return false;
   // Grown obstacles are thick: a look at the middle and the quarters turns most blocked lines down.
   for (const double share : {0.5, 0.25, 0.75}) {
-    const grid::Cell cell{static_cast<int>(std::floor(x + share * dx)),
-                          static_cast<int>(std::floor(y + share * dy))};
+    const Cell cell{static_cast<int>(std::floor(x + share * dx)),
+                    static_cast<int>(std::floor(y + share * dy))};
     if (room_.value_or(cell, 0) == 0) return false;
   }
   dx /= length;
   dy /= length;
-  grid::CellWalk walk(x, y, dx, dy);
+  CellWalk walk(x, y, dx, dy);
   while (walk.time() <= length) {
     const std::uint8_t room = room_.value_or(walk.cell(), 0);
     if (room == 0) return false;
@@ -77,14 +77,14 @@ bool FreeSpace::line_free(const Point2& from, const Point2& to) const {
 
 std::optional<Point2> FreeSpace::nearest_free(const Point2& point, double radius) const {
   if (free(point)) return point;
-  const grid::GridGeometry& g = geometry();
-  const grid::Cell center = g.cell_at(point);
+  const GridGeometry& g = geometry();
+  const Cell center = g.cell_at(point);
   const int reach = static_cast<int>(std::ceil(radius / g.resolution));
   std::optional<Point2> best;
   double best_distance = radius;
   for (int y = center.y - reach; y <= center.y + reach; ++y) {
     for (int x = center.x - reach; x <= center.x + reach; ++x) {
-      if (!free(grid::Cell{x, y})) continue;
+      if (!free(Cell{x, y})) continue;
       const Point2 candidate = g.center({x, y});
       const double distance = (candidate - point).norm();
       if (distance <= best_distance && (!best || distance < best_distance)) {
@@ -96,4 +96,4 @@ std::optional<Point2> FreeSpace::nearest_free(const Point2& point, double radius
   return best;
 }
 
-}  // namespace usher::roadmap
+}  // namespace usher::grid

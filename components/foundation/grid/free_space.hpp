@@ -7,7 +7,7 @@
 #include "foundation/grid/distance_field.hpp"
 #include "foundation/grid/grid.hpp"
 
-namespace usher::roadmap {
+namespace usher::grid {
 
 using geometry::Point2;
 
@@ -18,11 +18,11 @@ class FreeSpace {
  public:
   /// Blocks every cell whose centre is at most `inflation` [m] from the centre of an occupied cell.
   /// Costs about four passes over the map; keeps its memory.
-  void build(const grid::OccupancyGrid& map, double inflation);
+  void build(const OccupancyGrid& map, double inflation);
 
   bool empty() const { return room_.empty(); }
-  const grid::GridGeometry& geometry() const { return room_.geometry(); }
-  bool free(grid::Cell cell) const { return room_.value_or(cell, 0) != 0; }
+  const GridGeometry& geometry() const { return room_.geometry(); }
+  bool free(Cell cell) const { return room_.value_or(cell, 0) != 0; }
   bool free(const Point2& point) const { return free(geometry().cell_at(point)); }
   /// A cell of the map by its index.
   bool free_at(std::size_t index) const { return room_[index] != 0; }
@@ -34,10 +34,10 @@ class FreeSpace {
   std::optional<Point2> nearest_free(const Point2& point, double radius) const;
 
  private:
-  grid::OccupancyGrid grown_;
-  grid::DistanceField field_;
+  OccupancyGrid grown_;
+  DistanceField field_;
   /// 0: blocked; k: free, and so is everything within k - 1 cells of each point of the cell.
-  grid::Grid<std::uint8_t> room_;
+  Grid<std::uint8_t> room_;
 };
 
-}  // namespace usher::roadmap
+}  // namespace usher::grid

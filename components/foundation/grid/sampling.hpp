@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "foundation/grid/free_space.hpp"
 #include "foundation/random/random.hpp"
-#include "navigation/roadmap/core/free_space.hpp"
 
-namespace usher::roadmap {
+namespace usher::grid {
 
-/// Where vertices are put.
+/// Where points are put.
 enum class Sampling : std::uint8_t {
   kRandom,      ///< anywhere in the free space
   kGrid,        ///< on the crossings of a grid
@@ -24,10 +24,10 @@ struct SamplingParameters {
   int random_points = 400;  ///< of kRandom
 };
 
-/// Free points for a roadmap, in the order in which they were drawn. `points` is replaced; it stays
+/// Free points, in the order in which they were drawn. `points` is replaced; it stays
 /// empty where nothing is free. `map` is what the space was built from; kMedialAxis measures in it.
-void sample_vertices(const FreeSpace& space, const grid::OccupancyGrid& map,
-                     const SamplingParameters& parameters, Random& random,
-                     std::vector<Point2>& points);
+void sample_points(const FreeSpace& space, const OccupancyGrid& map,
+                   const SamplingParameters& parameters, Random& random,
+                   std::vector<Point2>& points);
 
-}  // namespace usher::roadmap
+}  // namespace usher::grid
