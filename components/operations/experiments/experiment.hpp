@@ -33,6 +33,7 @@ Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_prm_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_coverage_experiment(const ExperimentOptions& options);
 
 Result<ResultSheet> run_stopping_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options);

@@ -37,6 +37,10 @@ const std::vector<Experiment>& experiments() {
        "Samplings and connections of the roadmap in the arena: path lengths beside figure 8 of the "
        "meeting report",
        run_prm_experiment},
+      {"coverage",
+       "Strategies of exploration in the arena, lock-step: what the camera saw after 8 minutes "
+       "beside figure 12 of the meeting report; --only STRATEGY",
+       run_coverage_experiment},
       {"stopping", "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step",
        run_stopping_experiment},
       {"reaction",

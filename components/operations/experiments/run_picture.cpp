@@ -36,6 +36,35 @@ class Picture {
     cv::polylines(image_, line, false, color, thickness, cv::LINE_AA, kShift);
   }
 
+  void heat(const grid::Grid<std::uint32_t>& looks) {
+    std::vector<std::uint32_t> counts;
+    for (const std::uint32_t count : looks) {
+      if (count > 0) counts.push_back(count);
+    }
+    if (counts.empty()) return;
+    const auto most = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() * 19 / 20);
+    std::nth_element(counts.begin(), most, counts.end());
+    const int rows = y1_ - y0_, columns = x1_ - x0_;
+    cv::Mat warmth(rows, columns, CV_8U), colors;
+    for (int y = 0; y < rows; ++y) {
+      for (int x = 0; x < columns; ++x)
+        warmth.at<uchar>(rows - 1 - y, x) =
+            cv::saturate_cast<uchar>(255.0 * looks.at({x0_ + x, y0_ + y}) / *most);
+    }
+    cv::applyColorMap(warmth, colors, cv::COLORMAP_JET);
+    for (int y = 0; y < rows; ++y) {
+      for (int x = 0; x < columns; ++x) {
+        if (looks.at({x0_ + x, y0_ + y}) == 0) continue;
+        const geometry::Point2 low(map_.geometry().origin_x + (x0_ + x) * map_.resolution(),
+                                   map_.geometry().origin_y + (y0_ + y) * map_.resolution());
+        const cv::Point a = pixel(low);
+        const cv::Point b = pixel({low.x() + map_.resolution(), low.y() + map_.resolution()});
+        cv::rectangle(image_, cv::Rect(a.x, b.y, b.x - a.x, a.y - b.y),
+                      cv::Scalar(colors.at<cv::Vec3b>(rows - 1 - y, x)), cv::FILLED);
+      }
+    }
+  }
+
   void mark(const geometry::Pose2& pose, const cv::Scalar& color, const std::string& label) {
     const double length = 0.5;
     const geometry::Point2 tip = pose * geometry::Point2(length, 0.0);
@@ -192,6 +221,21 @@ Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& m
     entries.emplace_back(way.label, color);
   }
   picture.legend(entries);
+  return picture.save(path);
+}
+
+Status draw_heat_map(const grid::OccupancyGrid& map, const grid::Grid<std::uint32_t>& looks,
+                     const std::vector<geometry::Point2>& way, const std::string& title,
+                     const std::string& path) {
+  const cv::Scalar pink(200, 90, 255), black(0, 0, 0);
+  Picture picture(map, title);
+  picture.heat(looks);
+  picture.way(way, black, 2);
+  if (!way.empty()) picture.dot(way.front(), pink);
+  picture.legend({{"start", pink},
+                  {"driven", black},
+                  {"seldom", cv::Scalar(255, 60, 0)},
+                  {"often", cv::Scalar(0, 0, 200)}});
   return picture.save(path);
 }
 

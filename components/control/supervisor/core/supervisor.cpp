@@ -107,7 +107,13 @@ void Supervisor::navigation(std::uint64_t id, NavigationState state) {
   if (active && behavior_.navigation_going()) active_goal_ = id;
   // The navigator also says the last words of goals that it refused while another one runs.
   const bool ours = active_goal_ ? id == *active_goal_ : id != id_before_goal_;
-  if (over(state) && ours) behavior_.navigation_end();
+  if (over(state) && ours && !exploring_) behavior_.navigation_end();
+}
+
+void Supervisor::exploration(std::string_view client, bool lasts) {
+  if (client.empty() || client != navigation_client_) return;
+  if (exploring_ && !lasts) behavior_.navigation_end();
+  exploring_ = lasts && behavior_.navigation_wanted();
 }
 
 Answer Supervisor::request(const Request& request, Time now) {
@@ -180,6 +186,8 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       goal_ = request.goal;
       id_before_goal_ = navigation_id_;
       active_goal_.reset();
+      navigation_client_ = request.client;
+      exploring_ = false;
       return {};
     }
     case Command::kNavigationGo:

@@ -187,6 +187,12 @@ class Supervisor {
   void base(const BaseReport& report, Time now);
   /// The navigator's status; `id` names the goal that it speaks of.
   void navigation(std::uint64_t id, NavigationState state);
+  /// The explorer's status: whether an exploration lasts that this client asked for. One that the
+  /// client of the present navigation asked for is a journey of many goals: none of them ends the
+  /// navigation, its own end does.
+  void exploration(std::string_view client, bool lasts);
+  /// The explorer is silent: from now on goals end the navigation as ever.
+  void exploration_lost() { exploring_ = false; }
 
   /// Carries out or refuses. The same id of the same client gets the same answer and acts once.
   Answer request(const Request& request, Time now);
@@ -251,6 +257,8 @@ class Supervisor {
   NavigationState navigation_ = NavigationState::kIdle;
   std::uint64_t id_before_goal_ = 0;  ///< the navigator's goal when the present one was chosen
   std::optional<std::uint64_t> active_goal_;  ///< the last that was active while it drove
+  std::string navigation_client_;             ///< who had it started
+  bool exploring_ = false;
 
   std::array<Handled, 16> handled_;  ///< the last requests, a ring
   std::size_t next_handled_ = 0;

@@ -16,6 +16,7 @@ constexpr auto kPeriod = milliseconds(20);
 constexpr int kStatusEvery = 5;        // of those periods: 10 Hz
 constexpr int kDiagnosticsEvery = 50;  // 1 Hz
 constexpr auto kBaseAge = milliseconds(150);
+constexpr auto kExplorerAge = milliseconds(2000);
 constexpr const char* kMemoryKey = "supervisor";
 constexpr auto kKeeping = milliseconds(5);  // the memory on the disk, in simulation
 constexpr int kMostComponents = 64;
@@ -151,6 +152,17 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
         core_.navigation(message.id(),
                          static_cast<NavigationState>(std::min<std::uint8_t>(message.state(), 6)));
       });
+  exploration_ = host.input(
+      topics::kExploreStatus,
+      {.max_age = kExplorerAge,
+       .on_loss = "each goal of the navigator ends the navigation again",
+       .optional = true},
+      [this](const auto& message, const auto&) {
+        using namespace usher_msgs::msg::GoalStatus_Constants;
+        core_.exploration(message.client(),
+                          message.state() == STATE_ACTIVE || message.state() == STATE_WAITING);
+      },
+      [this] { core_.exploration_lost(); });
   request_ = host.input(topics::kSupervisorRequest, {.optional = true},
                         [this](const auto& message, const auto&) { take_request(message); });
   watch(topics::kDriveCommand.name);

@@ -44,6 +44,7 @@ class SupervisorComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::DriveCommand> command_;
   runtime::Input<usher_msgs::msg::BaseStatus> base_;
   runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
+  runtime::Input<usher_msgs::msg::ExploreStatus> exploration_;
   runtime::Input<usher_msgs::msg::SupervisorRequest> request_;
   runtime::Output<usher_msgs::msg::DriveGrant> grant_;
   runtime::Output<usher_msgs::msg::MovementEnable> enable_;

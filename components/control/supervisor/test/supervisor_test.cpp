@@ -169,6 +169,44 @@ TEST(Supervisor, ARefusedForeignGoalDoesNotEndTheOneThatRuns) {
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
 }
 
+TEST(Supervisor, AnExplorationIsAJourneyOfManyGoals) {
+  Robot robot = guiding();
+  const std::string client = "operator";
+  robot.supervisor.exploration("somebody else", true);
+  robot.supervisor.exploration(client, true);
+  for (const auto state : {NavigationState::kSucceeded, NavigationState::kFailed}) {
+    robot.supervisor.navigation(41, state);
+    robot.supervisor.navigation(42, NavigationState::kActive);
+    robot.run(300);
+    EXPECT_EQ(robot.state(), State::kNavigationActive);
+  }
+  robot.supervisor.exploration("somebody else", false);
+  robot.run(300);
+  EXPECT_EQ(robot.state(), State::kNavigationActive);
+  robot.supervisor.exploration(client, false);
+  robot.run(20);
+  EXPECT_EQ(robot.state(), State::kNavigationEnd) << "with the exploration";
+}
+
+TEST(Supervisor, AGoalEndsTheNavigationWhenTheExplorerIsLostOrAnotherJourneyBegins) {
+  for (const bool lost : {true, false}) {
+    Robot robot = guiding();
+    robot.supervisor.exploration("operator", true);
+    if (lost) {
+      robot.supervisor.exploration_lost();
+    } else {
+      robot.ask(Command::kNavigationStart, "am218");
+      robot.run(600);
+      robot.ask(Command::kNavigationGo);
+      robot.run(600);
+    }
+    robot.supervisor.navigation(43, NavigationState::kActive);
+    robot.supervisor.navigation(43, NavigationState::kSucceeded);
+    robot.run(20);
+    EXPECT_EQ(robot.state(), State::kNavigationEnd) << lost;
+  }
+}
+
 TEST(Supervisor, StopHoldsUntilMovementOn) {
   Robot robot = guiding();
   EXPECT_TRUE(robot.ask(Command::kStop).done);
