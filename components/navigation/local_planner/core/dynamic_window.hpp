@@ -15,6 +15,7 @@
 #include "foundation/result/result.hpp"
 #include "navigation/local_planner/core/contact.hpp"
 #include "navigation/local_planner/core/lane.hpp"
+#include "navigation/local_planner/core/path_follower.hpp"
 #include "navigation/local_planner/core/reference_path.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
 #include "navigation/local_planner/core/trail.hpp"
@@ -88,58 +89,12 @@ struct DynamicWindowConfig {
   CriticWeights weights;
 };
 
-/// Corners whose whisker is bent.
-struct Touches {
-  bool front_left = false, front_right = false, back_left = false, back_right = false;
-};
-
-enum class Reason : std::uint8_t {
-  kFollowing,      ///< drives along the path
-  kTight,          ///< drives slowly where only its own outline fits
-  kTurning,        ///< turns in place towards the path
-  kTurningToGoal,  ///< stands at the goal, turns to its yaw
-  kReached,        ///< at the goal; the command is zero
-  kBraking,        ///< no trajectory can be stopped before an obstacle: stops
-  kBlocked,        ///< stands before an obstacle
-  kGivingWay,      ///< stands before somebody, who may pass
-  kTouching,       ///< stands with a lethal cell inside its outline: a recovery motion may free it
-  kRecovering,     ///< a recovery motion runs
-  kNoPath,         ///< nothing to follow
-  kInvalidInput,   ///< not finite, an empty grid, or a robot outside of it; the command is zero
-};
-const char* to_string(Reason reason);
-
-/// Contribution of each critic to the winner, weighted; smaller is better.
-struct CriticScores {
-  double path = 0.0, goal = 0.0, alignment = 0.0, goal_front = 0.0, obstacle = 0.0,
-         moving_obstacle = 0.0, speed = 0.0, twirling = 0.0, smoothness = 0.0, prefer_forward = 0.0,
-         oscillation = 0.0;
-  double total() const {
-    return path + goal + alignment + goal_front + obstacle + moving_obstacle + speed + twirling +
-           smoothness + prefer_forward + oscillation;
-  }
-};
-
-struct Decision {
-  geometry::Twist2 command;  ///< to send now; ramped from the last command
-  Reason reason = Reason::kNoPath;
-  bool blocked = false;  ///< no motion along the path is possible; the command goes to zero
-  bool reached = false;  ///< position and yaw within tolerance, standing
-  /// Along the path from the base to where the footprint first meets a lethal cell [m]; infinite
-  /// when there is none in sight.
-  double obstacle_distance = std::numeric_limits<double>::infinity();
-  geometry::Twist2 target;  ///< of the winning trajectory
-  CriticScores scores;
-  int trajectories = 0;  ///< simulated
-  int admissible = 0;
-  std::span<const geometry::Pose2> trajectory;  ///< the winner; valid until the next call
-};
-
 /// Follows a path on a local cost grid [fox1997dynamic, gerkey2008planning]. Grid, path, poses and
 /// people are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
 /// microseconds and allocates only when grid or samples grow. Same inputs, same decisions, on every
 /// processor.
-class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
+class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
+    : public PathFollower {
  public:
   /// An error names the value that is out of its range.
   static Result<DynamicWindow> make(const DynamicWindowConfig& config,
@@ -147,31 +102,35 @@ class DynamicWindow {  // NOLINT(clang-analyzer-optin.performance.Padding): ther
 
   /// A new path. Progress at the goal (position reached, turning) is kept when the goal stays
   /// within tolerance.
-  Status set_path(std::span<const geometry::Pose2> path);
-  void clear_path();
+  Status set_path(std::span<const geometry::Pose2> path) override;
+  void clear_path() override;
+  double remaining() const override { return path_.remaining(); }
   /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
   /// has been taken away: forward from a touch behind, backward from one in front.
-  void set_touches(const Touches& touches) { touches_ = touches; }
+  void set_touches(const Touches& touches) override { touches_ = touches; }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
-  Status set_pace(double pace);
+  Status set_pace(double pace) override;
+
+  /// Where the robot is, for backing off along its way; decide() notes it by itself.
+  void note_place(const geometry::Pose2& pose) { trail_.add(pose); }
 
   /// `people`: everybody who is known to be one, also who stands, in the frame of the costs. Who
   /// walks, not behind the axle, is foreseen; who stands is where the costs say. Before whom it
   /// meets on its way it stands for a while and lets them pass.
   Decision decide(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                  double seconds_since_last, std::span<const MovingDisc> people = {});
+                  double seconds_since_last, std::span<const MovingDisc> people = {}) override;
 
   /// Recovery: back the way it came at `speed` [m/s, positive], straight where it does not know
   /// that way, while the footprint meets nothing that it does not touch already. Stops (kBlocked)
   /// otherwise. Nobody sees behind: the navigator bounds the way.
   Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                    double seconds_since_last, double speed);
+                    double seconds_since_last, double speed) override;
   /// Recovery: turns in place at `rate` [rad/s, either sign], checked in the same way.
   Decision rotate(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                  double seconds_since_last, double rate);
+                  double seconds_since_last, double rate) override;
 
   const DynamicWindowConfig& config() const { return config_; }
   const ReferencePath& path() const { return path_; }

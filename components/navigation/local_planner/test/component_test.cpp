@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "navigation/local_planner/shell/waypoint_follower.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -21,7 +23,7 @@ constexpr const char* kFootprint = "robot.footprint: [0.3, 0.3, -0.3, 0.3, -0.3,
 
 /// A robot on a free floor whose base does at once what it is told; it stays where it is, so that
 /// its path never ends.
-class Component : public testing::Test {
+class Component : public testing::TestWithParam<const char*> {
  protected:
   void run(int ms, bool navigator = true) {
     for (int at = 0; at < ms; at += 50) {
@@ -31,6 +33,16 @@ class Component : public testing::Test {
       moving.transforms().push_back(
           wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
       host.publish(topics::kTf, moving);
+      tf2_msgs::msg::TFMessage fixed;
+      fixed.transforms().push_back(
+          wire::transform(host.now(), frames::kBaseFootprint, "laser", geometry::Pose3{}));
+      host.publish(topics::kTfStatic, fixed);
+      sensor_msgs::msg::LaserScan scan;
+      scan.header(wire::header(host.now(), "laser"));
+      scan.angle_min(-2.0F), scan.angle_max(2.0F), scan.angle_increment(0.01F);
+      scan.range_min(0.05F), scan.range_max(4.0F);
+      scan.ranges(std::vector<float>(401, std::numeric_limits<float>::infinity()));
+      host.publish(topics::kScanFiltered, scan);
       nav_msgs::msg::Odometry odom;
       odom.header(wire::header(host.now(), frames::kOdom));
       odom.pose().pose(wire::to_message(geometry::Pose2{}));
@@ -63,12 +75,17 @@ class Component : public testing::Test {
   usher_msgs::msg::FollowStatus status() const { return host.last(topics::kFollowStatus).value(); }
 
   grid::Grid<std::uint8_t> costs{{80, 80, 0.05, -2.0, -2.0}, 0};
-  runtime::TestHost host{runtime::component_factory<LocalPlannerComponent>("local_planner"),
-                         kFootprint};
+  static runtime::ComponentFactory factory() {
+    const std::string type = GetParam();
+    return type == "local_planner" ? runtime::component_factory<LocalPlannerComponent>(type)
+                                   : runtime::component_factory<WaypointFollowerComponent>(type);
+  }
+  runtime::TestHost host{factory(), kFootprint};
   std::uint64_t goal_id = 0;
 };
+INSTANTIATE_TEST_SUITE_P(All, Component, testing::Values("local_planner", "waypoint_follower"));
 
-TEST_F(Component, DrivesAlongAPath) {
+TEST_P(Component, DrivesAlongAPath) {
   run(500);
   tell(MODE_PATH);
   run(1500);
@@ -77,7 +94,7 @@ TEST_F(Component, DrivesAlongAPath) {
   EXPECT_EQ(status().state(), STATE_ACTIVE) << status().reason();
 }
 
-TEST_F(Component, StandsAndForgetsItsGoalWithoutTheNavigator) {
+TEST_P(Component, StandsAndForgetsItsGoalWithoutTheNavigator) {
   run(500);
   tell(MODE_PATH);
   run(1500);
@@ -93,14 +110,14 @@ TEST_F(Component, StandsAndForgetsItsGoalWithoutTheNavigator) {
   EXPECT_GT(commanded().v, 0.3);
 }
 
-TEST_F(Component, DrivesForNobodyBeforeItEverHeardTheNavigator) {
+TEST_P(Component, DrivesForNobodyBeforeItEverHeardTheNavigator) {
   run(2000, false);
   tell(MODE_PATH);
   run(1000, false);
   EXPECT_EQ(commanded().v, 0.0);
 }
 
-TEST_F(Component, EndsARecoveryWithoutTheNavigatorToo) {
+TEST_P(Component, EndsARecoveryWithoutTheNavigatorToo) {
   run(500);
   tell(MODE_ROTATE, 1.5F);
   run(1000);
@@ -109,7 +126,7 @@ TEST_F(Component, EndsARecoveryWithoutTheNavigatorToo) {
   EXPECT_EQ(commanded().w, 0.0);
 }
 
-TEST_F(Component, RefusesRecoveriesThatGoTooFarOrNowhere) {
+TEST_P(Component, RefusesRecoveriesThatGoTooFarOrNowhere) {
   run(500);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   std::uint64_t refused = 0;

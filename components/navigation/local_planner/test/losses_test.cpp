@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "navigation/local_planner/shell/component.hpp"
+#include "navigation/local_planner/shell/waypoint_follower.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -18,9 +19,17 @@ using namespace usher_msgs::msg::GoalStatus_Constants;
 constexpr const char* kFootprint = "robot.footprint: [0.3, 0.3, -0.3, 0.3, -0.3, -0.3, 0.3, -0.3]";
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+constexpr const char* kWindow = "local_planner";
+constexpr const char* kFollower = "waypoint_follower";
+
+runtime::ComponentFactory factory_of(const std::string& type) {
+  return type == kWindow ? runtime::component_factory<LocalPlannerComponent>(type)
+                         : runtime::component_factory<WaypointFollowerComponent>(type);
+}
+
 /// A robot on a free floor whose base does at once what it is told; it stays where it is, so that
 /// its path never ends. Everything that it reads can be left out or changed.
-class Losses : public testing::Test {
+class Losses : public testing::TestWithParam<const char*> {
  protected:
   void run(int ms) {
     for (int at = 0; at < ms; at += 50) {
@@ -38,6 +47,8 @@ class Losses : public testing::Test {
         host.world().publish(topics::kPeople, people, "people_detector", people_host);
         host.run_for(milliseconds(5));
       }
+      host.publish(topics::kTfStatic, mount_of_laser());
+      if (scans) host.publish(topics::kScanFiltered, scan());
       if (sees) host.publish(topics::kLocalCosts, wire::to_message(host.now(), costs_frame, costs));
       host.run_for(milliseconds(people.people().empty() ? 50 : 45));
     }
@@ -51,6 +62,20 @@ class Losses : public testing::Test {
           wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
     }
     return moving;
+  }
+  tf2_msgs::msg::TFMessage mount_of_laser() const {
+    tf2_msgs::msg::TFMessage fixed;
+    fixed.transforms().push_back(
+        wire::transform(host.now(), frames::kBaseFootprint, "laser", geometry::Pose3{}));
+    return fixed;
+  }
+  sensor_msgs::msg::LaserScan scan() const {
+    sensor_msgs::msg::LaserScan message;
+    message.header(wire::header(host.now(), "laser"));
+    message.angle_min(-2.0F), message.angle_max(2.0F), message.angle_increment(0.01F);
+    message.range_min(0.05F), message.range_max(4.0F);
+    message.ranges(std::vector<float>(beams, range));
+    return message;
   }
   nav_msgs::msg::Odometry odom() const {
     nav_msgs::msg::Odometry message;
@@ -98,17 +123,24 @@ class Losses : public testing::Test {
   grid::Grid<std::uint8_t> costs{{80, 80, 0.05, -2.0, -2.0}, 0};
   const char* costs_frame = frames::kOdom;
   geometry::Pose2 pose;
-  bool transforms = true, localized = true, odometry = true, sees = true;
+  bool transforms = true, localized = true, odometry = true, sees = true, scans = true;
+  std::size_t beams = 401;
+  float range = std::numeric_limits<float>::infinity();
   std::optional<usher_msgs::msg::Whiskers> whiskers;
   usher_msgs::msg::People people;
   milliseconds people_ahead{0};
   std::string people_host;
-  runtime::TestHost host{runtime::component_factory<LocalPlannerComponent>("local_planner"),
-                         kFootprint};
+  runtime::TestHost host{factory_of(GetParam()), kFootprint};
   std::uint64_t goal_id = 0;
 };
 
-TEST_F(Losses, StandsWithoutCostsAndGoesOnWithThem) {
+class WindowLosses : public Losses {};
+class FollowerLosses : public Losses {};
+INSTANTIATE_TEST_SUITE_P(All, Losses, testing::Values(kWindow, kFollower));
+INSTANTIATE_TEST_SUITE_P(People, WindowLosses, testing::Values(kWindow));
+INSTANTIATE_TEST_SUITE_P(Scans, FollowerLosses, testing::Values(kFollower));
+
+TEST_P(Losses, StandsWithoutCostsAndGoesOnWithThem) {
   drive();
   ASSERT_TRUE(drives());
   sees = false;
@@ -123,7 +155,7 @@ TEST_F(Losses, StandsWithoutCostsAndGoesOnWithThem) {
   EXPECT_EQ(host.heartbeat().reason(), "");
 }
 
-TEST_F(Losses, StandsOnCostsThatAreNone) {
+TEST_P(Losses, StandsOnCostsThatAreNone) {
   drive();
   costs_frame = frames::kMap;
   run(200);
@@ -134,7 +166,7 @@ TEST_F(Losses, StandsOnCostsThatAreNone) {
   EXPECT_TRUE(drives());
 }
 
-TEST_F(Losses, StandsOnCostsThatDoNotHoldTheRobot) {
+TEST_P(Losses, StandsOnCostsThatDoNotHoldTheRobot) {
   drive();
   pose = {50.0, 0.0, 0.0};
   run(200);
@@ -143,7 +175,7 @@ TEST_F(Losses, StandsOnCostsThatDoNotHoldTheRobot) {
   EXPECT_EQ(status().reason(), to_string(Reason::kInvalidInput));
 }
 
-TEST_F(Losses, StandsWithoutOdometryAndGoesOnWithIt) {
+TEST_P(Losses, StandsWithoutOdometryAndGoesOnWithIt) {
   drive();
   ASSERT_TRUE(drives());
   odometry = false;
@@ -155,7 +187,7 @@ TEST_F(Losses, StandsWithoutOdometryAndGoesOnWithIt) {
   EXPECT_EQ(host.heartbeat().reason(), "");
 }
 
-TEST_F(Losses, StandsOnOdometryThatIsNotANumber) {
+TEST_P(Losses, StandsOnOdometryThatIsNotANumber) {
   drive();
   pose.x = kNan;
   run(200);
@@ -167,7 +199,7 @@ TEST_F(Losses, StandsOnOdometryThatIsNotANumber) {
   EXPECT_TRUE(drives());
 }
 
-TEST_F(Losses, StandsUntilTheRobotIsLocalized) {
+TEST_P(Losses, StandsUntilTheRobotIsLocalized) {
   localized = false;
   drive();
   expect_waiting("robot not localized");
@@ -176,14 +208,14 @@ TEST_F(Losses, StandsUntilTheRobotIsLocalized) {
   EXPECT_TRUE(drives());
 }
 
-TEST_F(Losses, DrivesOnWithTheLastCorrectionOfASilentLocalization) {
+TEST_P(Losses, DrivesOnWithTheLastCorrectionOfASilentLocalization) {
   drive();
   transforms = false;
   run(2000);
   EXPECT_TRUE(drives()) << "in odom; the supervisor stops the robot without localization";
 }
 
-TEST_F(Losses, GivesWayToSomebodyAndForeseesNobodyWhenPeopleAreSilent) {
+TEST_P(WindowLosses, GivesWayToSomebodyAndForeseesNobodyWhenPeopleAreSilent) {
   drive();
   add_person(1.0, 0.0, 0.0, 0.0);
   run(600);
@@ -194,7 +226,7 @@ TEST_F(Losses, GivesWayToSomebodyAndForeseesNobodyWhenPeopleAreSilent) {
   EXPECT_EQ(host.heartbeat().reason(), "");
 }
 
-TEST_F(Losses, LeavesOutPeopleWhoAreNone) {
+TEST_P(WindowLosses, LeavesOutPeopleWhoAreNone) {
   drive();
   add_person(kNan, 0.0, 0.0, 0.0);
   add_person(1.0, 0.0, kNan, 0.0);
@@ -202,7 +234,7 @@ TEST_F(Losses, LeavesOutPeopleWhoAreNone) {
   EXPECT_TRUE(drives());
 }
 
-TEST_F(Losses, JudgesNoOtherHostsPeopleByItsOwnClock) {
+TEST_P(WindowLosses, JudgesNoOtherHostsPeopleByItsOwnClock) {
   drive();
   people_host = "vision";
   people_ahead = milliseconds(-2500);  // that host's clock is behind
@@ -211,7 +243,7 @@ TEST_F(Losses, JudgesNoOtherHostsPeopleByItsOwnClock) {
   EXPECT_NE(status().reason(), to_string(Reason::kGivingWay));
 }
 
-TEST_F(Losses, TakesNothingForTouchedWhenTheWhiskersAreSilent) {
+TEST_P(Losses, TakesNothingForTouchedWhenTheWhiskersAreSilent) {
   run(500);
   whiskers.emplace();
   whiskers->front_left(true);
@@ -225,7 +257,7 @@ TEST_F(Losses, TakesNothingForTouchedWhenTheWhiskersAreSilent) {
   EXPECT_GT(commanded().w, 0.1);
 }
 
-TEST_F(Losses, RefusesGoalsThatAreNone) {
+TEST_P(Losses, RefusesGoalsThatAreNone) {
   run(500);
   auto nowhere = goal(MODE_PATH);
   nowhere.path().poses().front().pose().position().x(kNan);
@@ -244,7 +276,7 @@ TEST_F(Losses, RefusesGoalsThatAreNone) {
   EXPECT_EQ(host.counter("inputs: rejected"), 5U);
 }
 
-TEST_F(Losses, StandsWhenItIsCancelled) {
+TEST_P(Losses, StandsWhenItIsCancelled) {
   drive();
   usher_msgs::msg::GoalCancel cancel;
   cancel.id(goal_id);
@@ -253,6 +285,55 @@ TEST_F(Losses, StandsWhenItIsCancelled) {
   run(100);
   EXPECT_TRUE(stands());
   EXPECT_EQ(status().state(), STATE_CANCELLED);
+}
+
+TEST_P(FollowerLosses, StandsWithoutAScanAndGoesOnWithIt) {
+  drive();
+  ASSERT_TRUE(drives());
+  scans = false;
+  run(200);
+  EXPECT_TRUE(drives()) << "some may be late";
+  run(200);
+  expect_waiting("no scan");
+  run(500);
+  expect_waiting("no scan");
+  scans = true;
+  run(1500);
+  EXPECT_TRUE(drives());
+  EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
+TEST_P(FollowerLosses, StandsOnScansThatAreNone) {
+  drive();
+  beams = 17;  // not as many as the angles say
+  run(600);
+  expect_waiting("no scan");
+  EXPECT_GE(host.counter("inputs: rejected"), 5U);
+  beams = 401;
+  run(1500);
+  EXPECT_TRUE(drives());
+}
+
+TEST_P(FollowerLosses, StandsWhereItsSectorsAreBlind) {
+  drive();
+  range = std::numeric_limits<float>::quiet_NaN();
+  run(1500);
+  EXPECT_TRUE(stands());
+  EXPECT_EQ(status().state(), STATE_WAITING);
+  EXPECT_EQ(status().reason(), to_string(Reason::kBlocked));
+}
+
+TEST_P(FollowerLosses, StandsBeforeWhatIsNearerThanTheSafeDistance) {
+  drive();
+  range = 0.45F;
+  run(1500);
+  EXPECT_TRUE(stands());
+  EXPECT_EQ(status().state(), STATE_WAITING);
+  EXPECT_NEAR(status().obstacle_distance(), 0.45F, 1e-3);
+  EXPECT_GT(status().blocked_for(), 0.2F);
+  range = 3.0F;
+  run(1500);
+  EXPECT_TRUE(drives());
 }
 
 }  // namespace
