@@ -10,12 +10,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 namespace usher::operations {
@@ -134,11 +135,16 @@ std::vector<std::uint32_t> launched_domains() {
   std::vector<std::uint32_t> domains;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(runtime_directory(), error)) {
-    static const std::regex kName("domain-([0-9]{1,9})-operator\\.yaml");
-    std::smatch match;
+    constexpr std::string_view kBefore = "domain-";
+    constexpr std::string_view kAfter = "-operator.yaml";
     const std::string name = entry.path().filename();
-    if (std::regex_match(name, match, kName))
-      domains.push_back(static_cast<std::uint32_t>(std::stoul(match[1])));
+    const bool ours = name.size() > kBefore.size() + kAfter.size() && name.starts_with(kBefore) &&
+                      name.ends_with(kAfter);
+    if (!ours) continue;
+    const char* const end = name.data() + name.size() - kAfter.size();
+    std::uint32_t domain = 0;
+    const auto read = std::from_chars(name.data() + kBefore.size(), end, domain);
+    if (read.ec == std::errc() && read.ptr == end) domains.push_back(domain);
   }
   std::ranges::sort(domains);
   return domains;
