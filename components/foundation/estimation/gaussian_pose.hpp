@@ -23,7 +23,7 @@ class GaussianPose {
       return Error{"a covariance must be symmetric"};
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-    const Eigen::Vector3d variances = solver.eigenvalues();
+    const Eigen::Vector3d& variances = solver.eigenvalues();
     if (variances.minCoeff() < -1e-6 * scale)
       return Error{"a covariance must have no negative variance"};
     GaussianPose result;

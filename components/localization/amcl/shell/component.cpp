@@ -1,6 +1,7 @@
 #include "localization/amcl/shell/component.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "foundation/grid/fingerprint.hpp"
@@ -16,8 +17,10 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(500);
-/// map -> odom changes slowly: it is valid until the next scan, and a little longer.
-constexpr auto kTransformLife = milliseconds(50);
+/// map -> odom changes slowly: it is valid until the next scan, and half as long again, so that
+/// whoever looks at that scan sooner than the filter knows where it belongs.
+constexpr auto kShortestLife = milliseconds(50);
+constexpr auto kLongestLife = milliseconds(300);
 constexpr auto kKeeping = milliseconds(5);  // the pose on the disk, in simulation
 constexpr const char* kPoseKey = "amcl.pose";
 constexpr double kOdometryContinues =
@@ -198,8 +201,10 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   if (result.outcome == Outcome::kOdometryRejected) ++rejected_odometry_;
   if (result.odometry_restarted) ++odometry_leaps_;
   if (result.outcome == Outcome::kScanRejected) ++rejected_scans_;
-  if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected)
+  if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected) {
+    if (last_scan_ != runtime::Time{}) scan_interval_ = stamp - last_scan_;
     last_scan_ = stamp;
+  }
   if (!core_.estimate() || last_scan_ != stamp) return;
   publish_transform(stamp);
   if (result.outcome == Outcome::kUpdated) {
@@ -209,9 +214,13 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
 }
 
 void AmclComponent::publish_transform(runtime::Time stamp) {
+  const auto life =
+      std::clamp<runtime::Duration>(scan_interval_ * 3 / 2, kShortestLife, kLongestLife);
+  // Never earlier than before: readers refuse that.
+  valid_until_ = std::max(valid_until_ + std::chrono::nanoseconds(1), stamp + life);
   tf2_msgs::msg::TFMessage message;
   message.transforms().push_back(
-      wire::transform(stamp + kTransformLife, frames::kMap, frames::kOdom,
+      wire::transform(valid_until_, frames::kMap, frames::kOdom,
                       geometry::to_space(core_.estimate()->map_T_odom())));
   transform_.publish(message);
 }

@@ -40,6 +40,8 @@ class AmclComponent final : public runtime::Component {
   std::string refused_memory_;  ///< why the kept pose was not taken up; until there is a good one
   bool keeping_ = false;        ///< the last pose is on its way to the disk
   runtime::Time last_scan_{};
+  runtime::Duration scan_interval_{};  ///< between the last two
+  runtime::Time valid_until_{};        ///< of map -> odom, as it was told
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_odometry_;
   std::uint64_t& odometry_leaps_;

@@ -95,6 +95,22 @@ TEST_F(Component, IsLostWithoutScansAndBackWithThem) {
   EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
 }
 
+TEST_F(Component, TellsTheFrameOfTheMapUntilTheNextScanWhateverItsRate) {
+  give_map(map);
+  run(2000);
+  const auto told = host.written(topics::kTf);
+  ASSERT_GT(told.size(), 10U);
+  const auto until = [](const auto& message) {
+    return wire::from_message(message.transforms().at(0).header().stamp());
+  };
+  EXPECT_GE(until(told.back()), host.now() + milliseconds(20)) << "scans come each 100 ms";
+  EXPECT_LE(until(told.back()), host.now() + milliseconds(100));
+  run(400, false);
+  run(200);  // after a gap it is told for longer, and never backward
+  const auto after = host.written(topics::kTf);
+  for (std::size_t i = 1; i < after.size(); ++i) EXPECT_GT(until(after[i]), until(after[i - 1]));
+}
+
 TEST_F(Component, DropsAndCountsScansWhosePlaceIsNotKnown) {
   give_map(map);
   run(1500, true, false);

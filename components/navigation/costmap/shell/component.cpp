@@ -226,13 +226,10 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   static_costs_->update(0.0);
   global_.costs.emplace(make(false, map->geometry()));
   add_layers(global_);
-  for (Map* each : {&local_, &global_}) {
-    if (each == &local_ && !static_in_local_) continue;
-    if (const auto status = each->costs->set_static_map(*map); !status) {
-      host_.fault("map: " + status.error());
-    }
-  }
+  if (const auto status = global_.costs->set_static_map(*map); !status)
+    host_.fault("map: " + status.error());
   global_.static_known = true;
+  if (static_in_local_) waiting_map_ = *map;
   global_.newest = wire::from_message(message.header().stamp());
   publish_global();
 }
@@ -348,11 +345,19 @@ void CostmapComponent::publish_local() {
     if (const auto map_T_odom =
             transforms_.lookup_planar(frames::kMap, frames::kOdom, local_.newest)) {
       if (!local_.costs->set_static_transform(*map_T_odom)) ++rejected_maps_;
+      if (waiting_map_) place_static_map();
     }
   }
   local_costs_.publish(wire::to_message(local_.newest, local_.frame,
                                         local_.costs->update(in_seconds(local_.newest))));
   local_published_ = host_.now();
+}
+
+/// Into the window; before anybody knows where the map lies it would stand in the robot's way.
+void CostmapComponent::place_static_map() {
+  if (const auto status = local_.costs->set_static_map(*waiting_map_); !status)
+    host_.fault("map: " + status.error());
+  waiting_map_.reset();
 }
 
 void CostmapComponent::publish_global() {

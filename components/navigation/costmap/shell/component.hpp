@@ -52,6 +52,7 @@ class CostmapComponent final : public runtime::Component {
   void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
                std::span<const float> ranges, runtime::Time stamp);
   void publish_local();
+  void place_static_map();
   void publish_global();
   void report();
 
@@ -72,8 +73,9 @@ class CostmapComponent final : public runtime::Component {
   std::uint64_t& placeless_scans_;
   std::uint64_t& rejected_maps_;
   Map local_, global_;
-  std::optional<Costmap> static_costs_;  ///< of the map alone, like global_
-  grid::Grid<std::uint8_t> passing_;     ///< the global costs as published
+  std::optional<grid::OccupancyGrid> waiting_map_;  ///< for the window, until its place is known
+  std::optional<Costmap> static_costs_;             ///< of the map alone, like global_
+  grid::Grid<std::uint8_t> passing_;                ///< the global costs as published
   Beams laser_beams_, ultrasonic_beams_, depth_beams_, low_beams_, rear_beams_;
   runtime::Time local_published_{};
   std::uint64_t last_request_ = 0;

@@ -122,6 +122,15 @@ TEST_F(Component, SaysThatTheRobotIsNotLocalized) {
   EXPECT_EQ(reason(), "robot not localized");
 }
 
+TEST_F(Component, PutsTheMapIntoTheWindowOnlyOnceItsPlaceIsKnown) {
+  map.at(map.geometry().cell_at(-1.0, 0.02)) = grid::kOccupied;  // behind: no sensor sees it
+  give_map();
+  run(500, true, false);
+  EXPECT_EQ(local_cost(-1.0, 0.02), kFreeCost);
+  run(200);
+  EXPECT_EQ(local_cost(-1.0, 0.02), kLethalCost);
+}
+
 TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   give_map();
   run(1500);
