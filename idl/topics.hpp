@@ -339,6 +339,15 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScanLow{
     "sim/kinect/scan/low", Kind::kStream, 2, 30, "world", "Its low obstacles."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimRearScan{
     "sim/rear_camera/scan", Kind::kStream, 2, 30, "world", "The same of the rear camera."};
+inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimKinectPeople{
+    "sim/kinect/people",
+    Kind::kStream,
+    2,
+    15,
+    "world",
+    "Whom the people detector would find in the Kinect's image, by the fitted model; z = height."};
+inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimRearPeople{
+    "sim/rear_camera/people", Kind::kStream, 2, 15, "world", "The same of the rear camera."};
 inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
     "sim/ground_truth",
     Kind::kStream,
@@ -363,7 +372,7 @@ inline constexpr auto kAll = std::tie(
     kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen, kDialogueAnswer,
     kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback, kSimScan,
     kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo,
-    kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimGroundTruth,
-    kSimPersonGoal);
+    kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople,
+    kSimRearPeople, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

@@ -19,6 +19,7 @@ constexpr auto kCommandAge = milliseconds(250);
 constexpr auto kSensorAge = milliseconds(300);
 constexpr auto kBaseAge = milliseconds(150);
 constexpr auto kLocalizationAge = milliseconds(1000);
+constexpr auto kPersonAge = milliseconds(500);
 constexpr double kStanding = 0.01;  // [m/s]
 
 float single(double value) { return static_cast<float>(value); }
@@ -80,8 +81,9 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
   free_space_.base_T_sensor.x = parameters.number("robot.laser.mount_x", "m", {-2, 2}, 0.0,
                                                   "Laser ahead of the axle's middle.");
-  assume_person_ = parameters.flag("assume_person_ahead", true,
-                                   "Without a people detector, drive as if a person were ahead.");
+  assume_person_ =
+      parameters.flag("assume_person_ahead", true,
+                      "Until a people detector is heard, drive as if a person were ahead.");
   low_battery_ = parameters.number("low_battery_percent", "%", {0, 100}, 15.0,
                                    "Below this the battery is low.");
 
@@ -108,6 +110,9 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       [this] { situation_.update(std::nullopt, host_.now().time_since_epoch()); });
   localization_ = host.input(topics::kLocalizationStatus,
                              {.max_age = kLocalizationAge, .on_loss = "drives as if lost"});
+  person_ = host.input(
+      topics::kPersonAhead,
+      {.max_age = kPersonAge, .on_loss = "drives as with a person ahead", .optional = true});
   command_ = host.output(topics::kDriveCommand);
   status_ = host.output(topics::kMovementStatus);
   command_timer_ = host.timer("command", milliseconds(20), [this](auto) { decide(); });
@@ -134,7 +139,7 @@ Inputs MovementControlComponent::gather() {
   if (const auto* w = whiskers_.fresh()) {
     inputs.whiskers = Whiskers{w->front_left(), w->front_right(), w->back_left(), w->back_right()};
   }
-  if (!assume_person_) inputs.person_ahead = false;
+  inputs.person_ahead = person_ahead();
   inputs.situation = situation_.situation();
   if (const auto* localization = localization_.fresh()) {
     inputs.localization =
@@ -147,6 +152,13 @@ Inputs MovementControlComponent::gather() {
     }
   }
   return inputs;
+}
+
+/// A people detector that was heard and fell silent is a person ahead.
+std::optional<bool> MovementControlComponent::person_ahead() const {
+  if (const auto* told = person_.fresh()) return !told->clear();
+  if (person_.latest() != nullptr) return std::nullopt;
+  return assume_person_;
 }
 
 void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan) {
@@ -209,7 +221,7 @@ void MovementControlComponent::publish_status() {
                          ? free_way(scan->ranges(), scan->angle_min(), scan->angle_increment(),
                                     s.current, front_, free_space_)
                          : 0.0;  // nobody knows
-  m.person_ahead(assume_person_);
+  m.person_ahead(person_ahead().value_or(true));
   m.obstacle_distance(single(way));
   m.stopping_distance(single(stopping_.distance(s.measured.v)));
   const bool stands = std::abs(s.measured.v) < kStanding;

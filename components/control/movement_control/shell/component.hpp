@@ -20,6 +20,7 @@ class MovementControlComponent final : public runtime::Component {
   std::optional<geometry::Twist2> velocity(
       const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
   Inputs gather();
+  std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);
   void decide();
   void publish_status();
@@ -43,6 +44,7 @@ class MovementControlComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::BaseStatus> base_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
+  runtime::Input<usher_msgs::msg::PersonAhead> person_;
   runtime::Output<usher_msgs::msg::DriveCommand> command_;
   runtime::Output<usher_msgs::msg::MovementStatus> status_;
   runtime::Timer command_timer_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -38,6 +39,8 @@ class Component : public testing::Test {
   runtime::TestHost host{runtime::component_factory<MovementControlComponent>("movement_control"),
                          kRobot};
   std::set<std::string> silent;
+  std::optional<bool> clear;  ///< what the people detector says; nothing: there is none
+  double wanted_v = 1.0, wanted_w = 0.0;
   double wall = 100.0;  ///< [m] ahead of the laser
 
  private:
@@ -86,8 +89,15 @@ class Component : public testing::Test {
     if (speaks("cmd_vel/navigation")) {
       geometry_msgs::msg::TwistStamped wanted;
       wanted.header(header);
-      wanted.twist().linear().x(1.0);
+      wanted.twist().linear().x(wanted_v);
+      wanted.twist().angular().z(wanted_w);
       host.publish(topics::kCmdVelNavigation, wanted, "local_planner");
+    }
+    if (clear && speaks("people/ahead")) {
+      usher_msgs::msg::PersonAhead person;
+      person.header(header);
+      person.clear(*clear);
+      host.publish(topics::kPersonAhead, person, "people_detector");
     }
   }
 };
@@ -126,6 +136,34 @@ TEST_F(Component, WithoutAScanItDrivesAsInAConfinedPlace) {
   run(2000);
   EXPECT_NEAR(commanded(), 0.8, 1e-6);
   EXPECT_EQ(status().obstacle_distance(), 0.0F) << "nobody knows";
+}
+
+TEST_F(Component, APersonAheadLimitsTheSpeedAndSoDoesASilentDetector) {
+  wanted_v = 1.4;
+  run(4000);
+  EXPECT_NEAR(commanded(), 1.4, 1e-6) << "nobody was ever heard of";
+  clear = true;
+  run(1000);
+  EXPECT_NEAR(commanded(), 1.4, 1e-6);
+  clear = false;
+  run(2000);
+  EXPECT_NEAR(commanded(), 1.0, 1e-6);
+  EXPECT_TRUE(status().person_ahead());
+  EXPECT_EQ(status().limit_reason(), "a person is ahead");
+  wanted_w = 1.4;
+  run(2000);
+  EXPECT_NEAR(host.last(topics::kDriveCommand)->w(), 0.5, 1e-6);
+  EXPECT_NEAR(commanded(), 0.5, 1e-6) << "the same arc";
+  wanted_w = 0.0, clear = true;
+  run(2000);
+  EXPECT_NEAR(commanded(), 1.4, 1e-6);
+  EXPECT_FALSE(status().person_ahead());
+  silent.insert("people/ahead");
+  run(440);
+  EXPECT_NEAR(commanded(), 1.4, 1e-6) << "not yet";
+  run(2000);
+  EXPECT_NEAR(commanded(), 1.0, 1e-6);
+  EXPECT_TRUE(status().person_ahead());
 }
 
 TEST_F(Component, TheStatusTellsWhatIsAhead) {

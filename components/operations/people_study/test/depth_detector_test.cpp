@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "operations/people_study/scoring.hpp"
+#include "perception/people_detector/core/camera_view.hpp"
+#include "support/counted_new.hpp"
 
 namespace usher::people_detector {
 namespace {
@@ -46,6 +48,28 @@ TEST(DepthDetector, SurvivesAnyImage) {
       EXPECT_GE(one.height, 0.0);
     }
   }
+}
+
+TEST(DepthDetector, AllocatesNothingFromImageToTrackInTheLongRun) {
+  Studio studio;
+  DepthDetector detector = detector_for(studio.intrinsics());
+  Tracker tracker({});
+  std::vector<Observation> observations;
+  const auto scenes = people_study::thesis_scenes();
+  const auto group = std::find_if(scenes.begin(), scenes.end(),
+                                  [](const auto& scene) { return scene.bodies.size() == 3; });
+  const auto shot = studio.take(*group, 3).value();
+  double time = 1.0;
+  const auto look = [&] {
+    const auto found = detector.find(shot.processed, shot.view);
+    place_sightings(*found, {1.0, 2.0, 0.3}, {}, observations);
+    tracker.update(time += 0.066, Source::kKinect, observations);
+  };
+  for (int i = 0; i < 30; ++i) look();
+  ASSERT_EQ(tracker.people().size(), 3U);
+  const std::uint64_t before = test::allocation_count();
+  for (int i = 0; i < 30; ++i) look();
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 Score score_of(const std::vector<people_study::Scene>& scenes) {

@@ -83,13 +83,17 @@ Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage&
   }
   windows_.take(image, view);
   scored_.clear();
+  int order = 0;
   for (const Candidate& candidate : windows_.candidates()) {
+    ++order;
     windows_.describe(candidate, inputs_);
     const float score = classifier_.score(inputs_);
-    if (static_cast<double>(score) > config_.threshold) scored_.push_back({candidate, score});
+    if (static_cast<double>(score) > config_.threshold)
+      scored_.push_back({candidate, score, order});
   }
-  std::stable_sort(scored_.begin(), scored_.end(),
-                   [](const Scored& a, const Scored& b) { return a.score > b.score; });
+  std::sort(scored_.begin(), scored_.end(), [](const Scored& a, const Scored& b) {
+    return a.score != b.score ? a.score > b.score : a.order < b.order;
+  });
   taken_.clear();
   sightings_.clear();
   for (const Scored& one : scored_) {

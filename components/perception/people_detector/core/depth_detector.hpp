@@ -48,6 +48,7 @@ class DepthDetector {
   struct Scored {
     Candidate place;
     float score;
+    int order;  ///< among the candidates; of equal scores the first counts
   };
   DepthDetector(const imaging::Intrinsics& intrinsics, const DetectorConfig& config,
                 const Network& network);

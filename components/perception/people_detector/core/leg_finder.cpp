@@ -40,7 +40,7 @@ void LegFinder::collect(const ScanView& scan, const geometry::Pose2& map_T_scan)
     }
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     const Point2 point = range * Point2(std::cos(angle), std::sin(angle));
-    if (walls_.interpolated(map_T_scan * point).distance < config_.wall) {
+    if (on_the_map(map_T_scan * point, config_.wall)) {
       open = false;
       continue;
     }
@@ -85,8 +85,8 @@ std::span<const Observation> LegFinder::find(const ScanView& scan,
     if (thing.beams < config_.fewest) continue;
     const Point2 middle = thing.middle();
     const double range = middle.norm();
-    found_.push_back(
-        {odom_T_scan * Point2(middle * ((range + config_.body) / range)), config_.sigma, 0.0});
+    found_.push_back({odom_T_scan * Point2(middle * ((range + config_.body) / range)),
+                      config_.sigma * config_.sigma * Eigen::Matrix2d::Identity(), 0.0});
   }
   return found_;
 }

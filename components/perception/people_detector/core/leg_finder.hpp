@@ -37,6 +37,10 @@ class LegFinder {
 
   void set_map(const grid::OccupancyGrid& map);
   bool has_map() const { return !walls_.empty(); }
+  /// Whether something on the map is nearer than `distance` [m] {0..wall}; false without a map.
+  bool on_the_map(const geometry::Point2& in_map, double distance) const {
+    return has_map() && walls_.interpolated(in_map).distance < distance;
+  }
 
   /// Candidates in odom; none without a map. Valid until the next call.
   std::span<const Observation> find(const ScanView& scan, const geometry::Pose2& map_T_scan,

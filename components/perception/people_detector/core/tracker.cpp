@@ -21,7 +21,19 @@ constexpr double kFirstSpeed = 0.8;   // [m/s] standard deviation of somebody ne
 constexpr double kLongest = 1.0;      // [s] of one prediction; a gap of the sensors is no time
 constexpr double kHeightShare = 0.1;  // of a new height in the mean
 
+bool usable(const Observation& one) {
+  const Eigen::Matrix2d& c = one.covariance;
+  return one.position.allFinite() && std::isfinite(one.height) && c.allFinite() && c(0, 0) > 0.0 &&
+         c.determinant() > 0.0;
+}
+
 }  // namespace
+
+Eigen::Matrix2d covariance_along(double bearing, double along, double across) {
+  const Eigen::Vector2d sight(std::cos(bearing), std::sin(bearing));
+  return across * across * Eigen::Matrix2d::Identity() +
+         (along * along - across * across) * sight * sight.transpose();
+}
 
 Status check(const TrackerConfig& c) {
   return within({{"acceleration", c.acceleration, 0.1, 5.0},
@@ -54,12 +66,19 @@ void Tracker::predict(Track& track, double seconds) const {
   }
 }
 
-double Tracker::cost(const Track& track, const Observation& observation) const {
-  const Point2 away = observation.position - track.position();
+/// What of a state an observation shows that is so late [s]: where the person was then.
+Tracker::Gain Tracker::seen_at(double late) const {
+  Gain look = Gain::Zero();
+  look.leftCols<2>().setIdentity();
+  look.rightCols<2>() = -late * Eigen::Matrix2d::Identity();
+  return look;
+}
+
+double Tracker::cost(const Track& track, const Observation& observation, const Gain& look) const {
+  const Point2 away = observation.position - look * track.state;
   if (away.norm() > config_.reach) return kForbidden;
   const Eigen::Matrix2d spread =
-      track.covariance.topLeftCorner<2, 2>() +
-      observation.sigma * observation.sigma * Eigen::Matrix2d::Identity();
+      look * track.covariance * look.transpose() + observation.covariance;
   double distance = away.dot(spread.inverse() * away);
   if (observation.height > 0.0 && track.height > 0.0) {
     const double higher = (observation.height - track.height) / config_.height_sigma;
@@ -69,37 +88,36 @@ double Tracker::cost(const Track& track, const Observation& observation) const {
   return distance + std::log(spread.determinant()) + (track.confirmed ? 0.0 : kNewcomer);
 }
 
-void Tracker::correct(Track& track, const Observation& observation, Source source) {
+void Tracker::correct(Track& track, const Observation& observation, const Gain& look,
+                      Source source) {
   const Eigen::Matrix2d spread =
-      track.covariance.topLeftCorner<2, 2>() +
-      observation.sigma * observation.sigma * Eigen::Matrix2d::Identity();
-  const Eigen::Matrix<double, 4, 2> gain = track.covariance.leftCols<2>() * spread.inverse();
-  track.state += gain * (observation.position - track.position());
-  const Eigen::Matrix4d updated = track.covariance - gain * track.covariance.topRows<2>();
+      look * track.covariance * look.transpose() + observation.covariance;
+  const Eigen::Matrix<double, 4, 2> gain = track.covariance * look.transpose() * spread.inverse();
+  track.state += gain * (observation.position - look * track.state);
+  const Eigen::Matrix4d updated = track.covariance - gain * (look * track.covariance);
   track.covariance = 0.5 * (updated + updated.transpose());
   if (observation.height > 0.0) {
     track.height = track.height > 0.0
                        ? track.height + kHeightShare * (observation.height - track.height)
                        : observation.height;
   }
-  track.seen[static_cast<std::size_t>(source)] = now_;
   if (source != Source::kLaser) ++track.sightings;
   if (track.confirmed) return;
   track.confirmed = track.fresh = track.sightings >= config_.confirmations ||
                                   (track.position() - track.birthplace).norm() > config_.travel;
 }
 
-void Tracker::add(const Observation& observation, Source source) {
+void Tracker::add(const Observation& observation, Source source, double time) {
   if (tracks_.size() >= kMost) return;
   Track track;
   track.id = next_id_++;
   track.state.head<2>() = track.birthplace = observation.position;
-  track.covariance.topLeftCorner<2, 2>() *= observation.sigma * observation.sigma;
+  track.covariance.topLeftCorner<2, 2>() = observation.covariance;
   track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
   track.height = observation.height;
-  track.born = now_;
+  track.born = time;
   track.seen.fill(kNever);
-  track.seen[static_cast<std::size_t>(source)] = now_;
+  track.seen[static_cast<std::size_t>(source)] = time;
   track.sightings = source == Source::kLaser ? 0 : 1;
   track.confirmed = track.sightings >= config_.confirmations;
   tracks_.push_back(track);
@@ -135,21 +153,21 @@ void Tracker::forget() {
   });
 }
 
-void Tracker::update(double time, Source source, std::span<const Observation> observations) {
-  if (!std::isfinite(time)) return;
+bool Tracker::update(double time, Source source, std::span<const Observation> observations) {
+  if (!(time >= now_ - kLatest) || std::isinf(time)) return false;
   const double passed = tracks_.empty() ? 0.0 : std::clamp(time - now_, 0.0, kLongest);
   now_ = std::max(now_, time);
   for (Track& track : tracks_) predict(track, passed);
   observations_.clear();
   for (const Observation& one : observations) {
     if (observations_.size() == kMost) break;
-    if (one.position.allFinite() && one.sigma > 0.0 && std::isfinite(one.height))
-      observations_.push_back(one);
+    if (usable(one)) observations_.push_back(one);
   }
+  const Gain look = seen_at(now_ - time);
   costs_.clear();
   for (const Track& track : tracks_) {
     for (const Observation& one : observations_) {
-      costs_.push_back(cost(track, one));
+      costs_.push_back(cost(track, one, look));
     }
   }
   const auto count = static_cast<int>(tracks_.size());
@@ -160,16 +178,19 @@ void Tracker::update(double time, Source source, std::span<const Observation> ob
     if (pairs[t] < 0) continue;
     const auto which = static_cast<std::size_t>(pairs[t]);
     used_[which] = 1;
-    correct(tracks_[t], observations_[which], source);
+    double& seen = tracks_[t].seen[static_cast<std::size_t>(source)];
+    seen = std::max(seen, time);
+    correct(tracks_[t], observations_[which], look, source);
   }
   for (std::size_t i = 0; i < observations_.size(); ++i) {
-    if (!used_[i]) add(observations_[i], source);
+    if (!used_[i]) add(observations_[i], source, time);
   }
   recognize();
   forget();
   people_.clear();
   std::copy_if(tracks_.begin(), tracks_.end(), std::back_inserter(people_),
                [](const Track& track) { return track.confirmed; });
+  return true;
 }
 
 const Track* Tracker::find(std::uint64_t id) const {

@@ -19,10 +19,14 @@ inline constexpr std::size_t kSources = 3;
 
 /// One person as one sensor saw it, in odom.
 struct Observation {
-  geometry::Point2 position = geometry::Point2::Zero();  ///< [m]
-  double sigma = 0.08;                                   ///< [m] standard deviation of each axis
-  double height = 0.0;                                   ///< [m] of the highest point; 0: not known
+  geometry::Point2 position = geometry::Point2::Zero();               ///< [m]
+  Eigen::Matrix2d covariance = 0.0064 * Eigen::Matrix2d::Identity();  ///< [m^2] of the position
+  double height = 0.0;  ///< [m] of the highest point; 0: not known
 };
+
+/// The covariance of a position that is `along` uncertain on the line of sight, at `bearing` [rad],
+/// and `across` beside it; both are standard deviations [m].
+Eigen::Matrix2d covariance_along(double bearing, double along, double across);
 
 struct Track {
   std::uint64_t id = 0;                             ///< from 1 on, never given again
@@ -62,23 +66,29 @@ Status check(const TrackerConfig& config);
 class Tracker {
  public:
   static constexpr std::size_t kMost = 64;
+  static constexpr double kLatest = 0.3;  ///< [s] before the newest update
 
   explicit Tracker(const TrackerConfig& config) : config_(config) {}
 
-  /// All that one sensor saw at one time [s]. Times before the newest are taken as the newest;
-  /// observations that are not finite are left out.
-  void update(double time, Source source, std::span<const Observation> observations);
+  /// All that one sensor saw at one time [s]. What is late, by up to `kLatest`, is compared with
+  /// where people were then; what is later, and observations that are not finite, are left out.
+  /// False when all of it was.
+  bool update(double time, Source source, std::span<const Observation> observations);
 
   /// Confirmed people as of the last update, by id.
   std::span<const Track> people() const { return people_; }
+  /// [s] of the newest update; the states are for this time.
+  double now() const { return now_; }
   /// One of them.
   const Track* find(std::uint64_t id) const;
 
  private:
   void predict(Track& track, double seconds) const;
-  double cost(const Track& track, const Observation& observation) const;
-  void correct(Track& track, const Observation& observation, Source source);
-  void add(const Observation& observation, Source source);
+  using Gain = Eigen::Matrix<double, 2, 4>;
+  Gain seen_at(double late) const;
+  double cost(const Track& track, const Observation& observation, const Gain& look) const;
+  void correct(Track& track, const Observation& observation, const Gain& look, Source source);
+  void add(const Observation& observation, Source source, double time);
   void recognize();
   void forget();
 

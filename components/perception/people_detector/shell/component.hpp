@@ -1,37 +1,22 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-
-#include "idl/topics.hpp"
-#include "perception/people_detector/core/leg_finder.hpp"
-#include "runtime/api/host.hpp"
-#include "wire/transform_input.hpp"
+#include "perception/people_detector/shell/camera_input.hpp"
+#include "perception/people_detector/shell/following.hpp"
 
 namespace usher::people_detector {
 
-/// Knows who walks around the robot: legs in the scan, followed over time.
+/// Knows who is around the robot: people in the images of the depth cameras and legs in the laser's
+/// scan, followed over time. Event-driven.
 class PeopleDetectorComponent final : public runtime::Component {
  public:
   explicit PeopleDetectorComponent(runtime::Host& host);
 
  private:
-  void take_map(const nav_msgs::msg::OccupancyGrid& message);
-  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
-  void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
-              const geometry::Pose2& odom_T_base);
-  void publish(runtime::Time stamp);
+  std::string trouble() const;
 
-  runtime::Host& host_;
-  std::optional<LegFinder> legs_;
-  std::optional<Tracker> tracker_;
-  runtime::Time last_{};
-  std::uint64_t& rejected_;
-
-  wire::TransformInput transforms_;
-  runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
-  runtime::Input<sensor_msgs::msg::LaserScan> scan_;
-  runtime::Output<usher_msgs::msg::People> people_;
+  DetectorConfig config_;
+  Following following_;
+  CameraInput kinect_, rear_;
 };
 
 }  // namespace usher::people_detector

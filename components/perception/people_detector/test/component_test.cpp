@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "perception/people_detector/device_sim/component.hpp"
 #include "room_scan.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
@@ -52,7 +53,8 @@ class Component : public testing::Test {
     host.publish(topics::kTf, message);
   }
 
-  runtime::TestHost host{runtime::component_factory<PeopleDetectorComponent>("people_detector")};
+  runtime::TestHost host{runtime::component_factory<PeopleDetectorComponent>("people_detector"),
+                         "robot.half_width: 0.33 m"};
   const Pose2 map_T_odom{0.5, 0.5, 0.3};
   const Pose2 odom_T_base{0.4, 0.6, 0.1};
   double time = 0.0;
@@ -113,6 +115,68 @@ TEST_F(Component, FallsSilentWithTheScanAndRefusesABadOne) {
   EXPECT_EQ(host.counter("scans: rejected"), 1U);
   EXPECT_TRUE(host.written(topics::kPeople).empty());
   EXPECT_EQ(host.heartbeat().reason(), "no scan");
+}
+
+TEST_F(Component, TellsMovementControlWhoIsInTheRobotsWay) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(0.5, [](double) { return Point2(5.5, 3.5); });
+  const auto nobody = host.last(topics::kPersonAhead);
+  ASSERT_TRUE(nobody);
+  EXPECT_TRUE(nobody->clear()) << "who only stands is no person to the laser";
+  run(3.0, [](double t) { return Point2(4.4 - 0.7 * t, 1.8 - 0.1 * t); });
+  const auto person = host.last(topics::kPersonAhead);
+  EXPECT_FALSE(person->clear());
+  EXPECT_EQ(person->header().frame_id(), frames::kBaseFootprint);
+  const auto known = host.last(topics::kPeople)->people().at(0);
+  const Point2 place = inverse(odom_T_base) * Point2(known.x(), known.y());
+  EXPECT_NEAR(person->distance(), place.norm(), 0.05);
+  EXPECT_NEAR(person->bearing(), std::atan2(place.y(), place.x()), 0.1);
+  EXPECT_NEAR(person->closing_speed(), 0.7, 0.2);
+}
+
+/// The stand-in without pixels: whom the world's model finds.
+class SimComponent : public testing::Test {
+ protected:
+  void run(int ms, bool people, const char* frame = "kinect_level") {
+    for (int at = 0; at < ms; at += 33) {
+      tf2_msgs::msg::TFMessage places;
+      places.transforms().push_back(wire::transform(
+          host.now(), frames::kOdom, frames::kBaseFootprint, geometry::to_space({1.0, 2.0, 0.5})));
+      places.transforms().push_back(wire::transform(
+          host.now(), frames::kBaseFootprint, "kinect_level", geometry::to_space({0.2, 0.0, 0.0})));
+      host.publish(topics::kTf, places);
+      geometry_msgs::msg::PoseArray seen;
+      seen.header(wire::header(host.now(), frame));
+      seen.poses().resize(2);
+      seen.poses()[0].position().x(2.5);
+      seen.poses()[0].position().z(1.7);
+      seen.poses()[1].position().x(std::nan(""));
+      if (people) host.publish(topics::kSimKinectPeople, seen);
+      host.run_for(milliseconds(33));
+    }
+  }
+  runtime::TestHost host{
+      runtime::component_factory<PeopleDetectorSimComponent>("people_detector_sim"),
+      "robot.half_width: 0.33 m"};
+};
+
+TEST_F(SimComponent, FollowsWhomTheModelFinds) {
+  run(1000, true);
+  const auto people = host.last(topics::kPeople);
+  ASSERT_TRUE(people && people->people().size() == 1U);
+  const auto& person = people->people()[0];
+  EXPECT_TRUE(person.by_kinect() && !person.by_laser());
+  EXPECT_NEAR(person.height(), 1.7, 1e-3);
+  const Point2 place = Pose2{1.0, 2.0, 0.5} * Point2(2.7, 0.0);
+  EXPECT_LT((place - Point2(person.x(), person.y())).norm(), 0.01);
+  EXPECT_EQ(host.heartbeat().reason(), "no scan");
+}
+
+TEST_F(SimComponent, SightingsOfAnUnknownFrameAreDroppedAndCounted) {
+  run(1000, true, "nowhere");
+  EXPECT_FALSE(host.last(topics::kPeople));
+  EXPECT_GT(host.counter("tf: dropped"), 5U);
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ using geometry::Point2;
 
 constexpr double kPeriod = 1.0 / 15.0;  // [s]
 
-Observation at(double x, double y, double height = 1.7) { return {{x, y}, 0.06, height}; }
+Eigen::Matrix2d round(double sigma) { return sigma * sigma * Eigen::Matrix2d::Identity(); }
+
+Observation at(double x, double y, double height = 1.7) { return {{x, y}, round(0.06), height}; }
 
 TEST(Assignment, FindsTheLeastSumAndLeavesAloneWhoDoesNotFit) {
   Assignment assignment;
@@ -85,15 +87,49 @@ TEST(Tracker, FindsWhoWasHiddenAgain) {
   EXPECT_TRUE(tracker.people().empty());
 }
 
+TEST(Tracker, ComparesWhatIsLateWithWherePeopleWereThen) {
+  const auto follow = [](double late) {
+    Tracker tracker({});
+    for (int i = 0; i < 60; ++i) {
+      const double time = i * kPeriod;
+      tracker.update(time, Source::kLaser, std::vector{at(1.2 * time, 0, 0)});
+      const double then = time + 0.02 - late;
+      tracker.update(then, Source::kKinect, std::vector{at(1.2 * then, 0)});
+    }
+    return tracker;
+  };
+  const Tracker prompt = follow(0.0), late = follow(0.2);
+  ASSERT_EQ(late.people().size(), 1U);
+  EXPECT_NEAR(late.people()[0].position().x(), 1.2 * late.now(), 0.03);
+  EXPECT_NEAR(late.people()[0].velocity().x(), 1.2, 0.05);
+  EXPECT_GT(late.people()[0].covariance(0, 0), prompt.people()[0].covariance(0, 0));
+}
+
+TEST(Tracker, MindsInWhichDirectionASightingIsUncertain) {
+  const Eigen::Matrix2d ahead = covariance_along(0.0, 0.3, 0.05);
+  EXPECT_NEAR(ahead(0, 0), 0.09, 1e-12);
+  EXPECT_NEAR(ahead(1, 1), 0.0025, 1e-12);
+  const Eigen::Matrix2d left = covariance_along(geometry::kPi / 2, 0.3, 0.05);
+  EXPECT_NEAR(left(1, 1), 0.09, 1e-12);
+  Tracker tracker({});
+  for (int i = 0; i < 30; ++i)
+    tracker.update(i * kPeriod, Source::kKinect, std::vector{Observation{{3, 0}, ahead, 1.7}});
+  ASSERT_EQ(tracker.people().size(), 1U);
+  EXPECT_GT(tracker.people()[0].covariance(0, 0), 3.0 * tracker.people()[0].covariance(1, 1));
+}
+
 TEST(Tracker, IgnoresWhatIsNotFiniteAndTimesOfThePast) {
   Tracker tracker({});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 6; ++i) {
     tracker.update(1.0 + i * kPeriod, Source::kKinect,
                    std::vector{at(nan, 0), at(2, 0), at(1, 1, nan)});
-    tracker.update(0.0, Source::kKinect, std::vector{at(2, 0)});
+    EXPECT_FALSE(tracker.update(0.0, Source::kKinect, std::vector{at(2, 0)}));
   }
-  tracker.update(nan, Source::kKinect, std::vector{at(5, 5)});
+  EXPECT_FALSE(tracker.update(nan, Source::kKinect, std::vector{at(5, 5)}));
+  Observation flat = at(5, 5);
+  flat.covariance(0, 0) = 0.0;
+  tracker.update(1.5, Source::kKinect, std::vector{flat});
   ASSERT_EQ(tracker.people().size(), 1U);
   EXPECT_TRUE(tracker.people()[0].state.allFinite());
   std::vector<Observation> crowd;
@@ -137,10 +173,10 @@ class Room {
       visible_[i] = is_visible(i);
       if (!visible_[i] || random_.uniform() > 0.96) continue;
       const Point2 error(random_.gaussian(0, 0.07), random_.gaussian(0, 0.05));
-      seen.push_back({place_[i] + error, 0.08, height_[i] + random_.gaussian(0, 0.04)});
+      seen.push_back({place_[i] + error, round(0.08), height_[i] + random_.gaussian(0, 0.04)});
     }
     if (random_.uniform() < 0.02)  // of nobody
-      seen.push_back({anywhere(), 0.08, random_.uniform(0.8, 1.9)});
+      seen.push_back({anywhere(), round(0.08), random_.uniform(0.8, 1.9)});
     return seen;
   }
 

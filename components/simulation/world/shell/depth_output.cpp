@@ -16,8 +16,9 @@ imaging::Intrinsics intrinsics_of(const rendering::Lens& lens) {
   return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
 }
 
-DepthScanModelConfig model_for(const DepthCameraConfig& camera) {
-  DepthScanModelConfig config;
+template <class Config>
+Config model_for(const DepthCameraConfig& camera) {
+  Config config;
   config.lens = camera.sensor.lens;
   config.origin = std::abs(camera.mount.x);
   return config;
@@ -79,8 +80,10 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   if (kind == "pixels") kind_ = Kind::kPixels;
   if (host.parameters().flag("color", false, "Whether colour images are painted too."))
     painter_.emplace(drawn_faces());
-  kinect_model_.emplace(model_for(kinect_.config()), seed);
-  rear_model_.emplace(model_for(rear_.config()), seed + 1);
+  kinect_model_.emplace(model_for<DepthScanModelConfig>(kinect_.config()), seed);
+  rear_model_.emplace(model_for<DepthScanModelConfig>(rear_.config()), seed + 1);
+  kinect_people_model_.emplace(model_for<PeopleModelConfig>(kinect_.config()), seed);
+  rear_people_model_.emplace(model_for<PeopleModelConfig>(rear_.config()), seed + 1);
   kinect_depth_ = host.output(topics::kSimKinectDepth);
   kinect_color_ = host.output(topics::kSimKinectColor);
   kinect_info_ = host.output(topics::kSimKinectInfo);
@@ -89,6 +92,8 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   kinect_scan_ = host.output(topics::kSimKinectScan);
   kinect_low_ = host.output(topics::kSimKinectScanLow);
   rear_scan_ = host.output(topics::kSimRearScan);
+  kinect_people_ = host.output(topics::kSimKinectPeople);
+  rear_people_ = host.output(topics::kSimRearPeople);
   timer_ = host.timer("depth", kTurn, [this](auto) { publish_next(); });
 }
 
@@ -104,6 +109,7 @@ void DepthOutput::publish_next() {
   told_ = true;
   kinect_next_ ? publish_kinect() : publish_rear();
   kinect_next_ = !kinect_next_;
+  ++images_;
 }
 
 void DepthOutput::publish_info() {
@@ -118,6 +124,7 @@ void DepthOutput::publish_kinect() {
     kinect_model_->scan(*world_, kinect_, result_);
     publish_scan(result_.ranges, kinect_scan_);
     publish_scan(result_.low, kinect_low_);
+    publish_people(*kinect_people_model_, kinect_, "kinect_level", kinect_people_);
     return;
   }
   if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
@@ -136,6 +143,7 @@ void DepthOutput::publish_rear() {
   if (kind_ == Kind::kModel) {
     rear_model_->scan(*world_, rear_, result_);
     publish_scan(result_.ranges, rear_scan_);
+    publish_people(*rear_people_model_, rear_, "rear_camera_level", rear_people_);
     return;
   }
   if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
@@ -157,6 +165,22 @@ void DepthOutput::publish_scan(const std::vector<float>& ranges,
   scan_.range_max(5.0F);
   scan_.ranges(ranges);
   output.publish(scan_);
+}
+
+/// The detector looks at every second image.
+void DepthOutput::publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
+                                 runtime::Output<geometry_msgs::msg::PoseArray>& output) {
+  if (images_ / 2 % 2 != 0) return;
+  model.find(*world_, camera, found_);
+  people_.header(wire::header(stepped_, frame));
+  people_.poses().resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    auto& place = people_.poses()[i].position();
+    place.x(found_[i].forward);
+    place.y(found_[i].left);
+    place.z(found_[i].height);
+  }
+  output.publish(people_);
 }
 
 }  // namespace usher::world

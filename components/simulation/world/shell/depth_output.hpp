@@ -8,12 +8,13 @@
 #include "runtime/api/host.hpp"
 #include "simulation/rendering/core/painter.hpp"
 #include "simulation/world/core/depth_scan_model.hpp"
+#include "simulation/world/core/people_model.hpp"
 
 namespace usher::world {
 
-/// The simulated depth cameras' side of the world component: pixels, or the scans that the fitted
-/// model makes without them, at 30 Hz, the two cameras in turn. Stamps are those of the world's
-/// steps.
+/// The simulated depth cameras' side of the world component: pixels, or the scans and the people
+/// that the fitted models make without them, at 30 Hz (people 15), the two cameras in turn. Stamps
+/// are those of the world's steps.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
@@ -34,25 +35,32 @@ class DepthOutput {
   void publish_rear();
   void publish_scan(const std::vector<float>& ranges,
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
+  void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
+                      runtime::Output<geometry_msgs::msg::PoseArray>& output);
 
   runtime::Host& host_;
   const World* world_;
   Kind kind_ = Kind::kOff;
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
+  std::optional<PeopleModel> kinect_people_model_, rear_people_model_;
   WorldRenderer renderer_;
   std::optional<rendering::Painter> painter_;  // none: no color images
   runtime::Time stepped_{};                    ///< time of the world's last step
   bool told_ = false;                          ///< the intrinsics
   bool kinect_next_ = true;
+  int images_ = 0;  ///< of both cameras
   std::vector<std::uint16_t> depth_;
   std::vector<std::uint8_t> rgb_;
   sensor_msgs::msg::Image image_;
   DepthScanResult result_;
   sensor_msgs::msg::LaserScan scan_;
+  std::vector<ModelledSighting> found_;
+  geometry_msgs::msg::PoseArray people_;
   runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_;
   runtime::Output<sensor_msgs::msg::CameraInfo> kinect_info_, rear_info_;
   runtime::Output<sensor_msgs::msg::LaserScan> kinect_scan_, kinect_low_, rear_scan_;
+  runtime::Output<geometry_msgs::msg::PoseArray> kinect_people_, rear_people_;
   runtime::Timer timer_;
 };
 

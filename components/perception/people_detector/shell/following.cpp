@@ -1,0 +1,237 @@
+#include "perception/people_detector/shell/following.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::people_detector {
+
+namespace {
+
+using runtime::HealthState;
+using std::chrono::milliseconds;
+
+constexpr auto kScanAge = milliseconds(250);
+constexpr auto kPeriod = milliseconds(60);  // every third scan of a laser of 50 Hz
+constexpr double kShortest = 0.04;          // [s] in which a motion is measured
+constexpr double kLongest = 0.5;            // [s] after which nobody knows it
+constexpr double kRecently = 1.0;           // [s]
+
+double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
+
+LegFinderConfig leg_parameters(runtime::Parameters& p) {
+  LegFinderConfig c;
+  c.wall = p.number("legs.wall", "m", {0.05, 1}, c.wall,
+                    "Nearer to something on the map it belongs to that.");
+  c.widest = p.number("legs.widest", "m", {0.2, 2}, c.widest, "Wider is nobody.");
+  c.farthest =
+      p.number("legs.farthest", "m", {1, 30}, c.farthest, "Farther legs are too few beams.");
+  return c;
+}
+
+TrackerConfig tracker_parameters(runtime::Parameters& p) {
+  TrackerConfig c;
+  c.travel = p.number("travel", "m", {0.1, 3}, c.travel,
+                      "So far must walk whom only the laser sees, before that counts as a person.");
+  c.memory = p.number("memory", "s", {0.5, 30}, c.memory,
+                      "So long is remembered who is not seen any more.");
+  return c;
+}
+
+double wall_parameter(runtime::Parameters& p) {
+  return p.number("camera.wall", "m", {0, 0.2}, 0.15,
+                  "Whose middle is nearer to something on the map is a part of that.");
+}
+
+SightingErrors error_parameters(runtime::Parameters& p) {
+  SightingErrors e;
+  e.along = p.number("camera.along", "m", {0.01, 0.5}, e.along,
+                     "Error of whom a camera sees, along the line of sight.");
+  e.along_growth = p.number("camera.along_growth", "-", {0, 0.2}, e.along_growth,
+                            "And this more for each metre of distance.");
+  e.across = p.number("camera.across", "m", {0.01, 0.5}, e.across, "The same beside it.");
+  e.across_growth = p.number("camera.across_growth", "-", {0, 0.2}, e.across_growth,
+                             "And this more for each metre of distance.");
+  return e;
+}
+
+AheadConfig ahead_parameters(runtime::Parameters& p) {
+  AheadConfig c;
+  c.half_width = p.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  c.beside = p.number("ahead.beside", "m", {0, 2}, c.beside,
+                      "So near beside the robot's way somebody is in it.");
+  c.reach = p.number("ahead.reach", "m", {0.5, 8}, c.reach, "So far ahead.");
+  c.soon = p.number("ahead.soon", "s", {0, 3}, c.soon, "Who will be there by then is there.");
+  return c;
+}
+
+usher_msgs::msg::Person to_message(const Track& track, double now) {
+  usher_msgs::msg::Person person;
+  person.id(track.id);
+  person.x(track.state[0]);
+  person.y(track.state[1]);
+  person.vx(track.state[2]);
+  person.vy(track.state[3]);
+  Eigen::Map<Eigen::Matrix4d>(person.covariance().data()) = track.covariance;  // symmetric
+  person.height(track.height > 0.0 ? static_cast<float>(track.height)
+                                   : std::numeric_limits<float>::quiet_NaN());
+  person.age(static_cast<float>(now - track.born));
+  person.unseen(static_cast<float>(now - track.last_seen()));
+  const auto by = [&](Source source) {
+    return now - track.seen[static_cast<std::size_t>(source)] < kRecently;
+  };
+  person.by_kinect(by(Source::kKinect));
+  person.by_rear(by(Source::kRearCamera));
+  person.by_laser(by(Source::kLaser));
+  return person;
+}
+
+}  // namespace
+
+Following::Following(runtime::Host& host, std::function<std::string()> trouble)
+    : host_(host),
+      trouble_(std::move(trouble)),
+      errors_(error_parameters(host.parameters())),
+      in_wall_(wall_parameter(host.parameters())),
+      ahead_(ahead_parameters(host.parameters())),
+      rejected_(host.health().counter("scans: rejected")),
+      late_(host.health().counter("images: late")),
+      transforms_(host) {
+  auto legs = LegFinder::make(leg_parameters(host.parameters()));
+  if (!legs) host.fault(legs.error());
+  legs_.emplace(std::move(legs).value());
+  tracker_.emplace(tracker_parameters(host.parameters()));
+
+  map_ =
+      host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
+  scan_ = host.input(
+      topics::kScanFiltered,
+      {.max_age = kScanAge, .on_loss = "follows whom the cameras see; without them falls silent"},
+      [this](const auto&, const auto&) { take_scan(scan_.share()); }, [this] { report(); });
+  people_ = host.output(topics::kPeople);
+  person_ahead_ = host.output(topics::kPersonAhead);
+}
+
+void Following::take_map(const nav_msgs::msg::OccupancyGrid& message) {
+  const auto map = wire::from_message(message);
+  if (!map) {
+    ++rejected_;
+    host_.health().set(HealthState::kDegraded, "map refused: " + map.error());
+    return;
+  }
+  legs_->set_map(*map);
+}
+
+void Following::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan) {
+  const runtime::Time stamp = wire::from_message(scan->header().stamp());
+  if (stamp >= last_scan_ && stamp - last_scan_ < kPeriod) return;
+  if (!wire::check(*scan)) {
+    ++rejected_;
+    return;
+  }
+  last_scan_ = stamp;
+  transforms_.when_known(frames::kOdom, frames::kBaseFootprint, stamp,
+                         [this, scan = std::move(scan), stamp](const auto& pose) {
+                           update(*scan, stamp, geometry::to_plane(pose));
+                         });
+}
+
+void Following::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
+                       const geometry::Pose2& odom_T_base) {
+  const auto base_T_scan =
+      transforms_.lookup_planar(frames::kBaseFootprint, scan.header().frame_id(), stamp);
+  if (!base_T_scan) {
+    ++rejected_;
+    return;
+  }
+  const auto map_T_odom = localization();
+  legs_trouble_ = !legs_->has_map() ? "no map" : !map_T_odom ? "robot not localized" : "";
+  if (*legs_trouble_ != '\0') {
+    tracker_->update(in_seconds(stamp), Source::kLaser, {});
+  } else {
+    const geometry::Pose2 odom_T_scan = odom_T_base * *base_T_scan;
+    const ScanView view{scan.angle_min(), scan.angle_increment(), scan.ranges()};
+    tracker_->update(in_seconds(stamp), Source::kLaser,
+                     legs_->find(view, *map_T_odom * odom_T_scan, odom_T_scan));
+  }
+  note(stamp, odom_T_base);
+  publish();
+}
+
+/// map_T_odom, the newest.
+std::optional<geometry::Pose2> Following::localization() const {
+  const auto newest = transforms_.buffer().newest(frames::kMap, frames::kOdom);
+  if (!newest) return std::nullopt;
+  const auto pose = transforms_.lookup_planar(frames::kMap, frames::kOdom, runtime::Time(*newest));
+  return pose ? std::optional(*pose) : std::nullopt;
+}
+
+void Following::see(Source source, runtime::Time stamp, std::span<const Sighting> sightings,
+                    const geometry::Pose2& odom_T_base, const geometry::Pose2& base_T_foot) {
+  place_sightings(sightings, odom_T_base * base_T_foot, errors_, observations_);
+  if (const auto map_T_odom = localization()) {
+    std::erase_if(observations_, [&](const Observation& one) {
+      return legs_->on_the_map(*map_T_odom * one.position, in_wall_);
+    });
+  }
+  if (!tracker_->update(in_seconds(stamp), source, observations_)) {
+    ++late_;
+    return;
+  }
+  note(stamp, odom_T_base);
+  publish();
+}
+
+/// How the robot moves, from where it was.
+void Following::note(runtime::Time stamp, const geometry::Pose2& odom_T_base) {
+  newest_ = std::max(newest_, stamp);
+  if (!motion_) motion_ = Motion{stamp, odom_T_base, {}};
+  const double passed = runtime::seconds(stamp - motion_->stamp);
+  if (passed < kShortest) return;
+  const geometry::Pose2 moved = inverse(motion_->odom_T_base) * odom_T_base;
+  const geometry::Twist2 twist{moved.x / passed, moved.yaw / passed};
+  motion_ = Motion{stamp, odom_T_base, passed < kLongest ? twist : geometry::Twist2{}};
+}
+
+void Following::publish() {
+  if (newest_ - published_ < kPeriod) return;
+  published_ = newest_;
+  const double now = tracker_->now();
+  message_.header(wire::header(newest_, frames::kOdom));
+  message_.people().clear();
+  for (const Track& track : tracker_->people()) message_.people().push_back(to_message(track, now));
+  people_.publish(message_);
+  publish_ahead();
+  report();
+}
+
+void Following::publish_ahead() {
+  const auto person = person_ahead(tracker_->people(), tracker_->now(), motion_->odom_T_base,
+                                   motion_->twist, ahead_);
+  usher_msgs::msg::PersonAhead message;
+  message.header(wire::header(published_, frames::kBaseFootprint));
+  message.clear(!person);
+  message.distance(person ? static_cast<float>(person->distance)
+                          : std::numeric_limits<float>::infinity());
+  if (person) {
+    message.bearing(static_cast<float>(person->bearing));
+    message.closing_speed(static_cast<float>(person->closing_speed));
+  }
+  person_ahead_.publish(message);
+}
+
+void Following::report() {
+  if (scan_.fresh() == nullptr) {
+    host_.health().set(HealthState::kDegraded, "no scan");
+  } else if (*legs_trouble_ != '\0') {
+    host_.health().set(HealthState::kDegraded, legs_trouble_);
+  } else if (std::string trouble = trouble_(); !trouble.empty()) {
+    host_.health().set(HealthState::kDegraded, std::move(trouble));
+  } else {
+    host_.health().set(HealthState::kOk);
+  }
+}
+
+}  // namespace usher::people_detector

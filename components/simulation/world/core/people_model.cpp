@@ -1,0 +1,112 @@
+#include "simulation/world/core/people_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace usher::world {
+
+namespace {
+
+constexpr double kBeam = 4.0;        // [pixels] between two beams
+constexpr double kSlice = 0.2;       // [m] of a body that a fan stands for
+constexpr double kTallest = 2.0;     // [m]
+constexpr double kBurstBlind = 0.3;  // a burst of noise from which nobody is found
+constexpr double kSeated = 0.75;     // share of the standing height
+
+Fan fan_for(const rendering::Lens& lens) {
+  const double right = std::atan((lens.width - 0.5 - lens.cx) / lens.fx);
+  const double left = std::atan((lens.cx + 0.5) / lens.fx);
+  const double increment = std::atan(kBeam / lens.fx);
+  return {-right, increment, static_cast<int>((left + right) / increment) + 1};
+}
+
+double top_of(const Person& person) {
+  const bool upright = person.posture == rendering::Posture::kStanding ||
+                       person.posture == rendering::Posture::kWalking ||
+                       person.posture == rendering::Posture::kArmsOut;
+  return (upright ? 1.0 : kSeated) * person.height;
+}
+
+}  // namespace
+
+PeopleModel::PeopleModel(const PeopleModelConfig& config, std::uint64_t seed)
+    : config_(config), random_(stream_seed(seed, "people model")), fan_(fan_for(config.lens)) {
+  see_through_.assign(static_cast<std::size_t>(fan_.count()), 0);
+}
+
+bool PeopleModel::in_view(double forward, double height) const {
+  const double rise = height - camera_height_;
+  const double depth = forward * std::cos(down_) - rise * std::sin(down_);
+  const double below = -forward * std::sin(down_) - rise * std::cos(down_);
+  if (depth < config_.nearest) return false;
+  const double row = config_.lens.cy + config_.lens.fy * below / depth;
+  return row >= 0.0 && row <= config_.lens.height - 1.0;
+}
+
+bool PeopleModel::may_be_seen(const Person& person, const Pose2& origin) const {
+  const Point2 place = inverse(origin) * person.position;
+  const double edge = std::tan(-fan_.angle_min());
+  return place.x() > 0.2 && place.x() < config_.farthest + 0.5 &&
+         std::abs(place.y()) < edge * place.x() + 0.5;
+}
+
+/// Fans at many heights: which share of each body no thing and nobody hides.
+void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose2& origin) {
+  const geometry::Pose3 pose = camera.pose(world);
+  camera_height_ = pose.translation.z();
+  down_ = -std::asin(std::clamp((pose.rotation * Eigen::Vector3d::UnitX()).z(), -1.0, 1.0));
+  const double ahead = (inverse(origin) * pose.translation.head<2>()).x();
+  const auto people = world.people();
+  movers_.clear();
+  for (const Person& person : people)
+    movers_.push_back({person.position, person.radius, top_of(person)});
+  visible_.assign(people.size(), {});
+  const auto things = static_cast<std::int32_t>(world.scene().things().size());
+  for (double height = 0.5 * kSlice; height < kTallest; height += kSlice) {
+    const geometry::Pose3 plane{{origin.x, origin.y, height}, geometry::to_space(origin).rotation};
+    caster_.cast(
+        world.scene(), fan_, plane,
+        {.max_range = config_.farthest + 1.0, .glass_flags = see_through_, .glass_cosine = 2.0},
+        movers_, hits_);
+    for (std::size_t i = 0; i < hits_.what.size(); ++i) {
+      const std::int32_t who = hits_.what[i] - things;
+      if (who < 0) continue;
+      const auto range = static_cast<double>(hits_.range[i]);
+      if (!in_view(range * static_cast<double>(fan_.cosines()[i]) - ahead, height)) continue;
+      Visible& visible = visible_[static_cast<std::size_t>(who)];
+      visible.area += config_.filled * kSlice * range * fan_.increment();
+      visible.top = std::min(height + 0.5 * kSlice, movers_[static_cast<std::size_t>(who)].top);
+    }
+  }
+}
+
+void PeopleModel::find(const World& world, const DepthCamera& camera,
+                       std::vector<ModelledSighting>& sightings) {
+  sightings.clear();
+  const Pose2 base = world.base().truth().pose;
+  const bool backward = std::cos(camera.config().mount.yaw) < 0.0;
+  const double yaw = backward ? base.yaw + geometry::kPi : base.yaw;
+  const Pose2 origin = Pose2{base.x, base.y, yaw} * Pose2{config_.origin, 0.0, 0.0};
+  const auto people = world.people();
+  const bool anybody = std::any_of(people.begin(), people.end(), [&](const Person& person) {
+    return may_be_seen(person, origin);
+  });
+  if (!anybody || camera.burst() > kBurstBlind) return;
+  look(world, camera, origin);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const Visible& visible = visible_[i];
+    const Point2 place = inverse(origin) * people[i].position;
+    if (visible.area <= 0.0 || place.x() > config_.farthest) continue;
+    const double odds = (visible.area - config_.likely_area) / config_.area_slope;
+    const double found = (1.0 - config_.missed) / (1.0 + std::exp(-odds));
+    const double along = random_.gaussian(0.0, config_.along);
+    const double across = random_.gaussian(0.0, config_.across);
+    const double higher = random_.gaussian(0.0, config_.height);
+    if (random_.uniform() >= found) continue;
+    const Point2 sight = place.normalized();
+    const Point2 seen = place + along * sight + across * Point2(-sight.y(), sight.x());
+    sightings.push_back({seen.x(), seen.y(), std::max(0.1, visible.top + higher)});
+  }
+}
+
+}  // namespace usher::world
