@@ -59,6 +59,10 @@ const std::vector<Experiment>& experiments() {
        "Thesis 4.4: figures 4.11 to 4.21, table 4.2 over DDS processes, scans against the truth; "
        "--only images without processes",
        run_depth_pipeline_experiment},
+      {"human-detection",
+       "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
+       "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",
+       run_human_detection_experiment},
   };
   return all;
 }

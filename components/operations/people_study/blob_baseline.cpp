@@ -42,7 +42,8 @@ BlobBaseline::BlobBaseline(const imaging::Intrinsics& intrinsics, const Config& 
 
 void BlobBaseline::find_blobs(const cv::Mat& depth, const people_detector::View& view,
                               std::vector<Sighting>& sightings) {
-  const cv::Mat foreground = depth > 0;
+  const double reach = config_.area_by_depth ? kFarthest : config_.farthest;
+  const cv::Mat foreground = (depth > 0) & (depth <= 1e3 * reach);
   cv::Mat distance, apart, labels;
   cv::distanceTransform(foreground, distance, cv::DIST_L2, 3);
   apart = distance > kApart;
@@ -57,9 +58,7 @@ void BlobBaseline::find_blobs(const cv::Mat& depth, const people_detector::View&
     const cv::Mat region = labels == labels.at<int>(row, column);
     if (config_.area_by_depth) {
       const double area = cv::countNonZero(region) * z * z / (intrinsics_.fx * intrinsics_.fy);
-      if (z > kFarthest || area < kLeastArea || area > kMostArea) continue;
-    } else if (z > config_.farthest) {
-      continue;
+      if (area < kLeastArea || area > kMostArea) continue;
     }
     if (config_.deviation) {
       cv::Scalar mean, deviation;

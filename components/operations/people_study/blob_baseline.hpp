@@ -9,7 +9,8 @@
 namespace usher::people_study {
 
 /// The people detector of thesis 4.4.3 for comparison: blobs of what the depth pipeline leaves,
-/// and, one by one, what 8.3.3 proposes to make it better.
+/// and, one by one, what 8.3.3 proposes to make it better. What is farther than it looks counts as
+/// background, as the thesis' figures suggest: else whoever stands before a wall is a part of it.
 class BlobBaseline {
  public:
   struct Config {

@@ -37,9 +37,9 @@ void add_desk(Model& model, const Pose2& pose, Random& random) {
 
 }  // namespace
 
-Model empty_room() {
+Model empty_room(double wall) {
   Model model;
-  add_box(model, {5.5, 0.0, 0.0}, 0.1, 9.0, 0.0, 2.7);
+  add_box(model, {wall, 0.0, 0.0}, 0.1, 1.64 * wall, 0.0, 2.7);
   return model;
 }
 

@@ -6,7 +6,8 @@
 /// Things of a room, for pictures of people and of what is none.
 namespace usher::people_study {
 
-rendering::Model empty_room();
+/// One wall, so far ahead [m].
+rendering::Model empty_room(double wall = 5.5);
 /// Walls at random distances, with corners, pilasters and door openings.
 rendering::Model random_room(Random& random);
 

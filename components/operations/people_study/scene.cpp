@@ -103,10 +103,12 @@ void add_groups(std::vector<Scene>& scenes) {
 
 void add_distances(std::vector<Scene>& scenes) {
   for (const double forward : {0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 5.9}) {
-    for (const double down : {5.0, -10.0})
+    for (const double down : {5.0, -10.0}) {
       scenes.push_back(named("at " + std::to_string(static_cast<int>(100 * forward)) +
                                  " cm, camera " + (down > 0 ? "5 deg down" : "10 deg up"),
                              {body(forward, 0.05, 180)}, down));
+      if (forward > 5.0) scenes.back().model = empty_room(7.5);
+    }
   }
   for (const double share : {0.0, 0.1}) {
     const double edge = 2.0 * 255.5 / 365.0;  // [m] the image's border, 2 m away
