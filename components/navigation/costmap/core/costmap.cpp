@@ -65,7 +65,7 @@ Status check(const CostmapConfig& config, const geometry::Footprint& footprint) 
     return Error{"occupied_from must be in [1, 100] %, got " +
                  std::to_string(config.occupied_from) + " %"};
   }
-  return {};
+  return check(config.social);
 }
 
 void raise_to(const std::uint8_t* __restrict states, int count, std::uint8_t* __restrict combined) {
@@ -99,6 +99,7 @@ Costmap::Costmap(CostmapConfig config, geometry::Footprint footprint)
       inflation_(raster_.width, raster_.height, raster_.resolution,
                  {footprint_.inscribed_radius(), config_.inflation_radius, config_.cost_scaling},
                  config_.unseen, config_.simd),
+      social_(config_.social),
       master_(window_geometry(raster_), kUnknownCost) {
   invalidate();
 }
@@ -183,6 +184,10 @@ Status Costmap::replace(LayerId layer, std::span<const geometry::Point2> points,
   return {};
 }
 
+void Costmap::set_people(std::span<const geometry::Point2> people) {
+  touch(social_.set(people, raster_));
+}
+
 void Costmap::forget() {
   for (ObstacleLayer& layer : layers_) touch(layer.forget());
 }
@@ -203,6 +208,7 @@ const grid::Grid<std::uint8_t>& Costmap::update(double now) {
   changed_ = inflation_.update(dirty_, master_);
   const grid::GridGeometry geometry = window_geometry(raster_);
   master_.set_origin(geometry.origin_x, geometry.origin_y);
+  social_.paint(raster_, master_);
   dirty_ = {};
   moved_ = std::exchange(moving_, false);
   return master_;

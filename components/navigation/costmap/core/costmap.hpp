@@ -16,6 +16,7 @@
 #include "navigation/costmap/core/inflation.hpp"
 #include "navigation/costmap/core/obstacle_layer.hpp"
 #include "navigation/costmap/core/polygon_raster.hpp"
+#include "navigation/costmap/core/social_layer.hpp"
 #include "navigation/costmap/core/static_layer.hpp"
 
 namespace usher::costmap {
@@ -34,6 +35,7 @@ struct CostmapConfig {
   Inflation::Unseen unseen =
       Inflation::Unseen::kFree;  ///< what a cell costs that no layer has seen
   int occupied_from = 65;        ///< [%] occupancy of the static map that is an obstacle
+  SocialConfig social;           ///< room for people
   cpu::Simd simd = cpu::best_simd();
 };
 
@@ -42,7 +44,7 @@ struct CostmapConfig {
 ///
 /// Per cell: the static map counts where no layer has seen anything; where layers have, the maximum
 /// over them (occupied > free > unseen). Layers with overrules_static_map = false join by maximum
-/// after that. Then inflation.
+/// after that. Then inflation, then the room that people get.
 ///
 /// One cycle: move_to(), observe() for the scans that came, update(). update() redoes what changed
 /// since the last call and always gives what a fresh computation would give. No allocation after
@@ -72,7 +74,9 @@ class Costmap {
   /// whose whisker is triggered), in the costmap's frame. Such a layer wants footprint_clearing =
   /// false.
   Status replace(LayerId layer, std::span<const geometry::Point2> points, double stamp);
-  /// Forgets all that the sensors saw (a recovery).
+  /// Who gets room, in the costmap's frame, in the place of those before.
+  void set_people(std::span<const geometry::Point2> people);
+  /// Forgets all that the sensors saw (a recovery); people stay.
   void forget();
 
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
@@ -116,6 +120,7 @@ class Costmap {
   bool static_stale_ = true;  // the whole window is to be sampled anew
   std::vector<ObstacleLayer> layers_;
   Inflation inflation_;
+  SocialLayer social_;
   grid::Grid<std::uint8_t> master_;
   std::optional<geometry::Pose2> base_;
   CellRect dirty_;

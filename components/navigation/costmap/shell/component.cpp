@@ -17,6 +17,9 @@ using std::chrono::milliseconds;
 constexpr auto kScanAge = milliseconds(300);
 constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
+constexpr auto kPeopleAge = milliseconds(400);
+constexpr double kSeenLately = 0.5;         // [s] who was not seen for longer gets no room
+constexpr double kWalks = 0.3;              // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;       // [m]
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
 constexpr int kGlobalShare =
@@ -57,6 +60,12 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       parameters.flag("unknown_is_free", true, "Space that nobody has seen yet costs nothing.")
           ? Inflation::Unseen::kFree
           : Inflation::Unseen::kUnknown;
+  settings_.social.radius =
+      parameters.number("social_radius", "m", {0, 3}, settings_.social.radius,
+                        "Room that people get where there is room; 0 = none.");
+  settings_.social.cost = static_cast<std::uint8_t>(
+      parameters.integer("social_cost", "-", {0, 252}, settings_.social.cost,
+                         "What it costs to be where somebody is; it falls to 0 over that room."));
   laser_settings_.name = "laser";
   laser_settings_.max_obstacle_range = parameters.number("laser_obstacle_range", "m", {0.5, 30},
                                                          8.0, "Farther laser echoes mark nothing.");
@@ -112,6 +121,11 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       host.input(topics::kWhiskers,
                  {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
                  [this](const auto&, const auto&) { take_whiskers(whiskers_.share()); });
+  people_ = host.input(
+      topics::kPeople,
+      {.max_age = kPeopleAge, .on_loss = "gives nobody room but as obstacles", .optional = true},
+      [this](const auto& people, const auto&) { take_people(people); },
+      [this] { forget_people(); });
   request_ = host.input(topics::kCostmapRequest, {.optional = true},
                         [this](const auto& request, const auto&) {
                           if (request.id() == last_request_) return;
@@ -338,6 +352,34 @@ void CostmapComponent::place_whiskers(const usher_msgs::msg::Whiskers& message, 
   touch(message.back_left(), back, side);
   touch(message.back_right(), back, -side);
   if (!local_.costs->replace(local_.whiskers, touched, in_seconds(stamp))) ++rejected_scans_;
+}
+
+/// Room in the window for who is ahead (who comes from behind sees the robot), on the map for who
+/// stands.
+void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
+  const runtime::Time stamp = wire::from_message(message.header().stamp());
+  const auto base_T_odom = transforms_.lookup_planar(frames::kBaseFootprint, frames::kOdom, stamp);
+  if (message.header().frame_id() != frames::kOdom || !base_T_odom) {
+    forget_people();
+    return;
+  }
+  const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
+  near_.clear();
+  standing_.clear();
+  for (const auto& person : message.people()) {
+    const geometry::Point2 place(person.x(), person.y());
+    if (!(static_cast<double>(person.unseen()) <= kSeenLately)) continue;
+    if ((*base_T_odom * place).x() > 0.0) near_.push_back(place);
+    if (map_T_odom && std::hypot(person.vx(), person.vy()) < kWalks)
+      standing_.push_back(*map_T_odom * place);
+  }
+  local_.costs->set_people(near_);
+  if (global_.costs) global_.costs->set_people(standing_);
+}
+
+void CostmapComponent::forget_people() {
+  local_.costs->set_people({});
+  if (global_.costs) global_.costs->set_people({});
 }
 
 void CostmapComponent::publish_local() {

@@ -51,6 +51,8 @@ class CostmapComponent final : public runtime::Component {
                       const geometry::Pose2& odom_T_base);
   void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
                std::span<const float> ranges, runtime::Time stamp);
+  void take_people(const usher_msgs::msg::People& message);
+  void forget_people();
   void publish_local();
   void place_static_map();
   void publish_global();
@@ -67,6 +69,7 @@ class CostmapComponent final : public runtime::Component {
 
   double echo_half_cone_, echo_tolerance_;
   std::vector<float> echoes_;
+  std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
 
   std::uint64_t& rejected_scans_;
   std::uint64_t& late_scans_;
@@ -87,6 +90,7 @@ class CostmapComponent final : public runtime::Component {
   runtime::Input<sensor_msgs::msg::LaserScan> ultrasonic_;
   runtime::Input<sensor_msgs::msg::LaserScan> depth_, low_, rear_;
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
+  runtime::Input<usher_msgs::msg::People> people_;
   runtime::Input<usher_msgs::msg::CostmapRequest> request_;
   runtime::Output<usher_msgs::msg::Costmap> local_costs_;
   runtime::Output<usher_msgs::msg::Costmap> global_costs_;

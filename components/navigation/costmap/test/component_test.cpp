@@ -137,6 +137,42 @@ TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   EXPECT_EQ(reason(), "") << "neither was ever heard";
 }
 
+TEST_F(Component, GivesPeopleRoomUntilNobodyTellsOfThem) {
+  give_map();
+  const auto tell = [&](double x, double vx, float unseen = 0.0F) {
+    usher_msgs::msg::People people;
+    people.header(wire::header(last_scan, frames::kOdom));
+    people.people().resize(2);
+    people.people()[0].x(x), people.people()[0].vx(vx), people.people()[0].unseen(unseen);
+    people.people()[1].x(std::numeric_limits<double>::quiet_NaN());
+    host.publish(topics::kPeople, people);
+  };
+  const auto global_cost = [&](double x) {
+    const auto costs = wire::from_message(host.last(topics::kGlobalCosts).value());
+    return int{costs->at(costs->geometry().cell_at(x, 0.0))};
+  };
+  run(500);
+  const auto keep_telling = [&](double x, double vx, float unseen = 0.0F) {
+    for (int i = 0; i < 20; ++i) tell(x, vx, unseen), run(60);
+  };
+  keep_telling(1.0, 0.0);
+  EXPECT_NEAR(local_cost(1.0, 0.0), 80, 4);
+  EXPECT_NEAR(global_cost(1.0), 80, 4) << "who stands is on the map too";
+  EXPECT_GT(local_cost(1.0, 1.0), 5);
+  EXPECT_EQ(local_cost(1.0, 1.3), kFreeCost);
+  run(1500);
+  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "nobody tells of them";
+  EXPECT_EQ(global_cost(1.0), kFreeCost);
+  EXPECT_EQ(reason(), "");
+  keep_telling(1.0, 1.0);
+  EXPECT_NEAR(local_cost(1.0, 0.0), 80, 4);
+  EXPECT_EQ(global_cost(1.0), kFreeCost) << "who walks is elsewhere by then";
+  keep_telling(1.0, 0.0, 0.8F);
+  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "not seen lately";
+  keep_telling(-1.0, 0.0);
+  EXPECT_EQ(local_cost(-1.0, 0.0), kFreeCost) << "who is behind sees the robot";
+}
+
 TEST_F(Component, KeepsTheLastContactsOfWhiskersThatFallSilent) {
   give_map();
   run(500);

@@ -70,6 +70,7 @@ TEST_P(CostmapLaws, EveryCycleEqualsTheOneFromScratchAndTheDefinition) {
   config.inflation_radius = 0.7;
   config.cost_scaling = 4.0;
   config.unseen = static_cast<Inflation::Unseen>(variant % 3);
+  config.social = {.radius = variant % 3 == 1 ? 0.0 : 1.0, .cost = 120};
   CostmapConfig portable = config;
   portable.simd = cpu::Simd::kPortable;
   Costmap incremental = Costmap::make(config).value();
@@ -143,6 +144,14 @@ TEST_P(CostmapLaws, EveryCycleEqualsTheOneFromScratchAndTheDefinition) {
       ASSERT_TRUE(fresh.replace(3, corners, now).ok());
       reference.replace(3, corners, now);
     }
+    if (variant % 3 != 1 && random.below(3) == 0) {
+      std::vector<Point2> people;
+      for (std::size_t i = random.below(4); i > 0; --i)
+        people.push_back(base * Point2{random.uniform(-4, 4), random.uniform(-4, 4)});
+      incremental.set_people(people);
+      fresh.set_people(people);
+      reference.set_people(people);
+    }
     fresh.invalidate();
     const auto& master = incremental.update(now);
     ASSERT_EQ(master, fresh.update(now)) << "cycle " << cycle;
@@ -173,6 +182,28 @@ TEST(Costmap, WritesOnlyWhatItReportsAsChanged) {
     EXPECT_TRUE(reported || after[i] == before[i]) << i;
   }
   EXPECT_EQ(costmap.cost_at({std::cos(0.5), std::sin(0.5)}), kLethalCost);
+}
+
+TEST(Costmap, GivesPeopleRoomThatBarsNobody) {
+  CostmapConfig config = fixed_config();
+  config.social = {.radius = 1.2, .cost = 100};
+  Costmap costmap = Costmap::make(config).value();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Point2> people{{0.025, 0.025}, {nan, 0.0}, {1e9, 0.0}};
+  costmap.set_people(people);
+  costmap.update(0.0);
+  const auto cost = [&](double x) { return int{costmap.cost_at({x, 0.025}).value()}; };
+  EXPECT_NEAR(cost(0.025), 100, 4);
+  EXPECT_NEAR(cost(0.625), 50, 2);
+  EXPECT_EQ(cost(1.275), kFreeCost);
+  costmap.forget();
+  costmap.update(0.1);
+  EXPECT_NEAR(cost(0.025), 100, 4) << "a recovery forgets things, not people";
+  costmap.set_people({});
+  costmap.update(0.2);
+  EXPECT_EQ(cost(0.025), kFreeCost);
+  config.social.radius = 5.0;
+  EXPECT_NE(Costmap::make(config).error().find("social radius must be in"), std::string::npos);
 }
 
 TEST(Costmap, SaysWhenTheWindowMoved) {

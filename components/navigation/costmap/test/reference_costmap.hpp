@@ -83,6 +83,8 @@ class ReferenceCostmap {
     }
   }
 
+  void set_people(const std::vector<geometry::Point2>& people) { people_ = people; }
+
   grid::Grid<std::uint8_t> update(double now) {
     for (Layer& layer : layers_) {
       if (layer.config.persistence <= 0.0) continue;
@@ -113,7 +115,9 @@ class ReferenceCostmap {
     const CostDecay decay{footprint_.inscribed_radius(), config_.inflation_radius,
                           config_.cost_scaling};
     for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) master.at({x, y}) = cost(states, {x, y}, decay);
+      for (int x = 0; x < width; ++x) {
+        master.at({x, y}) = std::max(cost(states, {x, y}, decay), social_cost({x, y}));
+      }
     }
     return master;
   }
@@ -136,6 +140,19 @@ class ReferenceCostmap {
   }
 
  private:
+  std::uint8_t social_cost(grid::Cell cell) const {
+    const double resolution = config_.window.resolution;
+    const geometry::Point2 center{anchor_x_ + (first_x_ + cell.x + 0.5) * resolution,
+                                  anchor_y_ + (first_y_ + cell.y + 0.5) * resolution};
+    const SocialConfig& social = config_.social;
+    double highest = 0.0;
+    for (const geometry::Point2& person : people_) {
+      const double share = (center - person).norm() / social.radius;
+      if (share < 1.0) highest = std::max(highest, social.cost * (1.0 - share));
+    }
+    return static_cast<std::uint8_t>(highest);
+  }
+
   using Key = std::pair<int, int>;  // cell number in the endless raster
   struct Seen {
     std::uint8_t state;
@@ -228,6 +245,7 @@ class ReferenceCostmap {
   grid::OccupancyGrid map_;
   geometry::Pose2 map_T_window_;
   std::optional<geometry::Pose2> base_;
+  std::vector<geometry::Point2> people_;
 };
 
 }  // namespace usher::costmap
