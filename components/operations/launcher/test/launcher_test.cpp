@@ -241,8 +241,12 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
   const std::string order = folder_.path() + "/order";
   // Each writes its name when it is asked to end, and the base what the robot did then.
   for (const std::string name : {"base", "supervisor", "planner", "screen"}) {
-    program(name, "trap 'echo " + name + " >> " + order + "; exit 0' TERM\ntouch " +
-                      folder_.path() + "/ready_" + name + "\nwhile :; do sleep 0.01; done");
+    std::string script = "trap 'echo " + name;
+    script += " >> " + order;
+    script += "; exit 0' TERM\ntouch " + folder_.path();
+    script += "/ready_" + name;
+    script += "\nwhile :; do sleep 0.01; done";
+    program(name, script);
     component(name, name);
   }
   deployment_.movement = {{"base", Movement::kHolds}, {"planner", Movement::kAsks}};
