@@ -164,7 +164,7 @@ Result<Deployment> demo(std::uint32_t domain) {
 Result<std::unique_ptr<Observer>> observe(std::uint32_t domain) {
   std::optional<Result<std::unique_ptr<Observer>>> observer;
   std::thread([&] {
-    operations::take_before(operations::permitted_precedence());
+    operations::go_before_all();
     observer = Observer::create({.name = "judge", .host = "nuc", .domain = domain});
   }).join();
   return std::move(*observer);

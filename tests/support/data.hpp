@@ -19,6 +19,6 @@ inline std::string test_data(const std::string& relative) {
 }  // namespace usher
 
 /// In a GoogleTest: declares `path`, or skips the test with a line that names what is absent.
-#define USHER_REQUIRE_DATA(path, relative)             \
-  const std::string path = usher::test_data(relative); \
-  if (path.empty()) GTEST_SKIP() << "no " << (relative) << " below USHER_TEST_DATA"
+#define USHER_REQUIRE_DATA(path, relative)               \
+  const std::string path = usher::test_data((relative)); \
+  if ((path).empty()) GTEST_SKIP() << "no " << (relative) << " below USHER_TEST_DATA"

@@ -104,8 +104,8 @@ Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& m
                  const std::string& title, const std::string& path);
 
 /// How often each cell of a map was looked at: from blue (seldom) to red (as often as the most
-/// looked at 5 % of the cells), floor that was never seen in white; the way driven over it in black,
-/// its start in pink.
+/// looked at 5 % of the cells), floor that was never seen in white; the way driven over it in
+/// black, its start in pink.
 Status draw_heat_map(const grid::OccupancyGrid& map, const grid::Grid<std::uint32_t>& looks,
                      const std::vector<geometry::Point2>& way, const std::string& title,
                      const std::string& path);

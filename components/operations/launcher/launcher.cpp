@@ -19,6 +19,8 @@
 #include <string_view>
 #include <thread>
 
+#include "operations/launcher/precedence.hpp"
+
 namespace usher::operations {
 
 namespace {
@@ -193,7 +195,7 @@ Launcher::Launcher(Launcher&& other) noexcept
       processes_(std::move(other.processes_)),
       events_(std::move(other.events_)),
       operator_file_(std::exchange(other.operator_file_, {})),
-      precedence_(other.precedence_),
+      may_go_first_(other.may_go_first_),
       locks_(std::exchange(other.locks_, {})),
       last_poll_(other.last_poll_),
       trusted_from_(other.trusted_from_) {
@@ -245,11 +247,11 @@ Status Launcher::prepare(const Deployment& deployment) {
     std::filesystem::remove_all(options_.run_directory + "/kept", error);
     if (error) return Error{"cannot empty " + options_.run_directory + "/kept: " + error.message()};
   }
-  precedence_ = permitted_precedence();
-  if (precedence_ != Precedence::kRealTime) {
+  may_go_first_ = may_go_first();
+  if (!may_go_first_) {
     events_.push_back(
-        "the drive chain cannot run in real time here, so a busy machine may stop the robot "
-        "(permit it with CAP_SYS_NICE or RLIMIT_RTPRIO 10)");
+        "the drive chain cannot go before other programs here, so a busy machine may stop the "
+        "robot (permit it with CAP_SYS_NICE or RLIMIT_NICE 31)");
   }
   const std::int64_t anchor = clock_anchor();
   if (auto status = leave_operator_file(deployment, anchor); !status) return status;
@@ -348,7 +350,7 @@ void Launcher::start(Process& process) {
     const int null = open("/dev/null", O_RDONLY);
     if (log >= 0) dup2(log, STDOUT_FILENO), dup2(log, STDERR_FILENO);
     if (null >= 0) dup2(null, STDIN_FILENO);
-    if (process.goes_first) take(precedence_);
+    if (process.goes_first && may_go_first_) go_first();
     execv(arguments[0], arguments.data());
     _exit(127);
   }

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "foundation/result/result.hpp"
-#include "operations/launcher/precedence.hpp"
 #include "operations/manifest/resolve.hpp"
 
 namespace usher::operations {
@@ -120,8 +119,8 @@ class Launcher {
   std::vector<Process> processes_;
   std::vector<std::string> events_;
   std::string operator_file_;
-  Precedence precedence_ = Precedence::kNone;  ///< what is permitted
-  std::vector<int> locks_;                     ///< open files, locked while this launcher lives
+  bool may_go_first_ = false;  ///< permitted
+  std::vector<int> locks_;     ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
   std::chrono::steady_clock::time_point logs_bounded_{};

@@ -74,7 +74,10 @@ std::optional<Pose2> Frontier::view_of_piece(const Outlook& outlook) const {
   if (!std::isfinite(outlook.ground.way_to(*place))) return std::nullopt;
   const auto yaw = best_direction(outlook.seen, *place, cells_of(outlook.seen, config_.least_gain));
   if (!yaw) return std::nullopt;
-  return Pose2{place->x(), place->y(), geometry::normalized(*yaw)};
+  const Pose2 view{place->x(), place->y(), geometry::normalized(*yaw)};
+  const std::size_t gain = outlook.seen.gain({&view, 1});
+  if (gain < cells_of(outlook.seen, config_.least_gain)) return std::nullopt;
+  return view;
 }
 
 std::optional<Pose2> Frontier::next(const Outlook& outlook) {

@@ -136,6 +136,7 @@ std::optional<Pose2> InformationGain::next(const Outlook& outlook) {
   std::optional<Pose2> chosen;
   double most = 0.0;
   for (const Option& option : best_) {
+    if (!worth_at_all(option.view, outlook.seen)) continue;
     simulate(outlook, option.view);
     const double value =
         static_cast<double>(outlook.seen.gain(poses_)) / std::max(option.time, 0.1);
@@ -147,10 +148,14 @@ std::optional<Pose2> InformationGain::next(const Outlook& outlook) {
   return chosen;
 }
 
+/// Its end alone; what is seen on the way comes on top.
+bool InformationGain::worth_at_all(const Pose2& view, SeenArea& seen) const {
+  return 2 * seen.gain({&view, 1}) >= cells_of(seen, config_.least_gain);
+}
+
 bool InformationGain::worth(const Pose2& view, SeenArea& seen) {
   const auto rest = static_cast<double>(seen.gain({&view, 1}));
-  return rest >= std::max(kDone * static_cast<double>(promised_),
-                          0.5 * static_cast<double>(cells_of(seen, config_.least_gain)));
+  return worth_at_all(view, seen) && rest >= kDone * static_cast<double>(promised_);
 }
 
 }  // namespace usher::explorer

@@ -38,6 +38,7 @@ class InformationGain final : public Strategy {
   void order_candidates(const Outlook& outlook);
   void try_place(const Outlook& outlook, Candidate& candidate, double way);
   void offer(const Option& option);
+  bool worth_at_all(const Pose2& view, SeenArea& seen) const;
   void simulate(const Outlook& outlook, const Pose2& view);
 
   StrategyConfig config_;

@@ -78,7 +78,7 @@ ExplorerConfig ExplorerComponent::read_parameters(runtime::Host& host) {
   c.most_failures = static_cast<int>(
       p.integer("most_failures", "-", {1, 100}, c.most_failures,
                 "So many viewpoints in a row that cannot be reached end the exploration."));
-  const double clearance = p.number("clearance", "m", {0, 1}, 0.05,
+  const double clearance = p.number("clearance", "m", {0, 1}, 0.08,
                                     "Around the outline, at viewpoints and on ways to them.");
   const auto footprint = wire::read_footprint(host);
   c.passing_room = footprint.inscribed_radius() + clearance;

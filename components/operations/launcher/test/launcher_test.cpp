@@ -1,8 +1,8 @@
 #include "operations/launcher/launcher.hpp"
 
 #include <gmock/gmock.h>
-#include <sched.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +10,7 @@
 #include <functional>
 #include <thread>
 
+#include "operations/launcher/precedence.hpp"
 #include "support/folder.hpp"
 
 namespace usher::operations {
@@ -114,24 +115,24 @@ TEST_F(Launching, ReadsBackWhatItWritesForAComponentWithoutParameters) {
 }
 
 TEST_F(Launching, LetsWhatMustAnswerInTimeGoFirst) {
-  const int before = sched_getscheduler(0);
-  const Precedence permitted = permitted_precedence();
-  EXPECT_EQ(sched_getscheduler(0), before) << "asking changes nothing";
+  const int before = getpriority(PRIO_PROCESS, 0);
+  const bool permitted = may_go_first();
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), before) << "asking changes nothing";
   component("legs", "sleeper");
   component("ears", "sleeper");
   deployment_.files[0].critical = true;
   auto made = launcher();
-  const auto policy = [&](const char* name) {
+  const auto nice = [&](const char* name) {
     const pid_t pid = made.find(name)->pid;
-    return pid > 0 ? sched_getscheduler(pid) : -1;
+    return pid > 0 ? getpriority(PRIO_PROCESS, static_cast<id_t>(pid)) : before + 1;
   };
-  if (permitted == Precedence::kRealTime) {
-    EXPECT_TRUE(wait_for(made, [&] { return policy("legs") == SCHED_RR; }));
+  if (permitted) {
+    EXPECT_TRUE(wait_for(made, [&] { return nice("legs") == -10; }));
   } else {
     EXPECT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
-    EXPECT_THAT(events_, Contains(HasSubstr("cannot run in real time")));
+    EXPECT_THAT(events_, Contains(HasSubstr("cannot go before other programs")));
   }
-  EXPECT_TRUE(wait_for(made, [&] { return policy("ears") == before; }));
+  EXPECT_TRUE(wait_for(made, [&] { return nice("ears") == before; }));
 }
 
 TEST_F(Launching, RestartsAtOnceWhatWasKilled) {
@@ -240,8 +241,12 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
   const std::string order = folder_.path() + "/order";
   // Each writes its name when it is asked to end, and the base what the robot did then.
   for (const std::string name : {"base", "supervisor", "planner", "screen"}) {
-    program(name, "trap 'echo " + name + " >> " + order + "; exit 0' TERM\ntouch " +
-                      folder_.path() + "/ready_" + name + "\nwhile :; do sleep 0.01; done");
+    std::string script = "trap 'echo " + name;
+    script += " >> " + order;
+    script += "; exit 0' TERM\ntouch " + folder_.path();
+    script += "/ready_" + name;
+    script += "\nwhile :; do sleep 0.01; done";
+    program(name, script);
     component(name, name);
   }
   deployment_.movement = {{"base", Movement::kHolds}, {"planner", Movement::kAsks}};
