@@ -59,6 +59,14 @@ const std::vector<Experiment>& experiments() {
        "Thesis 4.4: figures 4.11 to 4.21, table 4.2 over DDS processes, scans against the truth; "
        "--only images without processes",
        run_depth_pipeline_experiment},
+      {"haar",
+       "OpenCV's cascades on annotated photographs: sensitivity, false positives, time; ROC beside "
+       "the meeting report's figure 9",
+       run_haar_experiment},
+      {"depth-model",
+       "Experiment D of the meeting report, simulated: faces and what cascades take for faces, "
+       "without and with depth models",
+       run_depth_model_experiment},
   };
   return all;
 }
