@@ -176,10 +176,12 @@ int calibrate(const Settings& settings) {
 
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   auto settings = std::make_shared<Settings>();
-  auto* command = app.add_subcommand("calibrate", "Measures mounts: usher calibrate kinect");
+  auto* command =
+      app.add_subcommand("calibrate", "Measures mounts and models: usher calibrate kinect | faces");
   auto* kinect = command->add_subcommand(
       "kinect",
       "Sweeps the tilt servo of a standing robot over free floor, fits mount height and angle");
+  add_calibrate_faces(*command, exit_code);
   command->require_subcommand(1);
   kinect->add_option("--domain", settings->domain, "DDS domain of the robot");
   kinect->add_option("--mount-x", settings->mount_x, "Kinect ahead of the axle [m], by ruler");

@@ -10,8 +10,10 @@ void add_inspection_commands(CLI::App& app, int& exit_code);  ///< status topics
 void add_operator_commands(CLI::App& app, int& exit_code);    ///< goto stop clear map
 void add_teleop_command(CLI::App& app, int& exit_code);       ///< teleop
 void add_host_commands(CLI::App& app, int& exit_code);        ///< keys install doctor
-void add_calibrate_command(CLI::App& app, int& exit_code);    ///< calibrate kinect
-void add_demo_command(CLI::App& app, int& exit_code);         ///< demo
+void add_calibrate_command(CLI::App& app, int& exit_code);    ///< calibrate
+/// `calibrate faces`, below it.
+void add_calibrate_faces(CLI::App& calibrate_command, int& exit_code);
+void add_demo_command(CLI::App& app, int& exit_code);  ///< demo
 void add_measuring_commands(
     CLI::App& app, int& exit_code);  ///< experiment bench: other programs of the installation
 

@@ -63,6 +63,14 @@ const std::vector<Experiment>& experiments() {
        "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
        "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",
        run_human_detection_experiment},
+      {"haar",
+       "OpenCV's cascades on annotated photographs: sensitivity, false positives, time; ROC beside "
+       "the meeting report's figure 9",
+       run_haar_experiment},
+      {"depth-model",
+       "Experiment D of the meeting report, simulated: faces and what cascades take for faces, "
+       "without and with depth models",
+       run_depth_model_experiment},
   };
   return all;
 }

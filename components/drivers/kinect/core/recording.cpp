@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -18,6 +19,7 @@ constexpr std::size_t kLargestFile = 16 << 20;
 constexpr std::size_t kMostFrames = 100'000;
 constexpr int kMostPixels = 4096;
 constexpr double kPeriod = 1.0 / 30.0;  // [s]
+constexpr double kOneMoment = 0.02;     // [s]
 
 /// The next number of a PGM header; nothing when there is none below 100 000.
 std::optional<int> next_number(std::span<const std::uint8_t> bytes, std::size_t& at) {
@@ -50,13 +52,34 @@ Result<std::vector<std::uint8_t>> read_file(const std::string& path) {
   return bytes;
 }
 
-/// The time in d-<time>-<stamp>.pgm [s].
-std::optional<double> time_of(const std::string& name) {
-  if (!name.starts_with("d-") || !name.ends_with(".pgm")) return std::nullopt;
+/// The time in d-<time>-<stamp>.pgm, of a depth image, or r-<time>-<stamp>.ppm, of a color image
+/// [s].
+std::optional<double> time_of(const std::string& name, bool color = false) {
+  if (!name.starts_with(color ? "r-" : "d-") || !name.ends_with(color ? ".ppm" : ".pgm"))
+    return std::nullopt;
   double time = 0.0;
   const auto [end, error] = std::from_chars(name.data() + 2, name.data() + name.size(), time);
   if (error != std::errc{} || *end != '-') return std::nullopt;
   return time;
+}
+
+/// Path of the color image that belongs to a depth image; empty when there is none. `time` is NaN
+/// where the recording has no index.
+std::string color_beside(const fs::path& folder, const std::string& depth, double time,
+                         const std::vector<std::pair<double, std::string>>& colors) {
+  if (std::isnan(time)) {
+    const fs::path path = (folder / depth).replace_extension(".ppm");
+    std::error_code error;
+    return fs::exists(path, error) ? path.string() : std::string();
+  }
+  double apart = kOneMoment;
+  std::string nearest;
+  for (const auto& [when, name] : colors) {
+    if (std::abs(when - time) > apart) continue;
+    apart = std::abs(when - time);
+    nearest = (folder / name).string();
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -86,16 +109,38 @@ Result<Frame> parse_pgm(std::span<const std::uint8_t> bytes, bool little_endian)
   return frame;
 }
 
+Result<ColorFrame> parse_ppm(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 2 || bytes[0] != 'P' || bytes[1] != '6')
+    return Error{"expected a PPM image (P6)"};
+  std::size_t at = 2;
+  const auto width = next_number(bytes, at);
+  const auto height = next_number(bytes, at);
+  const auto most = next_number(bytes, at);
+  if (!width || !height || !most) return Error{"the PPM header is not complete"};
+  if (*width < 1 || *height < 1 || *width > kMostPixels || *height > kMostPixels)
+    return Error{"a PPM image of " + std::to_string(*width) + " x " + std::to_string(*height)};
+  if (*most != 255)
+    return Error{"a color image has 8 bits, this one values up to " + std::to_string(*most)};
+  ++at;  // one white space after the header
+  const auto count = 3 * static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height);
+  if (at > bytes.size() || bytes.size() - at < count)
+    return Error{"the PPM image ends early: expected " + std::to_string(count) + " bytes"};
+  const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+  return ColorFrame{*width, *height, {first, first + static_cast<std::ptrdiff_t>(count)}};
+}
+
 Result<Recording> Recording::open(const std::string& folder, Values values) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return Error{folder + ": no folder with a recording"};
   Recording recording;
   recording.values_ = values;
   std::vector<std::string> names;
+  std::vector<std::pair<double, std::string>> colors;  // by time
   if (std::ifstream index(fs::path(folder) / "INDEX.txt"); index) {
     recording.little_endian_ = true;
     for (std::string line; std::getline(index, line) && names.size() < kMostFrames;) {
       if (time_of(line)) names.push_back(line);
+      if (const auto time = time_of(line, true)) colors.emplace_back(*time, line);
     }
   } else {
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -107,12 +152,15 @@ Result<Recording> Recording::open(const std::string& folder, Values values) {
   if (names.empty()) return Error{folder + ": holds no depth images (INDEX.txt or *.pgm)"};
   const auto first = time_of(names.front());
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto time = recording.little_endian_ ? time_of(names[i]) : std::nullopt;
-    const double since = time && first ? *time - *first : static_cast<double>(i) * kPeriod;
+    double time = std::nan("");
+    if (recording.little_endian_) time = time_of(names[i]).value_or(time);
+    const double since =
+        first && !std::isnan(time) ? time - *first : static_cast<double>(i) * kPeriod;
     if (!recording.times_.empty() && since < recording.times_.back())
       return Error{folder + "/INDEX.txt: the times go back at " + names[i]};
     recording.files_.push_back((fs::path(folder) / names[i]).string());
     recording.times_.push_back(since);
+    recording.colors_.push_back(color_beside(folder, names[i], time, colors));
   }
   return recording;
 }
@@ -125,6 +173,15 @@ Result<Frame> Recording::read(std::size_t index) const {
   if (values_ == Values::kRaw11) {
     for (std::uint16_t& value : frame->millimeters) value = millimeters_of_raw(value);
   }
+  return frame;
+}
+
+Result<ColorFrame> Recording::read_color(std::size_t index) const {
+  if (colors_[index].empty()) return Error{files_[index] + ": no color image of that moment"};
+  const auto bytes = read_file(colors_[index]);
+  if (!bytes) return Error{bytes.error()};
+  auto frame = parse_ppm(*bytes);
+  if (!frame) return Error{colors_[index] + ": " + frame.error()};
   return frame;
 }
 

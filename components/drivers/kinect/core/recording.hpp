@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/kinect/core/device.hpp"
+#include "foundation/imaging/color_image.hpp"
 
 namespace usher::kinect {
 
@@ -15,6 +16,18 @@ enum class Values { kMillimeters, kRaw11 };
 /// A 16-bit grey PGM image (P5, 256..65535, most significant byte first as the format wants it;
 /// recordings of libfreenect have the least significant one first). The error says what was found.
 Result<Frame> parse_pgm(std::span<const std::uint8_t> bytes, bool little_endian);
+
+/// A color image as it was recorded.
+struct ColorFrame {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  ///< red, green, blue, row by row from the top left
+
+  imaging::ColorImage view() const { return {width, height, rgb}; }
+};
+
+/// An 8-bit color PPM image (P6, 255). The error says what was found.
+Result<ColorFrame> parse_ppm(std::span<const std::uint8_t> bytes);
 
 /// A folder with recorded depth images: what stands in its INDEX.txt with names
 /// d-<time>-<stamp>.pgm (a recording of libfreenect's `record`), else all files *.pgm in the order
@@ -28,10 +41,15 @@ class Recording {
   double time(std::size_t index) const { return times_[index]; }
   /// Reads an image; blocks. The error names the file.
   Result<Frame> read(std::size_t index) const;
+  /// The color image of the same moment (at most 20 ms apart): r-<time>-<stamp>.ppm of INDEX.txt,
+  /// else the file NAME.ppm beside NAME.pgm. Blocks. The error names the file, or says that none
+  /// was recorded.
+  Result<ColorFrame> read_color(std::size_t index) const;
 
  private:
   std::vector<std::string> files_;
   std::vector<double> times_;
+  std::vector<std::string> colors_;  // of each depth image; empty: none
   Values values_ = Values::kMillimeters;
   bool little_endian_ = false;
 };

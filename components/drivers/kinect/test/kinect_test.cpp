@@ -45,6 +45,19 @@ TEST(Pgm, ThatIsNoneIsRefusedWithTheReason) {
   EXPECT_FALSE(parse_pgm(pgm("P5\n0 1\n65535\n", {}), false).ok());
 }
 
+TEST(Ppm, IsReadOrRefusedWithTheReason) {
+  const auto color = parse_ppm(pgm("P6 2 1 255\n", {1, 2, 3, 4, 5, 6}));
+  ASSERT_TRUE(color.ok()) << color.error();
+  EXPECT_EQ(color->width, 2);
+  EXPECT_EQ(color->height, 1);
+  EXPECT_THAT(color->rgb, testing::ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(parse_ppm({}).error(), HasSubstr("P6"));
+  EXPECT_THAT(parse_ppm(pgm("P6 2", {})).error(), HasSubstr("header"));
+  EXPECT_THAT(parse_ppm(pgm("P6 2 1 255\n", {1, 2, 3, 4, 5})).error(), HasSubstr("ends early"));
+  EXPECT_THAT(parse_ppm(pgm("P6 2 1 65535\n", {1, 2, 3, 4, 5, 6})).error(), HasSubstr("8 bits"));
+  EXPECT_FALSE(parse_ppm(pgm("P6 99999 99999 255\n", {})).ok());
+}
+
 TEST(Pgm, SurvivesAnyBytes) {
   Random random(3);
   for (int round = 0; round < 5000; ++round) {

@@ -12,9 +12,10 @@ namespace usher::face_detector {
 
 namespace {
 
-constexpr int kBeside = 2;       // sizes that are looked at beside those that passed
-constexpr double kAround = 0.2;  // of a window, that is looked at around those that passed
-constexpr double kSlack = 0.05;  // of the depth, over half a size
+constexpr int kBeside = 2;           // sizes that are looked at beside those that passed
+constexpr double kAround = 0.2;      // of a window, that is looked at around those that passed
+constexpr double kOfAWindow = 0.35;  // of the depth: those of one face differ that much in size
+constexpr double kSlack = 0.05;      // of the depth, over half a size
 
 Status check_pair(const imaging::ColorImage& color, const imaging::DepthImage& depth) {
   const auto words = [](int width, int height) {
@@ -242,6 +243,19 @@ void FaceDetector::judge(const std::vector<Hit>& hits, const imaging::DepthImage
   if (faces_.size() > kMostFaces) faces_.resize(kMostFaces);
 }
 
+/// Windows that another surface is behind, say a picture on the wall beside a head, must not
+/// become one with those of the head.
+void FaceDetector::drop_implausible(const imaging::DepthImage& depth) {
+  Plausibility rules = config_.rules;
+  rules.tolerance = std::max(rules.tolerance, kOfAWindow);
+  std::erase_if(search_->close, [&](const cv::Rect& window) {
+    const cv::Rect2d wide = window;
+    const Box box{wide.x, wide.y, wide.width, wide.height};
+    const auto measured = middle_depth(depth, box, rules, scratch_);
+    return !measured || !plausible(box, *measured, depth.width, config_.model, rules);
+  });
+}
+
 Result<std::span<const Face>> FaceDetector::find(const imaging::ColorImage& color,
                                                  const imaging::DepthImage& depth) {
   if (const auto status = check_pair(color, depth); !status) return Error{status.error()};
@@ -257,6 +271,7 @@ Result<std::span<const Face>> FaceDetector::find(const imaging::ColorImage& colo
   }
   s.searched /= static_cast<double>(s.gray.total() * s.sides.size());
   s.look_closely();
+  drop_implausible(depth);
   judge(s.hits(), depth, config_.rules.relief);
   return std::span<const Face>(faces_);
 }

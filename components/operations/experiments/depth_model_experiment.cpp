@@ -1,0 +1,197 @@
+#include <array>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "foundation/random/random.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/experiment.hpp"
+#include "operations/experiments/line_plot.hpp"
+#include "operations/face_study/stage.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using face_detector::Box;
+using face_detector::DepthModel;
+using face_detector::FaceDetector;
+using face_detector::FaceDetectorConfig;
+using face_detector::FaceSample;
+using face_study::Stage;
+
+constexpr int kPoses = 100;
+constexpr std::size_t kFeatures = 11;
+constexpr double kHalfView = 0.45;  // of the distance: as far aside a face is whole in the image
+
+bool covers(const Box& box, const Box& point) {
+  return std::abs(box.column() - point.left) < 0.5 * box.width &&
+         std::abs(box.row() - point.top) < 0.5 * box.height;
+}
+
+Eigen::Vector3d face_of(const rendering::Body& body) { return rendering::head_of(body).middle; }
+
+/// Two people, one tall and one short, step back before the camera (report III-B-4): in the middle
+/// of the image, or towards a side.
+Result<face_detector::FittedModel> step_back(FaceDetector& anywhere, Stage& stage, bool center) {
+  std::vector<FaceSample> samples;
+  std::vector<std::uint16_t> scratch;
+  const DepthModel usual;
+  for (const double height : {1.65, 1.85}) {
+    for (double ahead = 0.8; ahead <= 3.5; ahead += 0.06) {
+      for (const double side : {-1.0, 1.0}) {
+        const double left = side * ahead * (center ? 0.08 : 0.36);
+        const auto body = face_study::standing(ahead, left, height);
+        const auto& shot = stage.shoot({body});
+        const Box place = stage.pixel_of(face_of(body));
+        for (const auto& hit : anywhere.find_anywhere(shot.color())) {
+          if (!covers(hit.box, place) || usual.is_center(hit.box.column(), shot.width) != center)
+            continue;
+          const auto depth = face_detector::middle_depth(shot.depth(), hit.box, {}, scratch);
+          if (depth) samples.push_back({hit.box.width, *depth});
+        }
+      }
+    }
+  }
+  return face_detector::fit_size_model(samples);
+}
+
+struct Judged {
+  const char* name;
+  int found = 0;            // poses whose face was found
+  int false_positives = 0;  // over all poses
+  std::array<bool, kFeatures> taken{};
+  int features() const { return static_cast<int>(std::count(taken.begin(), taken.end(), true)); }
+};
+
+template <class Boxes>
+void judge(const Boxes& boxes, const Box& face, const std::vector<Box>& features, Judged& judged) {
+  bool found = false;
+  for (const auto& one : boxes) {
+    if (covers(one.box, face)) {
+      found = true;
+      continue;
+    }
+    ++judged.false_positives;
+    for (std::size_t i = 0; i < features.size(); ++i)
+      judged.taken[i] = judged.taken[i] || covers(one.box, features[i]);
+  }
+  judged.found += found;
+}
+
+void draw(cv::Mat& picture, const Box& box, const cv::Scalar& color, int thickness) {
+  cv::rectangle(picture, cv::Rect2d(box.left, box.top, box.width, box.height), color, thickness,
+                cv::LINE_AA);
+}
+
+/// Refused rectangles in red, those of our search in green.
+cv::Mat drawn(const Stage::Shot& shot, const std::vector<face_detector::Hit>& hits,
+              std::span<const face_detector::Face> faces) {
+  const cv::Mat rgb(shot.height, shot.width, CV_8UC3, const_cast<std::uint8_t*>(shot.rgb.data()));
+  cv::Mat picture;
+  cv::cvtColor(rgb, picture, cv::COLOR_RGB2BGR);
+  for (const auto& hit : hits) draw(picture, hit.box, {60, 60, 220}, 1);
+  for (const auto& face : faces) draw(picture, face.box, {80, 190, 60}, 3);
+  return picture;
+}
+
+Status draw_roc(const std::vector<Judged>& all, const std::string& path) {
+  constexpr std::array<std::array<int, 3>, 4> kColors{
+      {{200, 60, 50}, {210, 150, 40}, {40, 100, 190}, {60, 150, 80}}};
+  std::vector<Curve> curves;
+  for (const Judged& one : all) {
+    const auto& color = kColors[curves.size() % kColors.size()];
+    const double x = static_cast<double>(one.features()) / kFeatures, y = one.found / 100.0;
+    const double nan = std::nan("");
+    constexpr double kWide = 0.008, kHigh = 0.015;  // a cross
+    curves.push_back(
+        {one.name,
+         color[0],
+         color[1],
+         color[2],
+         {{x - kWide, y}, {x + kWide, y}, {nan, nan}, {x, y - kHigh}, {x, y + kHigh}}});
+  }
+  curves.push_back({"", 255, 255, 255, {{1.0, 1.0}}});  // the whole axes
+  return draw_plot(curves, "Experiment D, simulated: alt without and with depth models",
+                   "1 - specificity: things ever taken for a face, of 11", "sensitivity", path);
+}
+
+}  // namespace
+
+Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options) {
+  auto empty = Stage::make(0, 1);
+  auto stage = Stage::make(kFeatures, 2);
+  auto anywhere = FaceDetector::make(face_detector::cascade_file("alt", ""), {});
+  if (!empty || !stage) return Error{empty ? stage.error() : empty.error()};
+  if (!anywhere) return Error{anywhere.error()};
+
+  show_progress("two people step back");
+  const auto center = step_back(*anywhere, *empty, true);
+  const auto side = step_back(*anywhere, *empty, false);
+  if (!center || !side) return Error{center ? side.error() : center.error()};
+  FaceDetectorConfig first, second;
+  first.model = {center->model, center->model};
+  second.model = {center->model, side->model};
+  auto model_1 = FaceDetector::make(face_detector::cascade_file("alt", ""), first);
+  auto model_2 = FaceDetector::make(face_detector::cascade_file("alt", ""), second);
+  if (!model_1 || !model_2) return Error{model_1 ? model_2.error() : model_1.error()};
+
+  std::vector<Box> features;
+  for (const auto& feature : stage->features()) features.push_back(stage->pixel_of(feature));
+  std::vector<Judged> all{{"no model"}, {"depth model 1"}, {"depth model 2"}, {"our search"}};
+  std::string csv = "ahead,left,height,none,model_1,model_2,search\n";
+  Random random(stream_seed(4, "poses"));
+  cv::Mat pictures;
+  for (int pose = 0; pose < kPoses; ++pose) {
+    show_progress(std::to_string(pose + 1) + " of " + std::to_string(kPoses));
+    const double ahead = random.uniform(1.25, 3.3);
+    const auto body = face_study::standing(ahead, ahead * random.uniform(-kHalfView, kHalfView),
+                                           random.uniform(1.6, 1.85));
+    const auto& shot = stage->shoot({body});
+    const Box face = stage->pixel_of(face_of(body));
+    const std::array<int, 4> before{all[0].found, all[1].found, all[2].found, all[3].found};
+    const auto hits = anywhere->find_anywhere(shot.color());
+    judge(hits, face, features, all[0]);
+    judge(*model_1->find_as_printed(shot.color(), shot.depth()), face, features, all[1]);
+    judge(*model_2->find_as_printed(shot.color(), shot.depth()), face, features, all[2]);
+    const auto found = model_2->find(shot.color(), shot.depth());
+    judge(*found, face, features, all[3]);
+    csv +=
+        format("%.3f,", body.pose.x) + format("%.3f,", body.pose.y) + format("%.3f", body.height);
+    for (std::size_t i = 0; i < all.size(); ++i) csv += all[i].found > before[i] ? ",1" : ",0";
+    csv += "\n";
+    if (pose < 4) pictures.push_back(drawn(shot, hits, *found));
+  }
+  show_progress("");
+
+  ResultSheet sheet;
+  sheet.name = "depth-model";
+  sheet.input =
+      "a rendered room, one person at 100 places, 11 things that cascades take for faces, alt";
+  Table table({"", "found of 100", "false positives", "things ever taken for a face, of 11"});
+  const std::array<const char*, 4> keys{"none", "model_1", "model_2", "search"};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string key = keys[i];
+    table.add({all[i].name, std::to_string(all[i].found), std::to_string(all[i].false_positives),
+               std::to_string(all[i].features())});
+    sheet.metrics[key + "_sensitivity"] = all[i].found / static_cast<double>(kPoses);
+    sheet.metrics[key + "_false_positives"] = all[i].false_positives;
+    sheet.metrics[key + "_things_taken"] = all[i].features();
+  }
+  sheet.metrics["center_residual_percent"] = 100.0 * center->residual;
+  sheet.metrics["side_residual_percent"] = 100.0 * side->residual;
+  sheet.published["model_2_false_positives"] = 0;
+  sheet.targets["search_false_positives"] = {Bound::kAtMost, 0};
+  sheet.targets["search_sensitivity"] = {Bound::kAtLeast, sheet.metrics["none_sensitivity"]};
+  sheet.flags["every_thing_is_taken_for_a_face_without_depth"] = all[0].features() == kFeatures;
+  std::printf("%s\n", table.text().c_str());
+  Status saved = write_file(options.out + "/models.md", table.markdown());
+  if (saved) saved = write_file(options.out + "/poses.csv", csv);
+  if (saved) saved = draw_roc(all, options.out + "/roc.png");
+  if (saved && !cv::imwrite(options.out + "/poses.png", pictures))
+    saved = Error{"cannot write " + options.out + "/poses.png"};
+  if (!saved) return Error{saved.error()};
+  return sheet;
+}
+
+}  // namespace usher::operations

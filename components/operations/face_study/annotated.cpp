@@ -1,0 +1,137 @@
+#include "operations/face_study/annotated.hpp"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+namespace usher::face_study {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kShared = 0.35;
+constexpr int kDarts = 16;
+
+Result<AnnotatedPicture> read_picture(const fs::path& path) {
+  const cv::Mat bgr = cv::imread(path.string(), cv::IMREAD_COLOR);
+  if (bgr.empty()) return Error{path.string() + ": no picture"};
+  AnnotatedPicture picture;
+  picture.name = path.stem().string();
+  cv::cvtColor(bgr, picture.rgb, cv::COLOR_BGR2RGB);
+  return picture;
+}
+
+Status read_dlib(const fs::path& file, std::vector<AnnotatedPicture>& pictures) {
+  tinyxml2::XMLDocument document;
+  if (document.LoadFile(file.string().c_str()) != tinyxml2::XML_SUCCESS)
+    return Error{file.string() + ": " + document.ErrorStr()};
+  const auto* images = tinyxml2::XMLHandle(document)
+                           .FirstChildElement("dataset")
+                           .FirstChildElement("images")
+                           .ToElement();
+  if (images == nullptr) return Error{file.string() + ": expected <dataset><images>"};
+  for (const auto* image = images->FirstChildElement("image"); image != nullptr;
+       image = image->NextSiblingElement("image")) {
+    const char* name = image->Attribute("file");
+    if (name == nullptr) return Error{file.string() + ": an image without a file"};
+    auto picture = read_picture(file.parent_path() / name);
+    if (!picture) return Error{picture.error()};
+    for (const auto* box = image->FirstChildElement("box"); box != nullptr;
+         box = box->NextSiblingElement("box")) {
+      picture->faces.emplace_back(box->DoubleAttribute("left"), box->DoubleAttribute("top"),
+                                  box->DoubleAttribute("width"), box->DoubleAttribute("height"));
+    }
+    pictures.push_back(std::move(picture).value());
+  }
+  return {};
+}
+
+/// Four numbers with commas between them; nothing when the line is something else.
+std::optional<cv::Rect2d> box_of(const std::string& line) {
+  double values[4] = {};
+  const char* at = line.data();
+  const char* end = at + line.size();
+  for (double& value : values) {
+    while (at < end && (*at == ' ' || *at == ',' || *at == '\t')) ++at;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc{}) return std::nullopt;
+    at = next;
+  }
+  return cv::Rect2d(values[0], values[1], values[2], values[3]);
+}
+
+Status read_bristol(const fs::path& folder, std::vector<AnnotatedPicture>& pictures) {
+  for (int i = 0; i < kDarts; ++i) {
+    const std::string name = "dart" + std::to_string(i);
+    if (!fs::exists(folder / (name + ".jpg"))) continue;
+    auto picture = read_picture(folder / (name + ".jpg"));
+    if (!picture) return Error{picture.error()};
+    const fs::path points = folder / (name + "points.csv");
+    std::ifstream stream(points);
+    if (!stream) return Error{points.string() + ": cannot be opened"};
+    for (std::string line; std::getline(stream, line);) {
+      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+      const auto box = box_of(line);
+      if (!box) return Error{points.string() + ": expected x, y, width, height, found " + line};
+      picture->faces.push_back(*box);
+    }
+    pictures.push_back(std::move(picture).value());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder) {
+  std::vector<AnnotatedPicture> pictures;
+  const fs::path root = folder;
+  for (const char* name : {"training.xml", "testing.xml"}) {
+    if (!fs::exists(root / "dlib" / name)) continue;
+    if (const auto status = read_dlib(root / "dlib" / name, pictures); !status)
+      return Error{status.error()};
+  }
+  if (const auto status = read_bristol(root / "bristol", pictures); !status)
+    return Error{status.error()};
+  if (pictures.empty())
+    return Error{folder + ": expected dlib/testing.xml or bristol/dart0.jpg, found neither"};
+  return pictures;
+}
+
+FaceScore& FaceScore::operator+=(const FaceScore& other) {
+  faces += other.faces, found += other.found;
+  false_positives += other.false_positives, pictures += other.pictures;
+  return *this;
+}
+
+FaceScore judge(const std::vector<face_detector::Hit>& hits, const std::vector<cv::Rect2d>& faces) {
+  FaceScore score;
+  score.pictures = 1;
+  score.faces = static_cast<int>(faces.size());
+  std::vector<bool> taken(faces.size(), false);
+  for (const auto& hit : hits) {
+    const cv::Rect2d box(hit.box.left, hit.box.top, hit.box.width, hit.box.height);
+    double best = kShared;
+    std::size_t which = faces.size();
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const double common = (box & faces[i]).area();
+      const double share = common / (box.area() + faces[i].area() - common);
+      if (!taken[i] && share >= best) best = share, which = i;
+    }
+    if (which == faces.size()) {
+      ++score.false_positives;
+    } else {
+      taken[which] = true;
+      ++score.found;
+    }
+  }
+  return score;
+}
+
+}  // namespace usher::face_study
