@@ -30,6 +30,7 @@ constexpr double kWalks = 0.3;      // [m/s] slower, the costs say all
 constexpr double kPolite = 6.0;     // [s] that it gives way
 constexpr double kMetAnew = 3.0;    // [s] without anybody, until it does so again
 constexpr double kSamePlace = 0.3;  // [m]
+constexpr int kMostToAndFro = 3;    // moves that free one corner and touch with the other
 constexpr double kSoon = 0.65;      // [rad] of a turn whose room bounds its rate now
 
 Status check(const DynamicWindowConfig& c) {
@@ -323,15 +324,27 @@ std::optional<Decision> DynamicWindow::free_corner(const Input& input, double an
   const bool behind = angle > 0.0 ? t.back_right : t.back_left;
   if (in_front == behind) return std::nullopt;
   if (in_front ? t.back_left || t.back_right : t.front_left || t.front_right) return std::nullopt;
-  Decision decision = recover(input, {in_front ? -config_.slowest : config_.slowest, 0.0});
+  const int way = in_front ? -1 : 1;
+  forget_other_places(input.pose.position());
+  if (barred_.freeing == -way) ++barred_.to_and_fro;
+  barred_.freeing = way;
+  if (barred_.to_and_fro > kMostToAndFro) return halt(input, Reason::kBlocked, config_.braking);
+  Decision decision = recover(input, {way * config_.slowest, 0.0});
   if (decision.blocked) return std::nullopt;
   return decision;
+}
+
+/// Forgets what barred turns elsewhere.
+void DynamicWindow::forget_other_places(const geometry::Point2& position) {
+  if ((position - barred_.at).norm() <= kSamePlace) return;
+  barred_ = {};
+  barred_.at = position;
 }
 
 /// Counts a turn that cannot go on. Twice in both senses at one place, and there is no room: more
 /// to and fro would not find any.
 bool DynamicWindow::is_given_up(const geometry::Point2& position, int sense) {
-  if ((position - barred_.at).norm() > kSamePlace) barred_ = {position, 0, 0};
+  forget_other_places(position);
   if (turning_ == sense) ++(sense > 0 ? barred_.left : barred_.right);
   return barred_.left >= 2 && barred_.right >= 2;
 }
@@ -465,9 +478,10 @@ Decision DynamicWindow::follow(const Input& input) {
   const double slow = std::min({fastest, config_.tight_speed, config_.pace});
   tight_ = true;
   decision = drive(input, {&whole_, &narrow_}, slow, config_.tight_speed);
-  // Who overlaps part of a cell already must be let out by its center.
+  // Who overlaps part of a cell already must be let out by its center, no corner swinging out.
   if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {
-    decision = drive(input, {&center_, &whole_}, slow, config_.tight_speed);
+    decision = drive(input, {&center_, &whole_}, slow,
+                     config_.tight_turn * config_.footprint.circumscribed_radius());
   }
   decision.reason = Reason::kTight;
   return with_obstacle(decision.admissible > 0 ? decision : brake(input));
@@ -524,14 +538,31 @@ Decision DynamicWindow::recover(const Input& input, const Twist2& target) {
   return decision;
 }
 
+/// The sense of turn that takes the tail from what it feels before it can go back (the thesis,
+/// fig. 6.3); 0: it feels nothing, or as much on both sides. What touches both whiskers of a side
+/// stands beside the robot and bars no way back.
+int DynamicWindow::turn_of_tail() const {
+  const bool left = touches_.back_left && !touches_.front_left;
+  const bool right = touches_.back_right && !touches_.front_right;
+  return static_cast<int>(left) - static_cast<int>(right);
+}
+
 Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                  const Twist2& measured, const Twist2& last_command,
                                  double seconds_since_last, double speed) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   if (!pose.finite()) return refused();
+  barred_ = {};
   const double turn = trail_.turn_rate_back(pose, speed);
   const Input input{costs, pose, measured, last_command, seconds, {}, {}};
+  if (const int away = turn_of_tail(); away != 0) {
+    if (!valid(input)) return refused();
+    load(input);
+    const double rate = std::min(turn_rate(input, away * kAligned), 2.0 * config_.tight_turn);
+    return rate > 0.0 ? recover(input, {0.0, away * rate})
+                      : halt(input, Reason::kBlocked, config_.braking);
+  }
   const Decision back = recover(input, {-speed, turn});
   return back.blocked ? recover(input, {-speed, 0.0}) : back;
 }

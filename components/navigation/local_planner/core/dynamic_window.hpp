@@ -163,9 +163,11 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);
   Decision recover(const Input& input, const geometry::Twist2& target);
+  int turn_of_tail() const;
   bool must_turn_first(const Input& input, double& heading);
   bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
   bool is_given_up(const geometry::Point2& position, int sense);
+  void forget_other_places(const geometry::Point2& position);
   double turn_rate(const Input& input, double angle) const;
   geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;
 
@@ -200,6 +202,8 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   struct {
     geometry::Point2 at = geometry::Point2::Constant(1e9);
     int left = 0, right = 0;
+    int freeing = 0;  // +1, -1: the last corner was freed forward, back
+    int to_and_fro = 0;
   } barred_;  // how often a turn at a place could not go on in a sense
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;

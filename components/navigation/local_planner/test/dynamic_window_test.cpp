@@ -341,6 +341,23 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   }
 }
 
+TEST(Turning, GivesUpToAndFroBetweenTwoTouchedCorners) {
+  const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  ASSERT_TRUE(planner.set_path(path).ok());
+  int moves = 0;
+  const auto frees = [&](bool in_front) {
+    planner.set_touches(in_front ? Touches{.front_left = true} : Touches{.back_right = true});
+    return planner.decide(empty_window(), {}, {}, {}, 0.05).reason == Reason::kRecovering;
+  };
+  while (moves < 20 && frees(moves % 2 == 0)) ++moves;
+  EXPECT_EQ(moves, 4);
+  EXPECT_FALSE(frees(true)) << "and stays so";
+  planner.set_touches({});
+  EXPECT_FALSE(planner.back_off(empty_window(), {}, {}, {}, 0.05, 0.15).blocked);
+  EXPECT_TRUE(frees(true)) << "after a recovery it may try again";
+}
+
 TEST(BackingOff, FollowsTheWayThatItCame) {
   // It drove a bend to the left; back along it, its tail swings to the right and its yaw falls.
   DynamicWindow planner = planner_to(3.0);
@@ -362,6 +379,30 @@ TEST(BackingOff, FollowsTheWayThatItCame) {
     ASSERT_LT(off, 0.05) << i;
   }
   EXPECT_NEAR(pose.yaw, 60 * 0.05 * 0.3 - 0.75 * 0.73, 0.15);
+}
+
+TEST(BackingOff, TurnsItsTailAwayFromWhatItTouches) {
+  struct Row {
+    Touches touches;
+    double v, w;  ///< signs of the command
+    bool blocked = false;
+  };
+  const Row rows[] = {
+      {{.back_right = true}, 0.0, -1.0},
+      {{.back_left = true}, 0.0, 1.0},
+      {{.front_right = true, .back_left = true}, 0.0, 1.0},    // across a door
+      {{.front_right = true, .back_right = true}, -1.0, 0.0},  // a wall beside it
+      {{.front_left = true, .front_right = true, .back_right = true}, -1.0, 0.0},
+      {{.front_left = true, .back_left = true, .back_right = true}, 0.0, 0.0, true},
+  };
+  for (const Row& row : rows) {
+    DynamicWindow planner = DynamicWindow::make({}).value();
+    planner.set_touches(row.touches);
+    const Decision decision = planner.back_off(empty_window(), {}, {}, {}, 0.05, 0.15);
+    EXPECT_EQ(decision.blocked, row.blocked);
+    EXPECT_EQ(decision.target.v < 0.0 ? -1.0 : decision.target.v, row.v);
+    EXPECT_EQ(decision.target.w > 0.0 ? 1.0 : decision.target.w < 0.0 ? -1.0 : 0.0, row.w);
+  }
 }
 
 TEST(BackingOff, StopsBeforeAWallBehind) {

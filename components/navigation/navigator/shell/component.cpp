@@ -235,11 +235,11 @@ Situation NavigatorComponent::situation() {
     const auto pose = transforms_.lookup_planar(frames::kMap, frames::kBaseFootprint, stamp);
     if (pose && host_.now() - stamp < kPoseAge) s.pose = *pose;
   }
-  // Nobody sees behind, but the robot has just come from there, and its rear whiskers feel. What
-  // touches both whiskers of a side stands beside it.
+  // Nobody sees behind, but the robot has just come from there, and its rear whiskers feel. From
+  // what one of them touches the local planner turns away; what touches all four stands beside it.
   const auto* t = whiskers_.fresh();
-  if (t != nullptr && (!t->back_left() || t->front_left()) &&
-      (!t->back_right() || t->front_right()))
+  if (t != nullptr &&
+      (!(t->back_left() && t->back_right()) || (t->front_left() && t->front_right())))
     s.rear_clearance = kTrail;
   s.person_ahead = somebody_ahead();
   s.hold = hold();

@@ -196,9 +196,12 @@ void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const Ro
     const Point2 from_robot = person.position - robot.pose.position();
     const Point2 heading(std::cos(robot.pose.yaw), std::sin(robot.pose.yaw));
     constexpr double kInFront = 2.5;  // [m]
+    constexpr double kTooNear = 0.7;  // of the distance kept
     const bool in_front = from_robot.norm() < kInFront && from_robot.dot(heading) > 0.0;
     if (in_front && robot_stands_ > config_.patience) {
       mind.goal = robot.pose.position() - config_.follow_distance * heading;
+    } else if (!in_front && from_robot.norm() < kTooNear * config_.follow_distance) {
+      mind.goal = person.position + 0.5 * unit(from_robot);  // it backs off: so does who follows
     } else if (in_front || from_robot.norm() < config_.follow_distance) {
       mind.goal = person.position;
     }

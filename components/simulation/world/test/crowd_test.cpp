@@ -70,5 +70,20 @@ TEST(Crowd, WalksAwayFromARobotThatBarsBothWaysAlongTheLoop) {
   EXPECT_GT(farthest, 4.0);
 }
 
+TEST(Crowd, WhoFollowsMakesRoomForARobotThatBacksOff) {
+  const PersonPlan plan{.name = "ada", .start = {-1.1, 0.0}, .speed = 1.2, .loop = {}};
+  Crowd crowd({}, std::span(&plan, 1), {0, 0}, 1);
+  const Scene scene = corridor();
+  ASSERT_TRUE(crowd.send("ada", {0, 0}, 1.2, true).ok());
+  double nearest = 99.0, x = 0.0;
+  for (; x > -1.0; x -= 0.15 * kStep) {
+    const Robot robot({x, 0.0, 0.0});
+    crowd.step(scene, {robot.pose, robot.footprint});
+    nearest = std::min(nearest, (crowd.people()[0].position - Point2(x, 0.0)).norm());
+  }
+  EXPECT_GT(nearest, 0.67) << "0.1 m of room between them";
+  EXPECT_LT(crowd.people()[0].position.x(), -1.6);
+}
+
 }  // namespace
 }  // namespace usher::world
