@@ -23,15 +23,16 @@ constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer t
 constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
-constexpr double kLaneGap = 0.05;   // [m] beside the clearance, to what stands on its side
-constexpr double kMeeting = 1.2;    // [m] of path within which somebody is met
-constexpr double kWalksOn = 0.2;    // [m/s] the same way: no meeting
-constexpr double kWalks = 0.3;      // [m/s] slower, the costs say all
-constexpr double kPolite = 6.0;     // [s] that it gives way
-constexpr double kMetAnew = 3.0;    // [s] without anybody, until it does so again
-constexpr double kSamePlace = 0.3;  // [m]
-constexpr int kMostToAndFro = 3;    // moves that free one corner and touch with the other
-constexpr double kSoon = 0.65;      // [rad] of a turn whose room bounds its rate now
+constexpr double kLaneGap = 0.05;    // [m] beside the clearance, to what stands on its side
+constexpr double kMeeting = 1.2;     // [m] of path within which somebody is met
+constexpr double kWalksOn = 0.2;     // [m/s] the same way: no meeting
+constexpr double kWalks = 0.3;       // [m/s] slower, the costs say all
+constexpr double kArmsLength = 0.4;  // [m] between robot and person
+constexpr double kPolite = 6.0;      // [s] that it gives way
+constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
+constexpr double kSamePlace = 0.3;   // [m]
+constexpr int kMostToAndFro = 3;     // moves that free one corner and touch with the other
+constexpr double kSoon = 0.65;       // [rad] of a turn whose room bounds its rate now
 
 Status check(const DynamicWindowConfig& c) {
   const CriticWeights& w = c.weights;
@@ -424,6 +425,17 @@ bool DynamicWindow::gives_way(const Input& input) {
   return met && gave_way_ < kPolite;
 }
 
+/// Whether somebody stands or walks within arm's length, not behind: range finders are blind there,
+/// and a step is quick.
+bool DynamicWindow::somebody_beside(const Input& input) const {
+  const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
+  return std::any_of(input.people.begin(), input.people.end(), [&](const MovingDisc& person) {
+    const geometry::Point2 way = person.position - input.pose.position();
+    return way.dot(heading) > -config_.footprint.inscribed_radius() &&
+           way.norm() < config_.footprint.inscribed_radius() + person.radius + kArmsLength;
+  });
+}
+
 Decision DynamicWindow::follow(const Input& input) {
   const double obstacle = obstacle_on_path(input);
   const auto with_obstacle = [obstacle](Decision decision) {
@@ -460,6 +472,7 @@ Decision DynamicWindow::follow(const Input& input) {
     }
     fastest = std::min(fastest, room);
   }
+  if (somebody_beside(input)) fastest = std::min(fastest, config_.careful_speed);
   fastest = std::max(fastest, config_.slowest);
   tight_ = false;
   // Squeezing is for where the plan leads through; past what stands on the plan only with room,

@@ -27,6 +27,7 @@ constexpr double kFarthestBack = 3.0;              // [m] of its own way that th
 constexpr double kFarthestTurn = 6.4;              // [rad] once around
 constexpr double kBody = 0.25;                     // [m] radius of a person
 constexpr double kSeenLately = 0.5;                // [s]
+constexpr double kBlind = 1.0;                     // [m] from the middle of the robot
 constexpr double kLongestPrediction = 0.1;         // [s] from the odometry's stamp to now
 constexpr double kPathShift = 0.005;               // [m] less is not worth placing the path anew
 constexpr double kPathTurn = 0.002;                // [rad]
@@ -221,12 +222,13 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
   if (mode_ == MODE_ROTATE)
     return follower_->rotate(costs, pose, measured, last_command_, elapsed,
                              std::copysign(turn_rate_, amount_));
-  place_people();
+  place_people(pose.position());
   return follower_->decide(costs, pose, measured, last_command_, elapsed, everybody_);
 }
 
-/// Everybody who was seen lately, where they are by now.
-void FollowerComponent::place_people() {
+/// Everybody who was seen lately, where they are by now; near the robot, where range finders are
+/// blind, also who was seen there before.
+void FollowerComponent::place_people(const geometry::Point2& here) {
   everybody_.clear();
   const auto* message = people_.fresh();
   if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
@@ -235,7 +237,8 @@ void FollowerComponent::place_people() {
     const geometry::Point2 velocity{person.vx(), person.vy()};
     const geometry::Point2 position = geometry::Point2{person.x(), person.y()} + age * velocity;
     if (!position.allFinite() || !velocity.allFinite()) continue;
-    if (static_cast<double>(person.unseen()) > kSeenLately) continue;
+    const bool near = (position - here).norm() < kBlind;
+    if (static_cast<double>(person.unseen()) > kSeenLately && !near) continue;
     everybody_.push_back({position, velocity, kBody});
   }
 }

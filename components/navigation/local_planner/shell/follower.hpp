@@ -39,7 +39,7 @@ class FollowerComponent : public runtime::Component {
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured);
-  void place_people();
+  void place_people(const geometry::Point2& here);
   bool place_path();
   void conclude(const Decision& decision, const geometry::Pose2& pose);
   void publish_status(std::uint8_t state, const std::string& reason, double remaining,

@@ -224,6 +224,20 @@ TEST(Decide, ForeseesWhoWalksAndIsNotBehind) {
   EXPECT_EQ(admissible({{{-0.5, 1.0}, {1.0, -0.5}, 0.25}}), alone) << "they see the robot";
 }
 
+TEST(Decide, CreepsPastWhoStandsWithinArmsLength) {
+  DynamicWindow planner = planner_to(8.0);
+  const auto speed = [&](const geometry::Point2& where) {
+    const std::vector<MovingDisc> person{{where, {0.0, 0.0}, 0.25}};
+    const Decision decision = planner.decide(empty_window(), {}, {0.5, 0}, {0.5, 0}, 0.05, person);
+    EXPECT_EQ(decision.reason, Reason::kFollowing);
+    return decision.target.v;
+  };
+  EXPECT_LE(speed({0.4, -0.7}), DynamicWindowConfig{}.careful_speed);
+  EXPECT_LE(speed({0.0, 0.7}), DynamicWindowConfig{}.careful_speed);
+  EXPECT_GT(speed({-0.6, 0.3}), 0.5) << "behind";
+  EXPECT_GT(speed({0.4, -1.2}), 0.5) << "out of reach";
+}
+
 TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
   DynamicWindow planner = planner_to(8.0);
   const auto reason = [&](const std::vector<MovingDisc>& people) {

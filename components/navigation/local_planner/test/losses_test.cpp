@@ -226,6 +226,17 @@ TEST_P(WindowLosses, GivesWayToSomebodyAndForeseesNobodyWhenPeopleAreSilent) {
   EXPECT_EQ(host.heartbeat().reason(), "");
 }
 
+TEST_P(WindowLosses, RemembersWhoWasLastSeenWhereTheLaserIsBlind) {
+  drive();
+  add_person(1.0, 0.0, 0.0, 0.0);
+  people.people().back().unseen(3.0F);
+  run(600);
+  const double beside = commanded().v;
+  people.people().back().x(2.0);  // farther away it would be seen
+  run(1500);
+  EXPECT_GT(commanded().v, beside + 0.1);
+}
+
 TEST_P(WindowLosses, LeavesOutPeopleWhoAreNone) {
   drive();
   add_person(kNan, 0.0, 0.0, 0.0);
