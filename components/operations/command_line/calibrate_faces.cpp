@@ -57,8 +57,11 @@ Status plot(const FaceSamples& samples, const FaceCalibration& found, const std:
   add_crosses(samples.side, found.side, side_seen, left_out);
   for (auto [model, curve] :
        {std::pair{&found.center.model, &center}, std::pair{&found.side.model, &side}}) {
-    for (double size = model->least; size <= model->most; size += 0.5)
+    const int steps = static_cast<int>(2.0 * (model->most - model->least));
+    for (int i = 0; i <= steps; ++i) {
+      const double size = model->least + 0.5 * i;
       curve->points.emplace_back(size, model->depth(size));
+    }
   }
   return draw_plot({center_seen, side_seen, left_out, center, side},
                    "Depth model: how far away a face of some size is", "size of the face [pixels]",

@@ -38,7 +38,8 @@ Result<face_detector::FittedModel> step_back(FaceDetector& anywhere, Stage& stag
   std::vector<std::uint16_t> scratch;
   const DepthModel usual;
   for (const double height : {1.65, 1.85}) {
-    for (double ahead = 0.8; ahead <= 3.5; ahead += 0.06) {
+    for (int step = 0; step < 46; ++step) {
+      const double ahead = 0.8 + 0.06 * step;
       for (const double side : {-1.0, 1.0}) {
         const double left = side * ahead * (center ? 0.08 : 0.36);
         const auto body = face_study::standing(ahead, left, height);

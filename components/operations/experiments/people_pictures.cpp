@@ -48,10 +48,10 @@ bool is_found(const people_study::Truth& truth,
 cv::Mat draw_people(const people_study::Studio::Shot& shot, const imaging::Intrinsics& camera,
                     const DrawnFindings& findings, const std::string& title) {
   cv::Mat picture(shot.processed.height, shot.processed.width, CV_8UC3);
+  std::size_t pixel = 0;
   for (int row = 0; row < picture.rows; ++row) {
     for (int column = 0; column < picture.cols; ++column) {
-      const double depth =
-          1e-3 * shot.processed.millimeters[static_cast<std::size_t>(row * picture.cols + column)];
+      const double depth = 1e-3 * shot.processed.millimeters[pixel++];
       const auto gray =
           static_cast<std::uint8_t>(depth > 0.0 ? 30.0 + 190.0 * std::min(1.0, depth / kFar) : 255);
       picture.at<cv::Vec3b>(row, column) = {gray, gray, gray};

@@ -84,7 +84,7 @@ TEST(Rectifier, StraightensWhatTheLensBends) {
   const imaging::Intrinsics camera = kinect_v2();
   const Rectifier rectifier = Rectifier::make(camera, kKinectV2Distortion, false).value();
   // Every pixel says its own column; the rectified image says where it came from.
-  Frame raw{512, 424, std::vector<std::uint16_t>(512 * 424)}, straight;
+  Frame raw{512, 424, std::vector<std::uint16_t>(std::size_t{512} * 424)}, straight;
   for (std::size_t i = 0; i < raw.millimeters.size(); ++i)
     raw.millimeters[i] = static_cast<std::uint16_t>(1 + i % 512);
   ASSERT_TRUE(rectifier.rectify(raw, straight).ok());

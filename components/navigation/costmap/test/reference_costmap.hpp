@@ -220,7 +220,7 @@ class ReferenceCostmap {
     std::uint8_t state = kUnseen;
     for (int dy = -around; dy <= around; ++dy) {
       for (int dx = -around; dx <= around; ++dx) {
-        const int occupancy = map_.value_or({at.x + dx, at.y + dy}, grid::kUnknown);
+        const std::int8_t occupancy = map_.value_or({at.x + dx, at.y + dy}, grid::kUnknown);
         const std::uint8_t here = occupancy < 0                        ? kUnseen
                                   : occupancy >= config_.occupied_from ? kSeenOccupied
                                                                        : kSeenFree;

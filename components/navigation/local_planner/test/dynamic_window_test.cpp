@@ -13,10 +13,11 @@ namespace usher::local_planner {
 namespace {
 
 using namespace testing_world;  // NOLINT: the test's own vocabulary
-using geometry::kPi;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+int sign(double value) { return static_cast<int>(value > 0.0) - static_cast<int>(value < 0.0); }
 
 Costs empty_window() { return Costs({120, 120, 0.05, -3.0, -3.0}); }
 
@@ -108,7 +109,8 @@ TEST(Decide, DoesNotLeapAfterAGap) {
 
 TEST(Decide, NeverAsksForASpeedThatCannotBeStoppedBeforeTheWall) {
   const kinematics::StoppingDistance stopping;
-  for (double wall = 0.5; wall < 2.4; wall += 0.1) {
+  for (int i = 0; i < 19; ++i) {
+    const double wall = 0.5 + 0.1 * i;
     for (const double v : {0.0, 0.3, 0.6, 1.0}) {
       DynamicWindow planner = planner_to(8.0);
       const Decision decision = planner.decide(wall_at(wall), {}, {v, 0}, {v, 0}, 0.05);
@@ -252,11 +254,10 @@ TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
                                                {{{-0.6, 0}, {0, 0}, 0.25}}};
   for (const auto& people : elsewhere) EXPECT_EQ(reason(people), Reason::kFollowing);
   EXPECT_EQ(reason(met), Reason::kGivingWay);
-  for (double waited = 0.0; waited < 5.0; waited += 0.05)
-    ASSERT_EQ(reason(met), Reason::kGivingWay) << waited;
-  for (double waited = 0.0; waited < 1.5; waited += 0.05) reason(met);
+  for (int cycle = 0; cycle < 100; ++cycle) ASSERT_EQ(reason(met), Reason::kGivingWay) << cycle;
+  for (int cycle = 0; cycle < 30; ++cycle) reason(met);
   EXPECT_EQ(reason(met), Reason::kFollowing) << "for ever it does not wait";
-  for (double waited = 0.0; waited < 3.5; waited += 0.05) reason({});
+  for (int cycle = 0; cycle < 70; ++cycle) reason({});
   EXPECT_EQ(reason(met), Reason::kGivingWay) << "somebody else";
 }
 
@@ -336,22 +337,22 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};
   struct Row {
     Touches touches;
-    double v, w;  ///< signs of the command
+    int v, w;  ///< signs of the command
   };
   const Row rows[] = {
-      {{}, 0.0, 1.0},
-      {{.back_right = true}, 1.0, 0.0},                       // the tail would swing into it
-      {{.front_left = true}, -1.0, 0.0},                      // the nose would
-      {{.front_right = true}, 0.0, 1.0},                      // turns away from it
-      {{.front_left = true, .back_right = true}, 0.0, -1.0},  // the long way round
+      {{}, 0, 1},
+      {{.back_right = true}, 1, 0},                       // the tail would swing into it
+      {{.front_left = true}, -1, 0},                      // the nose would
+      {{.front_right = true}, 0, 1},                      // turns away from it
+      {{.front_left = true, .back_right = true}, 0, -1},  // the long way round
   };
   for (const Row& row : rows) {
     DynamicWindow planner = DynamicWindow::make({}).value();
     ASSERT_TRUE(planner.set_path(path).ok());
     planner.set_touches(row.touches);
     const Decision decision = planner.decide(empty_window(), {}, {}, {}, 0.05);
-    EXPECT_EQ(decision.target.v > 0.0 ? 1.0 : decision.target.v < 0.0 ? -1.0 : 0.0, row.v);
-    EXPECT_EQ(decision.target.w > 0.0 ? 1.0 : decision.target.w < 0.0 ? -1.0 : 0.0, row.w);
+    EXPECT_EQ(sign(decision.target.v), row.v);
+    EXPECT_EQ(sign(decision.target.w), row.w);
   }
 }
 
@@ -398,24 +399,24 @@ TEST(BackingOff, FollowsTheWayThatItCame) {
 TEST(BackingOff, TurnsItsTailAwayFromWhatItTouches) {
   struct Row {
     Touches touches;
-    double v, w;  ///< signs of the command
+    int v, w;  ///< signs of the command
     bool blocked = false;
   };
   const Row rows[] = {
-      {{.back_right = true}, 0.0, -1.0},
-      {{.back_left = true}, 0.0, 1.0},
-      {{.front_right = true, .back_left = true}, 0.0, 1.0},    // across a door
-      {{.front_right = true, .back_right = true}, -1.0, 0.0},  // a wall beside it
-      {{.front_left = true, .front_right = true, .back_right = true}, -1.0, 0.0},
-      {{.front_left = true, .back_left = true, .back_right = true}, 0.0, 0.0, true},
+      {{.back_right = true}, 0, -1},
+      {{.back_left = true}, 0, 1},
+      {{.front_right = true, .back_left = true}, 0, 1},    // across a door
+      {{.front_right = true, .back_right = true}, -1, 0},  // a wall beside it
+      {{.front_left = true, .front_right = true, .back_right = true}, -1, 0},
+      {{.front_left = true, .back_left = true, .back_right = true}, 0, 0, true},
   };
   for (const Row& row : rows) {
     DynamicWindow planner = DynamicWindow::make({}).value();
     planner.set_touches(row.touches);
     const Decision decision = planner.back_off(empty_window(), {}, {}, {}, 0.05, 0.15);
     EXPECT_EQ(decision.blocked, row.blocked);
-    EXPECT_EQ(decision.target.v < 0.0 ? -1.0 : decision.target.v, row.v);
-    EXPECT_EQ(decision.target.w > 0.0 ? 1.0 : decision.target.w < 0.0 ? -1.0 : 0.0, row.w);
+    EXPECT_EQ(sign(decision.target.v), row.v);
+    EXPECT_EQ(sign(decision.target.w), row.w);
   }
 }
 

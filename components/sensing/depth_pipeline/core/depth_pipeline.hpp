@@ -14,6 +14,7 @@
 
 namespace usher::depth_pipeline {
 
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): in the order of the pipeline's steps
 struct PipelineConfig {
   FloorModel floor;
   double min_depth = 0.4;    ///< [m] {0.05..2} nearer pixels measured nothing
