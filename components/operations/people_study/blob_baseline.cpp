@@ -80,7 +80,8 @@ std::vector<Sighting> BlobBaseline::find(const imaging::DepthImage& image,
   bytes.convertTo(depth, CV_16U, 1e3 * kFar / 255.0);
   std::vector<Sighting> sightings;
   if (config_.regions) {
-    for (double near = 0.0; near < kFarthest; near += kRegion) {
+    for (int region = 0; region * kRegion < kFarthest; ++region) {
+      const double near = region * kRegion;
       const cv::Mat inside = (depth > 1e3 * near) & (depth <= 1e3 * (near + kRegion));
       cv::Mat slice = cv::Mat::zeros(depth.size(), CV_16U);
       depth.copyTo(slice, inside);

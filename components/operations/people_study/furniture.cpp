@@ -101,8 +101,9 @@ void add_table(Model& model, const Pose2& pose, double width, double depth) {
 
 void add_railing(Model& model, const Pose2& pose, double width) {
   add_box(model, pose, 0.04, width, 0.95, 1.0);
-  for (double y = -0.5 * width; y <= 0.5 * width; y += 0.25)
-    add_box(model, at(pose, 0.0, y), 0.03, 0.03, 0.0, 0.95);
+  constexpr double kApart = 0.25;  // [m]
+  for (int i = 0; i * kApart <= width; ++i)
+    add_box(model, at(pose, 0.0, i * kApart - 0.5 * width), 0.03, 0.03, 0.0, 0.95);
 }
 
 void add_lamp(Model& model, const Point2& place) {

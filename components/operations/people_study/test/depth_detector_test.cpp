@@ -24,7 +24,7 @@ TEST(DepthDetector, RefusesOtherImagesAndImpossibleViews) {
   const std::vector<std::uint16_t> small(100);
   EXPECT_NE(detector.find({10, 10, small}, {}).error().find("expected an image of 512 x 424"),
             std::string::npos);
-  const std::vector<std::uint16_t> image(512 * 424);
+  const std::vector<std::uint16_t> image(std::size_t{512} * 424);
   EXPECT_FALSE(detector.find({512, 424, image}, {.height = -1.0}));
   EXPECT_FALSE(
       detector.find({512, 424, image}, {.down = std::numeric_limits<double>::quiet_NaN()}));
@@ -37,7 +37,7 @@ TEST(DepthDetector, RefusesOtherImagesAndImpossibleViews) {
 TEST(DepthDetector, SurvivesAnyImage) {
   DepthDetector detector = detector_for({});
   Random random(5);
-  std::vector<std::uint16_t> image(512 * 424);
+  std::vector<std::uint16_t> image(std::size_t{512} * 424);
   for (int i = 0; i < 10; ++i) {
     for (std::uint16_t& pixel : image) pixel = static_cast<std::uint16_t>(random.next());
     const View view{random.uniform(0.05, 3.0), random.uniform(-1.2, 1.2), random.uniform(-1, 1)};

@@ -5,8 +5,6 @@
 namespace usher::people_detector {
 namespace {
 
-using geometry::radians;
-
 /// An optical frame as depth_pipeline writes it.
 geometry::Pose3 optical(const geometry::Point2& place, double height, double yaw, double down,
                         double roll) {

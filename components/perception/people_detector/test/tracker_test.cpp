@@ -133,7 +133,10 @@ TEST(Tracker, IgnoresWhatIsNotFiniteAndTimesOfThePast) {
   ASSERT_EQ(tracker.people().size(), 1U);
   EXPECT_TRUE(tracker.people()[0].state.allFinite());
   std::vector<Observation> crowd;
-  for (int i = 0; i < 500; ++i) crowd.push_back(at(i % 25, i / 25));
+  crowd.reserve(500);
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 25; ++column) crowd.push_back(at(column, row));
+  }
   for (int i = 0; i < 6; ++i) tracker.update(2.0 + i * kPeriod, Source::kKinect, crowd);
   EXPECT_LE(tracker.people().size(), Tracker::kMost);
 }

@@ -62,7 +62,8 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
     movers_.push_back({person.position, person.radius, top_of(person)});
   visible_.assign(people.size(), {});
   const auto things = static_cast<std::int32_t>(world.scene().things().size());
-  for (double height = 0.5 * kSlice; height < kTallest; height += kSlice) {
+  for (int slice = 0; (slice + 0.5) * kSlice < kTallest; ++slice) {
+    const double height = (slice + 0.5) * kSlice;
     const geometry::Pose3 plane{{origin.x, origin.y, height}, geometry::to_space(origin).rotation};
     caster_.cast(
         world.scene(), fan_, plane,

@@ -56,12 +56,12 @@ TEST(Crowd, WalksAwayFromARobotThatBarsBothWaysAlongTheLoop) {
   const PersonPlan plan{.name = "ada", .start = {}, .speed = 1.2, .loop = {{-8, 0}, {-4, 0}}};
   Crowd crowd({}, std::span(&plan, 1), {-12, 0}, 1);
   const Scene scene = corridor();
-  double x = -12.0;
-  for (; x < 0.0; x += 0.2 * kStep) {
-    const Robot robot({x, 0.0, 0.0});
+  const int steps = static_cast<int>(60.0 / kStep);
+  for (int i = 0; i < steps; ++i) {
+    const Robot robot({-12.0 + 0.2 * kStep * i, 0.0, 0.0});
     crowd.step(scene, {robot.pose, robot.footprint});
   }
-  const Robot robot({x, 0.0, 0.0});
+  const Robot robot({0.0, 0.0, 0.0});
   double farthest = 0.0;
   for (int i = 0; i < static_cast<int>(20.0 / kStep); ++i) {
     crowd.step(scene, {robot.pose, robot.footprint});
@@ -75,8 +75,9 @@ TEST(Crowd, WhoFollowsMakesRoomForARobotThatBacksOff) {
   Crowd crowd({}, std::span(&plan, 1), {0, 0}, 1);
   const Scene scene = corridor();
   ASSERT_TRUE(crowd.send("ada", {0, 0}, 1.2, true).ok());
-  double nearest = 99.0, x = 0.0;
-  for (; x > -1.0; x -= 0.15 * kStep) {
+  double nearest = 99.0;
+  for (int i = 0; i < static_cast<int>(6.7 / kStep); ++i) {
+    const double x = -0.15 * kStep * i;
     const Robot robot({x, 0.0, 0.0});
     crowd.step(scene, {robot.pose, robot.footprint});
     nearest = std::min(nearest, (crowd.people()[0].position - Point2(x, 0.0)).norm());
