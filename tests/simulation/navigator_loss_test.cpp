@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "simulation/driving_robot.hpp"
 
@@ -13,6 +14,17 @@ namespace {
 class NavigatorLoss : public DrivingRobot {
  protected:
   geometry::Point2 place() const { return run_->record().samples().back().truth.position(); }
+  /// Until it neither speeds up nor slows down.
+  void drive_steadily() {
+    double before = 0.0;
+    EXPECT_TRUE(becomes(
+        [&] {
+          run_->world().run_for(milliseconds(400));
+          const double change = std::abs(speed() - std::exchange(before, speed()));
+          return speed() > 0.3 && change < 0.05;
+        },
+        seconds(30)));
+  }
   /// How far the robot gets until it stands; it has this long.
   double way_to_stand(milliseconds limit) {
     const auto from = place();
@@ -28,7 +40,8 @@ class NavigatorLoss : public DrivingRobot {
     return condition();
   }
   void goes_on_to_its_goal() {
-    EXPECT_TRUE(becomes([&] { return speed() > 0.3; }, seconds(15))) << run_->complaints();
+    // Somebody may pass just then: it gives way for a while and creeps past.
+    EXPECT_TRUE(becomes([&] { return speed() > 0.15; }, seconds(30))) << run_->complaints();
     EXPECT_TRUE(becomes(
         [&] {
           const auto& status = run_->record().navigation();
@@ -45,6 +58,7 @@ class NavigatorLoss : public DrivingRobot {
 };
 
 TEST_F(NavigatorLoss, TheRobotStandsAndTheVisitGoesOnAfterItsRestart) {
+  drive_steadily();
   const double bound = allowed();
   run_->world().stop("navigator");
   EXPECT_LE(way_to_stand(seconds(4)), bound);
@@ -56,6 +70,7 @@ TEST_F(NavigatorLoss, TheRobotStandsAndTheVisitGoesOnAfterItsRestart) {
 }
 
 TEST_F(NavigatorLoss, TheRobotStandsAndGoesOnAfterItHung) {
+  drive_steadily();
   const double bound = allowed();
   run_->world().hang("navigator", milliseconds(3500));
   EXPECT_LE(way_to_stand(seconds(3)), bound);
