@@ -233,7 +233,7 @@ TEST_F(Hosts, MeetAcrossARouterWithSecurity) {
                  "hosts:\n  nuc: {peers: [" + networks->address_of_b() + "]}\n  tablet: {peers: [" +
                      networks->address_of_a() + "]}\n",
                  true);
-  EXPECT_TRUE(robot.wait_for([&] { return robot.all_is_well(); }, Seconds(120))) << robot.story();
+  EXPECT_TRUE(robot.wait_for([&] { return robot.all_is_well(); }, Seconds(240))) << robot.story();
 }
 
 }  // namespace
