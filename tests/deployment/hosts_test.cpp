@@ -9,6 +9,7 @@
 
 #include "deployment/running_robot.hpp"
 #include "deployment/two_networks.hpp"
+#include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::test {
@@ -227,6 +228,7 @@ TEST_F(Hosts, MeetAcrossARouterByPeers) {
 }
 
 TEST_F(Hosts, MeetAcrossARouterWithSecurity) {
+  if (signing_robot_starves()) GTEST_SKIP() << kSigningRobotStarves;
   const auto networks = Hosts::networks(TwoNetworks::Kind::kRouted);
   if (!networks) GTEST_SKIP() << "network namespaces are not permitted here";
   TwoHosts robot(*networks,

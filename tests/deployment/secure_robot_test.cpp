@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <thread>
 
 #include "deployment/running_robot.hpp"
 #include "operations/security/packet_attack.hpp"
@@ -23,20 +22,15 @@ using usher_msgs::msg::Heartbeat_Constants::STATE_OK;
 
 class SecureRobot : public testing::Test {
  protected:
-  /// Twenty processes that sign, slowed down by a sanitizer, starve on two cores: nothing is in
-  /// time, and nothing would be tested.
-  static bool starves() {
-    return kSanitizerFactor > 1.0 && std::thread::hardware_concurrency() < 4;
-  }
   static void SetUpTestSuite() {
-    if (!starves()) robot_ = new RunningRobot(true);
+    if (!signing_robot_starves()) robot_ = new RunningRobot(true);
   }
   static void TearDownTestSuite() {
     delete robot_;
     robot_ = nullptr;
   }
   void SetUp() override {
-    if (starves()) GTEST_SKIP() << "a whole signing robot under a sanitizer needs 4 cores";
+    if (signing_robot_starves()) GTEST_SKIP() << kSigningRobotStarves;
     ASSERT_TRUE(robot_->wait_for([] { return robot_->may_drive(); }, Seconds(60)))
         << robot_->complaints();
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <thread>
+
 namespace usher::test {
 
 /// How much longer things may take in a program that is built with a sanitizer: what the
@@ -13,5 +15,13 @@ inline constexpr double kSanitizerFactor = 6.0;
 #else
 inline constexpr double kSanitizerFactor = 1.0;
 #endif
+
+/// Twenty processes that sign, slowed down by a sanitizer, starve on two cores: nothing is in time,
+/// and nothing would be tested.
+inline bool signing_robot_starves() {
+  return kSanitizerFactor > 1.0 && std::thread::hardware_concurrency() < 4;
+}
+inline constexpr const char* kSigningRobotStarves =
+    "a whole signing robot under a sanitizer needs 4 cores";
 
 }  // namespace usher::test
