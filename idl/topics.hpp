@@ -189,7 +189,7 @@ inline constexpr Topic<usher_msgs::msg::SupervisorRequest> kSupervisorRequest{
     Kind::kEvent,
     32,
     0,
-    "guide manual_control tablet operator",
+    "guide manual_control meeting tablet operator",
     "Changes of the supervisor's state."};
 
 // --- Localization and maps
@@ -260,12 +260,12 @@ inline constexpr Topic<usher_msgs::msg::NavigateGoal> kNavigateGoal{
     Kind::kEvent,
     32,
     0,
-    "guide explorer operator",
+    "guide explorer meeting operator",
     "Where to go; the newest goal wins."};
 inline constexpr Topic<geometry_msgs::msg::PoseStamped> kGoalPose{
     "goal_pose", Kind::kEvent, 32, 0, "operator", "The same from rviz."};
 inline constexpr Topic<usher_msgs::msg::GoalCancel> kNavigateCancel{
-    "navigate/cancel", Kind::kEvent, 32, 0, "guide explorer operator", "Give up the goal."};
+    "navigate/cancel", Kind::kEvent, 32, 0, "guide explorer meeting operator", "Give up the goal."};
 inline constexpr Topic<usher_msgs::msg::NavigateStatus> kNavigateStatus{
     "navigate/status", Kind::kLatched, 1, 5, "navigator", "Progress, time left, outcome."};
 inline constexpr Topic<usher_msgs::msg::NavigatePace> kNavigatePace{
@@ -290,9 +290,9 @@ inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kExploreCoverage{
 
 // --- Dialogue
 inline constexpr Topic<usher_msgs::msg::DialogueScreen> kDialogueScreen{
-    "dialogue/screen", Kind::kLatched, 1, 0, "guide", "What the visitor sees and hears."};
+    "dialogue/screen", Kind::kLatched, 1, 0, "guide meeting", "What the visitor sees and hears."};
 inline constexpr Topic<usher_msgs::msg::DialogueAnswer> kDialogueAnswer{
-    "dialogue/answer",        Kind::kEvent, 32, 0, "visitor tablet speech operator",
+    "dialogue/answer",        Kind::kEvent, 32, 0, "attendees visitor tablet speech operator",
     "What the visitor chose."};
 inline constexpr Topic<usher_msgs::msg::GuideStatus> kGuideStatus{
     "guide/status", Kind::kLatched, 1, 1, "guide", "This visit and the funnel of all visits."};
@@ -300,6 +300,16 @@ inline constexpr Topic<usher_msgs::msg::GuideVisit> kGuideVisit{
     "guide/visit", Kind::kEvent, 32, 0, "guide", "A visit is over."};
 inline constexpr Topic<usher_msgs::msg::Visitor> kVisitor{
     "visitor", Kind::kStream, 1, 10, "people_detector", "The person whom the robot serves."};
+
+// --- Meeting assistant
+inline constexpr Topic<usher_msgs::msg::MeetingRequest> kMeetingRequest{
+    "meeting/request", Kind::kEvent, 32, 0, "tablet operator", "Call a meeting; one at a time."};
+inline constexpr Topic<usher_msgs::msg::GoalCancel> kMeetingCancel{
+    "meeting/cancel", Kind::kEvent, 32, 0, "tablet operator", "Give up the meeting."};
+inline constexpr Topic<usher_msgs::msg::MeetingStatus> kMeetingStatus{
+    "meeting/status", Kind::kLatched, 1, 2, "meeting", "What the assistant does, who is there."};
+inline constexpr Topic<usher_msgs::msg::MeetingReport> kMeetingReport{
+    "meeting/report", Kind::kEvent, 32, 0, "meeting", "A mission is over."};
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
@@ -348,6 +358,13 @@ inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimKinectPeople{
     "Whom the people detector would find in the Kinect's image, by the fitted model; z = height."};
 inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimRearPeople{
     "sim/rear_camera/people", Kind::kStream, 2, 15, "world", "The same of the rear camera."};
+inline constexpr Topic<usher_msgs::msg::Faces> kSimKinectFaces{
+    "sim/kinect/faces",
+    Kind::kStream,
+    2,
+    10,
+    "world",
+    "Faces that the face detector would tell of the Kinect's images, by a model of it."};
 inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
     "sim/ground_truth",
     Kind::kStream,
@@ -356,7 +373,7 @@ inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
     "world",
     "What really happened; for judges, never for the robot."};
 inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
-    "sim/person/goal", Kind::kEvent, 32, 0, "visitor", "Moves a scripted person."};
+    "sim/person/goal", Kind::kEvent, 32, 0, "attendees visitor", "Moves a scripted person."};
 
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
@@ -370,9 +387,10 @@ inline constexpr auto kAll = std::tie(
     kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,
     kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kExploreGoal,
     kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen, kDialogueAnswer,
-    kGuideStatus, kGuideVisit, kVisitor, kSimBaseCommand, kSimBaseFeedback, kSimScan,
-    kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo,
-    kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople,
-    kSimRearPeople, kSimGroundTruth, kSimPersonGoal);
+    kGuideStatus, kGuideVisit, kVisitor, kMeetingRequest, kMeetingCancel, kMeetingStatus,
+    kMeetingReport, kSimKinectFaces, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
+    kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth,
+    kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople, kSimRearPeople,
+    kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

@@ -28,6 +28,15 @@ Result<geometry::Pose2> TransformInput::lookup_planar(const std::string& target,
   return geometry::to_plane(*pose);
 }
 
+std::optional<geometry::Pose2> TransformInput::newest_planar(const std::string& target,
+                                                             const std::string& source,
+                                                             runtime::Duration most) const {
+  const auto newest = buffer_.newest(target, source);
+  if (!newest || host_.now() - runtime::Time(*newest) > most) return std::nullopt;
+  const auto pose = lookup_planar(target, source, runtime::Time(*newest));
+  return pose ? std::optional(*pose) : std::nullopt;
+}
+
 void TransformInput::take(const tf2_msgs::msg::TFMessage& message, bool fixed) {
   for (const auto& transform : message.transforms()) {
     const auto pose = from_message(transform.transform());

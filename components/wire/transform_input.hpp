@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,6 +27,9 @@ class TransformInput {
   }
   Result<geometry::Pose2> lookup_planar(const std::string& target, const std::string& source,
                                         runtime::Time stamp) const;
+  /// The newest one in the plane, unless that is older than `most`.
+  std::optional<geometry::Pose2> newest_planar(const std::string& target, const std::string& source,
+                                               runtime::Duration most) const;
   const geometry::TransformBuffer& buffer() const { return buffer_; }
 
   /// Runs `work(target_T_source)` now or in the handler that makes the transform known: in order of

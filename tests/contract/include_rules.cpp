@@ -65,9 +65,14 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
     const bool up = from.layer == "core" && !test && !starts_with_any(name, {from.room + "/core/"});
     return up ? "a core does not know its shell" : "";
   }
-  // Libraries are no components; those of drivers have what shells share, too.
+  // Libraries are no components; those of drivers and tasks have what shells share, too.
   if (starts_with_any(name, {"drivers/base_obedience/core/", "drivers/laser_scanner/core/",
-                             "interaction/phrases/core/", "simulation/rendering/core/"})) {
+                             "interaction/phrases/core/", "simulation/rendering/core/",
+                             "tasks/service/core/"})) {
+    return {};
+  }
+  if (from.room.starts_with("tasks/") && from.layer == "shell" &&
+      name.starts_with("tasks/service/shell/")) {
     return {};
   }
   if (from.room.starts_with("drivers/") && from.layer != "core" &&

@@ -71,6 +71,15 @@ const std::vector<Experiment>& experiments() {
        "Experiment D of the meeting report, simulated: faces and what cascades take for faces, "
        "without and with depth models",
        run_depth_model_experiment},
+      {"find-room",
+       "The meeting assistant finds an empty room, lock-step: three world states, two starts, "
+       "times "
+       "beside section IV-F of the meeting report; --only STATE",
+       run_find_room_experiment},
+      {"gather",
+       "The meeting assistant brings two persons from short, medium and long distances, lock-step: "
+       "times, misses and failures beside figure 15 of the meeting report; --only DISTANCE",
+       run_gather_experiment},
   };
   return all;
 }

@@ -60,6 +60,9 @@
   TYPE(usher_msgs::msg::GoalCancel)                   \
   TYPE(usher_msgs::msg::ExploreGoal)                  \
   TYPE(usher_msgs::msg::ExploreStatus)                \
+  TYPE(usher_msgs::msg::MeetingRequest)               \
+  TYPE(usher_msgs::msg::MeetingStatus)                \
+  TYPE(usher_msgs::msg::MeetingReport)                \
   TYPE(usher_msgs::msg::PlanRequest)                  \
   TYPE(usher_msgs::msg::PlanReply)                    \
   TYPE(usher_msgs::msg::FollowGoal)                   \

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "foundation/grid/free_space.hpp"
-#include "foundation/grid/wavefront.hpp"
+#include "foundation/grid/way_lengths.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/explorer/core/seen_area.hpp"
 
@@ -20,26 +20,23 @@ class Ground {
   Status set_map(const grid::OccupancyGrid& map, std::span<const Rectangle> leave_out,
                  double passing_room, double standing_room);
 
-  bool empty() const { return passing_.empty(); }
+  bool empty() const { return ways_.empty(); }
   /// Where a viewpoint may be.
   const grid::FreeSpace& standing() const { return standing_; }
   const grid::OccupancyGrid& standing_map() const { return standing_map_; }
 
   /// Measures all ways anew, from `robot`, or from the nearest place within 0.5 m where it can
   /// pass. False: there is none, and nothing is reachable.
-  bool start_from(const Point2& robot);
+  bool start_from(const Point2& robot) { return ways_.start_from(robot); }
   /// [m] of the way to a point, at most 8 % longer than the shortest; infinite when there is none.
-  double way_to(const Point2& point) const;
+  double way_to(const Point2& point) const { return ways_.way_to(point); }
   /// Middles of the cells of that way, from the robot to the point; empty when there is none.
-  void trace(const Point2& point, std::vector<Point2>& way) const;
+  void trace(const Point2& point, std::vector<Point2>& way) const { ways_.trace(point, way); }
 
  private:
-  std::uint16_t length_at(grid::Cell cell) const;
-
-  grid::FreeSpace passing_, standing_;
+  grid::WayLengths ways_;
+  grid::FreeSpace standing_;
   grid::OccupancyGrid standing_map_;
-  grid::Wavefront wavefront_;
-  std::vector<std::uint16_t> lengths_;  // from the robot; empty: nothing is reachable
 };
 
 }  // namespace usher::explorer

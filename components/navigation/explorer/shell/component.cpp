@@ -150,11 +150,7 @@ std::optional<Pose2> ExplorerComponent::pose() const {
   if (localization == nullptr ||
       localization->state() == usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST)
     return std::nullopt;
-  const auto newest = transforms_.buffer().newest(frames::kMap, frames::kBaseFootprint);
-  if (!newest || host_.now() - runtime::Time(*newest) > kPoseAge) return std::nullopt;
-  const auto pose =
-      transforms_.lookup_planar(frames::kMap, frames::kBaseFootprint, runtime::Time(*newest));
-  return pose ? std::optional(*pose) : std::nullopt;
+  return transforms_.newest_planar(frames::kMap, frames::kBaseFootprint, kPoseAge);
 }
 
 void ExplorerComponent::tick() {

@@ -52,7 +52,11 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
     Random looks(stream_seed(seed, plan.name.c_str()));
     person.height =
         plan.height > 0.0 ? plan.height : std::clamp(looks.gaussian(1.72, 0.09), 1.5, 1.98);
-    Mind mind{.at_rest = plan.posture, .speed = plan.speed, .loop = plan.loop, .pause = plan.pause};
+    Mind mind{.at_rest = plan.posture,
+              .watches = plan.watches,
+              .speed = plan.speed,
+              .loop = plan.loop,
+              .pause = plan.pause};
     if (!plan.loop.empty()) {
       constexpr int kTries = 20;
       constexpr double kFarEnough = 2.0;  // [m]
@@ -110,9 +114,20 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     const bool by_a_wall = wall.distance < person.radius + 0.1;
     turn_sideways(person, walks, robot);
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
+    watch(person, mind, walks, robot);
     lose_patience(person, mind, robot);
     hold(person, mind, movers_[i]);
   }
+}
+
+/// Turns the face to a robot that is near.
+void Crowd::watch(Person& person, const Mind& mind, bool walks, const RobotView& robot) const {
+  if (!mind.watches || walks || robot.footprint.empty()) return;
+  const Point2 to_robot = robot.pose.position() - person.position;
+  if (to_robot.norm() > config_.watch_within) return;
+  const double turn = geometry::shortest_turn(person.yaw, std::atan2(to_robot.y(), to_robot.x()));
+  person.yaw = geometry::normalized(person.yaw +
+                                    std::clamp(turn, -kFastestTurn * kStep, kFastestTurn * kStep));
 }
 
 /// Past a robot that stands people turn sideways, and back once they have room.

@@ -50,6 +50,7 @@ struct CrowdConfig {
   double robot_see = 2.5;         ///< [m] gap to a robot ahead at which a person begins to pass
   double patience = 4.0;          ///< [s] without getting on until a walker turns round
   double follow_distance = 1.1;   ///< [m] from the robot's middle, along its way
+  double watch_within = 6.0;      ///< [m] who watches turns to a robot nearer than this
 };
 
 /// People who walk between points and mind each other, walls and the robot: the social force model
@@ -79,6 +80,7 @@ class Crowd {
  private:
   struct Mind {
     rendering::Posture at_rest = rendering::Posture::kStanding;
+    bool watches = false;
     double speed = 0.0;  // wanted
     Point2 goal = Point2::Zero();
     bool has_goal = false;
@@ -99,6 +101,7 @@ class Crowd {
   void choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot);
   void turn_round(Mind& mind) const;
   void lose_patience(Person& person, Mind& mind, const RobotView& robot);
+  void watch(Person& person, const Mind& mind, bool walks, const RobotView& robot) const;
   void turn_sideways(Person& person, bool walks, const RobotView& robot) const;
   void hold(Person& person, const Mind& mind, Mover& mover) const;
   Point2 wanted_velocity(const Person& person, const Mind& mind, const RobotView& robot) const;

@@ -259,8 +259,9 @@ rendering::Posture parse_posture(const Entry& entry) {
 }
 
 PersonPlan parse_person(const YAML::Node& node) {
-  const Entry entry(node, "person",
-                    {"name", "at", "yaw", "speed", "pause", "loop", "height", "posture"});
+  const Entry entry(
+      node, "person",
+      {"name", "at", "yaw", "speed", "pause", "loop", "height", "posture", "watches"});
   PersonPlan plan;
   plan.name = entry.text("name");
   if (entry.has("at") == entry.has("loop")) {
@@ -278,6 +279,7 @@ PersonPlan parse_person(const YAML::Node& node) {
   if (entry.has("pause")) plan.pause = entry.number("pause", 0.0, 600.0);
   if (entry.has("height")) plan.height = entry.number("height", 1.2, 2.1);
   if (entry.has("posture")) plan.posture = parse_posture(entry);
+  if (entry.has("watches")) plan.watches = entry.flag("watches");
   return plan;
 }
 

@@ -66,6 +66,7 @@ struct PersonPlan {
   double height = 0.0;            ///< [m] {1.2..2.1} 0: drawn from the world's seed
   /// While it does not walk; a sitting person needs a seat of its own.
   rendering::Posture posture = rendering::Posture::kStanding;
+  bool watches = false;  ///< turns to a robot that is near, while it does not walk
 };
 
 Result<std::vector<PersonPlan>> load_people(const std::string& path);

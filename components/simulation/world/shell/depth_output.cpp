@@ -84,6 +84,14 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   rear_model_.emplace(model_for<DepthScanModelConfig>(rear_.config()), seed + 1);
   kinect_people_model_.emplace(model_for<PeopleModelConfig>(kinect_.config()), seed);
   rear_people_model_.emplace(model_for<PeopleModelConfig>(rear_.config()), seed + 1);
+  FaceModelConfig faces;
+  faces.lens = kinect_.config().sensor.lens;
+  faces.missed = host.parameters().number("faces_missed", "-", {0, 1}, faces.missed,
+                                          "Share of images in which a face is missed (model).");
+  faces.false_alarms = host.parameters().number("faces_false", "-", {0, 1}, faces.false_alarms,
+                                                "Faces per image that are none (model).");
+  face_model_.emplace(faces, seed);
+  faces_ = host.output(topics::kSimKinectFaces);
   kinect_depth_ = host.output(topics::kSimKinectDepth);
   kinect_color_ = host.output(topics::kSimKinectColor);
   kinect_info_ = host.output(topics::kSimKinectInfo);
@@ -125,6 +133,7 @@ void DepthOutput::publish_kinect() {
     publish_scan(result_.ranges, kinect_scan_);
     publish_scan(result_.low, kinect_low_);
     publish_people(*kinect_people_model_, kinect_, "kinect_level", kinect_people_);
+    publish_faces();
     return;
   }
   if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
@@ -165,6 +174,29 @@ void DepthOutput::publish_scan(const std::vector<float>& ranges,
   scan_.range_max(5.0F);
   scan_.ranges(ranges);
   output.publish(scan_);
+}
+
+/// The face detector looks at every third image.
+void DepthOutput::publish_faces() {
+  if (images_ / 2 % 3 != 0) return;
+  face_model_->find(*world_, kinect_, seen_faces_);
+  faces_message_.header(wire::header(stepped_, "base_footprint"));
+  faces_message_.image_width(static_cast<std::uint32_t>(kinect_.config().sensor.lens.width));
+  faces_message_.image_height(static_cast<std::uint32_t>(kinect_.config().sensor.lens.height));
+  faces_message_.faces().clear();
+  for (const ModelledFace& face : seen_faces_) {
+    auto& told = faces_message_.faces().emplace_back();
+    told.left(static_cast<float>(face.left));
+    told.top(static_cast<float>(face.top));
+    told.width(static_cast<float>(face.side));
+    told.height(static_cast<float>(face.side));
+    told.depth(static_cast<float>(face.depth));
+    told.range(static_cast<float>(face.range));
+    told.bearing(static_cast<float>(face.bearing));
+    told.elevation(static_cast<float>(face.elevation));
+    told.neighbors(3);
+  }
+  faces_.publish(faces_message_);
 }
 
 /// The detector looks at every second image.

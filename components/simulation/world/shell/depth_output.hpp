@@ -8,12 +8,14 @@
 #include "runtime/api/host.hpp"
 #include "simulation/rendering/core/painter.hpp"
 #include "simulation/world/core/depth_scan_model.hpp"
+#include "simulation/world/core/face_model.hpp"
 #include "simulation/world/core/people_model.hpp"
 
 namespace usher::world {
 
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
-/// that the fitted models make without them, at 30 Hz (people 15), the two cameras in turn. Stamps
+/// that the fitted models make without them, at 30 Hz (people 15, faces 10), the two cameras in
+/// turn. Stamps
 /// are those of the world's steps.
 class DepthOutput {
  public:
@@ -37,6 +39,7 @@ class DepthOutput {
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
   void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
                       runtime::Output<geometry_msgs::msg::PoseArray>& output);
+  void publish_faces();
 
   runtime::Host& host_;
   const World* world_;
@@ -44,6 +47,7 @@ class DepthOutput {
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
   std::optional<PeopleModel> kinect_people_model_, rear_people_model_;
+  std::optional<FaceModel> face_model_;
   WorldRenderer renderer_;
   std::optional<rendering::Painter> painter_;  // none: no color images
   runtime::Time stepped_{};                    ///< time of the world's last step
@@ -56,11 +60,14 @@ class DepthOutput {
   DepthScanResult result_;
   sensor_msgs::msg::LaserScan scan_;
   std::vector<ModelledSighting> found_;
+  std::vector<ModelledFace> seen_faces_;
+  usher_msgs::msg::Faces faces_message_;
   geometry_msgs::msg::PoseArray people_;
   runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_;
   runtime::Output<sensor_msgs::msg::CameraInfo> kinect_info_, rear_info_;
   runtime::Output<sensor_msgs::msg::LaserScan> kinect_scan_, kinect_low_, rear_scan_;
   runtime::Output<geometry_msgs::msg::PoseArray> kinect_people_, rear_people_;
+  runtime::Output<usher_msgs::msg::Faces> faces_;
   runtime::Timer timer_;
 };
 

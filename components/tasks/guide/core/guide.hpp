@@ -18,6 +18,7 @@
 #include "tasks/guide/core/screen.hpp"
 #include "tasks/guide/core/texts.hpp"
 #include "tasks/guide/core/visit.hpp"
+#include "tasks/service/core/robot.hpp"
 
 namespace usher::guide {
 
@@ -44,26 +45,10 @@ struct Parameters {
   FollowLimits follow;
 };
 
-/// The supervisor's states as far as they concern a guide.
-enum class Supervisor : std::uint8_t {
-  kUnknown,     ///< nothing fresh heard
-  kNotReady,    ///< initialising
-  kInactive,    ///< nothing may move for now
-  kAvailable,   ///< Interaction
-  kNavigation,  ///< Navigation start, active, end
-  kManual,
-  kFault,
-};
-
-enum class NavigationState : std::uint8_t {
-  kIdle = 0,
-  kActive = 1,
-  kWaiting = 2,
-  kSucceeded = 3,
-  kFailed = 4,
-  kCancelled = 5,
-  kReplaced = 6,
-};
+using service::NavigationState;
+using service::Request;
+using service::RequestKind;
+using service::Supervisor;
 
 struct Navigation {
   std::uint64_t goal_id = 0;
@@ -88,21 +73,6 @@ struct Surroundings {
   std::optional<Navigation> navigation;    ///< nothing: the navigator is silent
   std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
   std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
-};
-
-enum class RequestKind : std::uint8_t {
-  kNavigationStart,  ///< a goal is chosen; carries its name
-  kNavigationGo,     ///< the visitor is ready
-  kNavigationEnd,
-  kStop,        ///< the visitor wants to stop for a moment, or is waited for
-  kMovementOn,  ///< and to go on
-};
-
-/// To the supervisor. To be repeated until it is answered.
-struct Request {
-  RequestKind kind = RequestKind::kNavigationEnd;
-  std::string goal;
-  bool operator==(const Request&) const = default;
 };
 
 struct Goal {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "tasks/service/shell/messages.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::guide {
@@ -11,8 +12,6 @@ namespace {
 
 using runtime::HealthState;
 using std::chrono::milliseconds;
-namespace command = usher_msgs::msg::SupervisorRequest_Constants;
-namespace state = usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr auto kNavigationAge = milliseconds(2000);
@@ -20,43 +19,6 @@ constexpr auto kFollowAge = milliseconds(1000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kVisitorAge = milliseconds(500);
 constexpr const char* kMemory = "dialogue";
-
-Supervisor supervisor_from(std::uint8_t value) {
-  switch (value) {
-    case state::STATE_INITIALISE:
-      return Supervisor::kNotReady;
-    case state::STATE_INACTIVE:
-      return Supervisor::kInactive;
-    case state::STATE_INTERACTION:
-      return Supervisor::kAvailable;
-    case state::STATE_NAVIGATION_START:
-    case state::STATE_NAVIGATION_ACTIVE:
-    case state::STATE_NAVIGATION_END:
-      return Supervisor::kNavigation;
-    case state::STATE_MANUAL:
-      return Supervisor::kManual;
-    case state::STATE_FAULT:
-      return Supervisor::kFault;
-    default:
-      return Supervisor::kUnknown;
-  }
-}
-
-std::uint8_t command_for(RequestKind kind) {
-  switch (kind) {
-    case RequestKind::kNavigationStart:
-      return command::COMMAND_NAVIGATION_START;
-    case RequestKind::kNavigationGo:
-      return command::COMMAND_NAVIGATION_GO;
-    case RequestKind::kNavigationEnd:
-      return command::COMMAND_NAVIGATION_END;
-    case RequestKind::kStop:
-      return command::COMMAND_STOP;
-    case RequestKind::kMovementOn:
-      return command::COMMAND_MOVEMENT_ON;
-  }
-  return command::COMMAND_NONE;
-}
 
 }  // namespace
 
@@ -183,7 +145,8 @@ void GuideComponent::tick() {
 
 Surroundings GuideComponent::surroundings() const {
   Surroundings s;
-  if (const auto* status = supervisor_.fresh()) s.supervisor = supervisor_from(status->state());
+  if (const auto* status = supervisor_.fresh())
+    s.supervisor = service::supervisor_from(status->state());
   if (const auto* status = navigation_.fresh()) {
     const auto* follow = follow_.fresh();
     const bool blocked = follow != nullptr &&
@@ -242,7 +205,7 @@ void GuideComponent::act(const Actions& actions) {
   for (const auto& request : actions.requests) {
     usher_msgs::msg::SupervisorRequest message;
     message.id(requests_.next_id());
-    message.command(command_for(request.kind));
+    message.command(service::command_for(request.kind));
     message.goal(request.goal);
     requests_.ask(std::move(message));
   }
@@ -319,34 +282,7 @@ void GuideComponent::publish_status() {
 }
 
 void GuideComponent::publish_screen() {
-  const Screen& screen = core_.screen();
-  usher_msgs::msg::DialogueScreen message;
-  message.header(wire::header(host_.now(), ""));
-  message.id(screen.id);
-  message.state(screen.state);
-  message.language(screen.language);
-  message.content(static_cast<std::uint8_t>(screen.content));
-  message.title(screen.title);
-  message.text(screen.text);
-  message.status(screen.status);
-  message.spoken(screen.spoken);
-  message.spoken_id(screen.spoken_id);
-  message.tone(static_cast<std::uint8_t>(screen.tone));
-  message.listens(screen.listens);
-  for (const auto& option : screen.options) {
-    auto& entry = message.options().emplace_back();
-    entry.id(option.id);
-    entry.label(option.label);
-    entry.kind(static_cast<std::uint8_t>(option.kind));
-    entry.panel(static_cast<std::uint8_t>(option.panel));
-    entry.takes_text(option.takes_text);
-  }
-  message.place(screen.place);
-  message.progress(static_cast<float>(screen.progress));
-  message.eta(static_cast<float>(screen.eta));
-  message.remaining(static_cast<float>(screen.remaining));
-  message.time_left(static_cast<float>(screen.time_left));
-  message.follower(static_cast<std::uint8_t>(screen.follower));
+  auto message = service::to_message(core_.screen(), host_.now());
   if (const auto* supervisor = supervisor_.fresh()) message.robot_state(supervisor->state());
   if (const auto* navigation = navigation_.fresh()) message.navigation_status(navigation->state());
   message.human_detected(static_cast<std::uint8_t>(core_.human()));

@@ -1,0 +1,168 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "foundation/random/random.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/experiment.hpp"
+#include "operations/experiments/meeting_run.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+constexpr int kSeeds = 10;
+constexpr std::uint32_t kPersons = 2;
+constexpr double kLimit = 900.0;  // [s]
+constexpr double kJitter = 0.3;   // [m]
+
+/// R IV-G: how far from the meeting room's door the attendees stand.
+struct Distance {
+  const char* name;
+  double published;         ///< [s] to bring them, without finding the room
+  double published_missed;  ///< persons
+  std::array<geometry::Point2, 4> spots;
+};
+const std::array<Distance, 3> kDistances{
+    {{"short", 264.0, 1.0, {{{3.6, 6.4}, {1.5, 6.6}, {5.0, 7.0}, {2.2, 5.2}}}},
+     {"medium", 559.0, 2.5, {{{7.3, 4.6}, {4.4, 2.0}, {7.4, 2.0}, {6.8, 9.8}}}},
+     {"long", 715.0, 2.0, {{{10.2, 10.4}, {10.2, 1.5}, {13.4, 9.2}, {10.2, 5.2}}}}}};
+
+struct Trial {
+  std::size_t distance = 0;
+  std::uint64_t seed = 0;
+  std::optional<MeetingRun> run;
+  bool failed() const {
+    using namespace usher_msgs::msg::MeetingStatus_Constants;
+    return run->status.mission().outcome() != OUTCOME_COMPLETE || run->summary.contacts > 0;
+  }
+  /// [s] after the room was found.
+  double gathering() const {
+    const double room = run->status.mission().room_time();
+    return run->seconds - (std::isfinite(room) ? room : 0.0);
+  }
+};
+
+MeetingCase case_of(const Trial& trial) {
+  MeetingCase one;
+  one.start = {1.5, 1.5, 1.5708};
+  one.persons = kPersons;
+  one.longest = kLimit;
+  Random random(stream_seed(trial.seed, "gather"));
+  const auto& spots = kDistances[trial.distance].spots;
+  const auto first = static_cast<std::size_t>(random.uniform() * 4.0);
+  const auto second = (first + 1 + static_cast<std::size_t>(random.uniform() * 3.0)) % 4;
+  const char* const names[] = {"ada", "boole"};
+  for (const std::size_t spot : {first, second}) {
+    const geometry::Point2 shift(kJitter * (2.0 * random.uniform() - 1.0),
+                                 kJitter * (2.0 * random.uniform() - 1.0));
+    one.people.push_back({names[one.people.size()], spots[spot] + shift, true});
+  }
+  return one;
+}
+
+std::string name_of(const Trial& trial) {
+  return std::string(kDistances[trial.distance].name) + "_" + std::to_string(trial.seed);
+}
+
+}  // namespace
+
+Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options) {
+  const auto deployment = meeting_deployment(options);
+  if (!deployment) return Error{deployment.error()};
+  const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
+  std::vector<Trial> trials;
+  for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
+    if (!options.only.empty() && options.only != kDistances[distance].name) continue;
+    for (int seed = 1; seed <= seeds; ++seed)
+      trials.push_back({distance, static_cast<std::uint64_t>(seed), {}});
+  }
+  if (trials.empty()) return Error{"no such distance: " + options.only};
+  const auto run_one = [&](const Trial& trial, const std::string& name, const std::string& title) {
+    return run_meeting(*deployment, case_of(trial), trial.seed, options.out, name, title);
+  };
+  const Status done = run_jobs(trials.size(), "meetings", [&](std::size_t i) -> Status {
+    Trial& trial = trials[i];
+    auto run = run_one(trial, name_of(trial), trial.seed == 1 ? name_of(trial) : "");
+    if (!run) return Error{name_of(trial) + ": " + run.error()};
+    trial.run = std::move(run).value();
+    return {};
+  });
+  if (!done) return Error{done.error()};
+
+  ResultSheet sheet;
+  sheet.name = "gather";
+  sheet.input = std::to_string(kPersons) + " persons in the arena, " + std::to_string(seeds) +
+                " seeds for each distance, 0.7 m/s and 0.4 rad/s, lock-step";
+  Table table({"distance", "runs", "failed", "R", "mean", "R", "longest", "with room, longest",
+               "missed", "R", "checked", "refused", "contacts"});
+  std::string csv =
+      "distance,seed,failed,room_s,gather_s,total_s,brought,missed,checked,refused,invited,"
+      "unanswered,contacts\n";
+  const std::array<const char*, 3> published_failed{"4", "5", "10"};
+  double failed_all = 0.0, worst = 0.0, missed_all = 0.0, contacts = 0.0, wall = 0.0,
+         simulated = 0.0;
+  for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
+    double n = 0, failed = 0, mean = 0, longest = 0, total = 0, missed = 0, checked = 0,
+           refused = 0, touched = 0;
+    for (const Trial& trial : trials) {
+      if (trial.distance != distance) continue;
+      const MeetingRun& run = *trial.run;
+      const auto& m = run.status.mission();
+      ++n;
+      failed += trial.failed() ? 1 : 0;
+      mean += trial.gathering();
+      longest = std::max(longest, trial.gathering());
+      total = std::max(total, run.seconds);
+      missed += run.missed;
+      checked += m.faces_checked();
+      refused += m.faces_refused();
+      touched += run.summary.contacts;
+      wall += run.wall, simulated += run.simulated;
+      csv += std::string(kDistances[distance].name) + "," + std::to_string(trial.seed) + "," +
+             (trial.failed() ? "1" : "0") + format(",%.1f", m.room_time()) +
+             format(",%.1f", trial.gathering()) + format(",%.1f,", run.seconds) +
+             std::to_string(m.brought()) + "," + std::to_string(run.missed) + "," +
+             std::to_string(m.faces_checked()) + "," + std::to_string(m.faces_refused()) + "," +
+             std::to_string(m.invited()) + "," + std::to_string(m.unanswered()) + "," +
+             std::to_string(run.summary.contacts) + "\n";
+      if (trial.failed())
+        std::printf("%s: %u brought after %s, %s; contacts %u %s\n%s", name_of(trial).c_str(),
+                    m.brought(), minutes(run.seconds).c_str(), m.reason().c_str(),
+                    run.summary.contacts, run.summary.contact_with.c_str(), run.complaints.c_str());
+    }
+    if (n == 0) continue;
+    const Distance& d = kDistances[distance];
+    table.add({d.name, format("%.0f", n), format("%.0f", failed), published_failed[distance],
+               minutes(mean / n), minutes(d.published), minutes(longest), minutes(total),
+               format("%.1f", missed / n), format("%.1f", d.published_missed),
+               format("%.1f", checked / n), format("%.1f", refused / n), format("%.0f", touched)});
+    const std::string name = d.name;
+    sheet.metrics["mean_s_" + name] = mean / n;
+    sheet.published["mean_s_" + name] = d.published;
+    sheet.targets["mean_s_" + name] = {Bound::kAtMost, d.published};
+    sheet.metrics["missed_" + name] = missed / n;
+    sheet.published["missed_" + name] = d.published_missed;
+    sheet.targets["missed_" + name] = {Bound::kAtMost, 1.0};
+    failed_all += failed, worst = std::max(worst, total), contacts += touched;
+    missed_all += missed;
+  }
+  sheet.metrics["failed"] = failed_all;
+  sheet.targets["failed"] = {Bound::kAtMost, 0.0};
+  sheet.metrics["longest_with_room_s"] = worst;
+  sheet.targets["longest_with_room_s"] = {Bound::kAtMost, kLimit};
+  sheet.metrics["contacts"] = contacts;
+  sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
+  sheet.metrics["simulated_s_per_wall_s_and_thread"] = wall > 0.0 ? simulated / wall : 0.0;
+  const auto again = run_one(trials.front(), name_of(trials.front()), "");
+  if (!again) return Error{again.error()};
+  sheet.flags["digest_repeats"] = again->digest == trials.front().run->digest;
+  std::printf("%s\n", table.text().c_str());
+  Status saved = write_file(options.out + "/meetings.md", table.markdown());
+  if (saved) saved = write_file(options.out + "/meetings.csv", csv);
+  if (!saved) return Error{saved.error()};
+  return sheet;
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,220 @@
+#include "operations/experiments/meeting_run.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "foundation/grid/map_file.hpp"
+#include "navigation/explorer/core/seen_area.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/experiments/lockstep_run.hpp"
+#include "operations/results/result_sheet.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using std::chrono::milliseconds;
+namespace state = usher_msgs::msg::MeetingStatus_Constants;
+
+constexpr auto kLook = milliseconds(100);
+constexpr double kInView = 1.0;     // [s] somebody is missed who was in view for so long
+constexpr double kOutOfView = 1.0;  // [s] and is no more
+constexpr double kPatience = 60.0;  // [s] until the mission has begun
+constexpr const char* kOperator = "operator";
+constexpr const char* kTurnRate = "0.4";  // [rad/s] R IV-E
+
+/// In every component's file that has it.
+void set_value(Deployment& deployment, const std::string& name, const std::string& yaml) {
+  for (auto& file : deployment.files) {
+    for (auto& value : file.values) {
+      if (value.name == name) value.yaml = yaml;
+    }
+  }
+}
+
+void set_own_value(Deployment& deployment, const std::string& component, const std::string& name,
+                   const std::string& yaml) {
+  for (auto& file : deployment.files) {
+    if (file.component != component) continue;
+    std::erase_if(file.values, [&](const auto& value) { return value.name == name; });
+    file.values.push_back({name, yaml, "experiment"});
+  }
+}
+
+Result<grid::OccupancyGrid> site_map(const Deployment& deployment) {
+  for (const auto& file : deployment.files) {
+    for (const auto& value : file.values) {
+      if (value.name == "site.map") return grid::load_map(value.yaml);
+    }
+  }
+  return Error{"the site has no map"};
+}
+
+/// Who was in view of the exploring robot, and whom it passed by.
+class MissJudge {
+ public:
+  MissJudge(const grid::OccupancyGrid& map, explorer::SeenArea seen) : seen_(std::move(seen)) {
+    seen_.set_map(map, {});
+  }
+  std::uint32_t missed() const { return missed_; }
+
+  void look(const RunRecord& record, const MeetingCase& one, std::uint8_t now_in) {
+    const auto truth = record.truth();
+    if (!truth) return;
+    if (now_in != state::STATE_EXPLORE) {  // it checks, asks or guides somebody
+      if (now_in != state::STATE_REVISIT) encounters_.clear();
+      return;
+    }
+    const auto view = seen_.view(*truth);
+    for (const MeetingPerson& person : one.people) {
+      const auto at = record.person(person.name);
+      if (!at || !person.comes) continue;
+      const auto cell = seen_.geometry().cell_at(*at);
+      const bool seen =
+          seen_.geometry().contains(cell) &&
+          std::find(view.begin(), view.end(), seen_.geometry().index(cell)) != view.end();
+      Encounter& encounter = encounters_[person.name];
+      if (seen) {
+        encounter.seen += 0.1;
+        encounter.gone = 0.0;
+      } else if (encounter.seen > 0.0) {
+        encounter.gone += 0.1;
+        if (encounter.gone < kOutOfView) continue;
+        missed_ += encounter.seen >= kInView ? 1 : 0;
+        encounter = {};
+      }
+    }
+  }
+
+ private:
+  struct Encounter {
+    double seen = 0.0, gone = 0.0;  // [s]
+  };
+  explorer::SeenArea seen_;
+  std::map<std::string, Encounter> encounters_;
+  std::uint32_t missed_ = 0;
+};
+
+Status put_people(Deployment& deployment, const MeetingCase& one, const std::string& path) {
+  std::string file = "people:\n", come;
+  for (const MeetingPerson& person : one.people) {
+    file += "  - {name: " + person.name + format(", at: [%.3f, ", person.at.x()) +
+            format("%.3f], yaw: 0.0, watches: true}\n", person.at.y());
+    if (person.comes) come += (come.empty() ? "" : " ") + person.name;
+  }
+  if (one.people.empty()) file = "people: []\n";
+  if (Status saved = write_file(path, file); !saved) return saved;
+  set_value(deployment, "site.people", path);
+  set_own_value(deployment, "attendees", "come", come.empty() ? "\"\"" : come);
+  set_value(deployment, "site.initial_pose",
+            format("[%.3f, ", one.start.x) + format("%.3f, ", one.start.y) +
+                format("%.4f]", one.start.yaw));
+  return {};
+}
+
+}  // namespace
+
+std::string minutes(double seconds) {
+  const long whole = std::lround(seconds);
+  return std::to_string(whole / 60) + (whole % 60 < 10 ? ":0" : ":") + std::to_string(whole % 60);
+}
+
+Result<Deployment> meeting_deployment(const ExperimentOptions& options) {
+  return load_deployment(options.installation.share + "/deploy/meeting-demo.yaml",
+                         options.installation,
+                         {{"local_planner", "fastest_turn", kTurnRate},
+                          {"local_planner", "spot_turn", kTurnRate},
+                          {"local_planner", "recovery_turn_rate", kTurnRate},
+                          {"explorer", "turn_rate", kTurnRate}});
+}
+
+Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, std::uint64_t seed,
+                               const std::string& folder, const std::string& name,
+                               const std::string& title) {
+  if (Status put = put_people(deployment, one, folder + "/" + name + "_people.yaml"); !put)
+    return Error{put.error()};
+  const auto map = site_map(deployment);
+  if (!map) return Error{map.error()};
+  auto seen = explorer::SeenArea::create({});
+  if (!seen) return Error{seen.error()};
+  MissJudge judge(*map, std::move(seen).value());
+  auto made = LockstepRun::create(deployment, seed);
+  if (!made) return Error{made.error()};
+  LockstepRun& run = **made;
+  auto& world = run.world();
+
+  MeetingRun result;
+  world.observe(topics::kMeetingStatus,
+                [&](const auto& status, const auto&) { result.status = status; });
+  world.observe(topics::kNavigateGoal, [&](const auto& goal, const auto&) {
+    if (result.first_room.empty()) result.first_room = goal.location();
+  });
+  const auto started = std::chrono::steady_clock::now();
+  const auto active = [&] {
+    return result.status.state() >= state::STATE_TO_ROOM &&
+           result.status.state() <= state::STATE_ARRIVED;
+  };
+  // A request that is refused because not all is ready yet is made anew.
+  for (std::uint64_t id = 1; !active() && runtime::seconds(world.elapsed()) < kPatience; ++id) {
+    usher_msgs::msg::MeetingRequest request;
+    request.id(id);
+    request.client(kOperator);
+    request.persons(one.persons);
+    request.time_limit(static_cast<float>(one.longest));
+    world.publish(topics::kMeetingRequest, request, kOperator);
+    world.run_for(milliseconds(500));
+  }
+  if (!active())
+    return Error{"the mission did not begin: " + result.status.reason() + "\n" + run.complaints()};
+  const auto began = world.now();
+  while (active() && !(one.over && one.over(result.status))) {
+    world.run_for(kLook);
+    judge.look(run.record(), one, result.status.state());
+  }
+  result.seconds = runtime::seconds(world.now() - began);
+  result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  result.simulated = runtime::seconds(world.elapsed());
+  result.missed = judge.missed();
+  result.summary = run.record().summary();
+  result.digest = world.digest();
+  result.complaints = run.complaints();
+  if (title.empty()) return result;
+  Status saved = write_file(folder + "/" + name + ".csv", run_csv(run.record()));
+  if (saved) saved = draw_run(run.record(), *map, title, folder + "/" + name + ".png");
+  if (!saved) return Error{saved.error()};
+  return result;
+}
+
+Status run_jobs(std::size_t count, const std::string& what,
+                const std::function<Status(std::size_t)>& job) {
+  std::atomic<std::size_t> next{0}, done{0};
+  std::mutex mutex;
+  std::string error;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      const Status status = job(i);
+      const std::lock_guard lock(mutex);
+      if (!status) {
+        error = status.error();
+        next = count;
+        return;
+      }
+      show_progress(std::to_string(++done) + " of " + std::to_string(count) + " " + what);
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
+      threads.emplace_back(work);
+  }
+  show_progress("");
+  if (!error.empty()) return Error{error};
+  return {};
+}
+
+}  // namespace usher::operations

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "foundation/grid/grid.hpp"
+#include "operations/experiments/experiment.hpp"
+#include "operations/experiments/run_record.hpp"
+#include "operations/manifest/resolve.hpp"
+
+namespace usher::operations {
+
+/// Somebody who stands in the arena and looks at the robot.
+struct MeetingPerson {
+  std::string name;
+  geometry::Point2 at{0, 0};  ///< [m] in map
+  bool comes = false;         ///< says yes when it is invited; else it is asked nothing
+};
+
+struct MeetingCase {
+  std::vector<MeetingPerson> people;
+  geometry::Pose2 start;
+  std::uint32_t persons = 1;  ///< to be brought
+  double longest = 900.0;     ///< [s]
+  /// Ends the run before the mission's own end; empty: it does not.
+  std::function<bool(const usher_msgs::msg::MeetingStatus&)> over;
+};
+
+struct MeetingRun {
+  usher_msgs::msg::MeetingStatus status;  ///< the last one
+  double seconds = 0.0;                   ///< from the request to the end
+  std::string first_room;                 ///< location of the first drive
+  std::uint32_t missed = 0;  ///< times that somebody stood in view of the exploring robot for 1 s,
+                             ///< and it went by
+  RunRecord::Summary summary;
+  double wall = 0.0;       ///< [s]
+  double simulated = 0.0;  ///< [s]
+  std::uint64_t digest = 0;
+  std::string complaints;
+};
+
+/// The meeting assistant in the arena, at the pace of its report: 0.7 m/s and 0.4 rad/s.
+Result<Deployment> meeting_deployment(const ExperimentOptions& options);
+
+/// One mission in lock-step. People go through a file in `folder`, named by `name`; with a `title`
+/// the run's picture and trace lie beside it.
+Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, std::uint64_t seed,
+                               const std::string& folder, const std::string& name,
+                               const std::string& title = {});
+
+/// Runs `count` jobs on all processors; the first error ends it. `job` is called beside others.
+Status run_jobs(std::size_t count, const std::string& what,
+                const std::function<Status(std::size_t)>& job);
+
+/// "1:05" of seconds.
+std::string minutes(double seconds);
+
+}  // namespace usher::operations

@@ -1,0 +1,240 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foundation/grid/way_lengths.hpp"
+#include "foundation/result/result.hpp"
+#include "interaction/phrases/core/phrase_file.hpp"
+#include "tasks/meeting/core/faces.hpp"
+#include "tasks/meeting/core/mission.hpp"
+#include "tasks/meeting/core/motion.hpp"
+#include "tasks/meeting/core/people.hpp"
+#include "tasks/meeting/core/texts.hpp"
+#include "tasks/service/core/screen.hpp"
+
+namespace usher::meeting {
+
+struct Parameters {
+  Time limit = std::chrono::minutes(15);   ///< of a mission, unless its request names another
+  Time answer = std::chrono::seconds(15);  ///< an invitation waits so long
+  Time tone = std::chrono::seconds(1);     ///< from the tone to the first motion of a guidance
+  Time arrived = std::chrono::seconds(3);  ///< the thanks are shown
+  Time over = std::chrono::seconds(5);     ///< the outcome is shown, then the next request
+  Time check = std::chrono::milliseconds(2500);  ///< without a face: it was none
+  Time check_most = std::chrono::seconds(10);    ///< a face that is not confirmed by then is none
+  Time nobody = std::chrono::seconds(2);         ///< nobody seen where somebody was: has gone
+  Time scan_most = std::chrono::seconds(60);     ///< a turn takes at most so long
+  Time recovery = std::chrono::seconds(60);      ///< a robot that may not move is waited for
+  Time ask_again = std::chrono::seconds(180);    ///< who did not answer, or could not be reached
+  Time refused = std::chrono::seconds(20);       ///< where a face was none, none is looked for
+  int confirmations = 3;                         ///< {>= 1} messages in a row confirm a face
+  int notice = 2;                                ///< {>= 1} and so many stop an exploration
+  double field_of_view = 0.9948;                 ///< [rad] of the camera's width
+  double centered = 0.2;                         ///< [rad] a face is centered within that
+  double stand_off = 1.0;                        ///< [m] from the person, to talk
+  double near = 1.4;                             ///< [m] nearer it asks from where it stands
+  double same_person = 0.8;    ///< [m] faces nearer to each other are one person's
+  double seen_again = 1.5;     ///< [m] from where somebody was seen on the way
+  double room_margin = 0.2;    ///< [m] a face in the wall of a room is one in the room
+  double passing_room = 0.27;  ///< [m] from obstacles, for lengths of ways
+  int most_failures = 5;       ///< explorations that fail in a row end the mission
+};
+
+/// A room where people can meet, as the site describes it.
+struct RoomArea {
+  std::string name;              ///< of the location where the robot turns round in it
+  Point2 low{0, 0}, high{0, 0};  ///< [m] corners in map
+};
+
+/// A place that the navigator knows.
+struct Place {
+  std::string name, title;
+  Point2 at{0, 0};  ///< [m] in map
+};
+
+struct MissionRequest {
+  std::uint64_t id = 0;
+  std::string client;
+  std::uint32_t persons = 0;  ///< 1..100
+  double time_limit = 0.0;    ///< [s] 0: the parameter
+};
+
+/// The numbers are those on the wire.
+enum class Outcome : std::uint8_t { kOpen = 0, kComplete, kTimeOver, kFailed, kCancelled };
+
+/// What a mission has come to.
+struct Report {
+  std::uint64_t id = 0;  ///< 0: there was none yet
+  std::string client;
+  Outcome outcome = Outcome::kOpen;
+  std::string reason, room;
+  std::uint32_t wanted = 0, brought = 0;
+  std::uint32_t rooms_scanned = 0, rooms_occupied = 0;
+  std::uint32_t faces_checked = 0, faces_refused = 0;
+  std::uint32_t invited = 0, accepted = 0, declined = 0, unanswered = 0;
+  std::optional<Time> room_time;  ///< until the room was found
+  Time duration{};
+};
+
+/// What a step asks of the others.
+struct Actions {
+  MotionActions motion;
+  bool screen_changed = false;
+  bool status_changed = false;
+  std::optional<Report> report;  ///< a mission is over
+};
+
+/// Calls a meeting (meeting report III-B-5, fig. 4): finds a room where nobody is, looks for
+/// people, invites and brings them until as many are there as were asked for. mission.hpp has all
+/// edges.
+///
+/// Nothing blocks: whatever the rest of the robot does, each state has a way and a time-out, and
+/// the mission a limit.
+class Meeting {
+ public:
+  /// `first_id` must be above all ids of goals and screens used before a restart. The phrases are
+  /// those of kTextKeys; `language` is one of theirs.
+  Meeting(const Parameters& parameters, std::vector<RoomArea> rooms, phrases::PhraseBook phrases,
+          std::size_t language, std::uint64_t first_id);
+
+  /// An error leaves what was there.
+  Status set_map(const grid::OccupancyGrid& map) {
+    return ways_.set_map(map, parameters_.passing_room);
+  }
+  /// Places that the navigator knows, the rooms' among them. Those that are not finite are left
+  /// out.
+  void set_places(std::vector<Place> places);
+
+  /// A repeated request changes nothing. The error says why it is refused: one mission at a time.
+  Status request(const MissionRequest& request, Time now);
+  /// Id 0 gives up whatever runs.
+  const Actions& cancel(std::uint64_t id, Time now);
+  const Actions& answer(const service::Answer& answer, Time now);
+  /// A message of the face detector; faces that are none are left out and counted.
+  const Actions& see(Faces faces, Time now);
+  /// Time passed, or something else of the robot changed. At 5 Hz or faster.
+  const Actions& step(const Surroundings& robot, Time now);
+
+  State state() const { return state_; }
+  /// Where the robot shall turn now, while it stands; the bearing [rad] of kFace, the sign of
+  /// kSearch.
+  Turn turn() const { return turn_; }
+  double bearing() const;
+  const service::Screen& screen() const { return screen_; }
+  const Report& report() const { return report_; }
+  const People& people() const { return people_; }
+  /// What it waits for, or why the newest request was refused.
+  const std::string& reason() const { return reason_; }
+  std::optional<Time> time_left(Time now) const;
+  /// Since the mission that goes on began.
+  Time elapsed(Time now) const { return now - began_; }
+  std::uint64_t rejected_faces() const { return rejected_faces_; }
+  std::uint64_t ignored_answers() const { return ignored_answers_; }
+  const service::Answer& last_answer() const { return last_answer_; }
+  service::AnswerResult last_result() const { return last_result_; }
+  /// The newest request, taken or refused.
+  std::uint64_t last_request() const { return last_request_; }
+  const std::string& last_client() const { return last_client_; }
+  /// How often each edge of kEdges was taken.
+  const std::array<std::uint64_t, kEdges.size()>& edges_taken() const { return edges_taken_; }
+
+ private:
+  struct Room {
+    RoomArea area;
+    std::string title;
+    std::optional<Point2> place;
+    bool contains(const Point2& point, double margin) const;
+  };
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  const Actions& finish(Time now);
+  void enter(State state, Cause cause, Time now);
+  void arrive_in(State state, Time now);
+  void end(Outcome outcome, Cause cause, const std::string& reason, Time now);
+  std::string lacks() const;
+  bool in_a_room(const Point2& point) const;
+
+  // Rooms.
+  void choose_room();
+  void leave_room(Cause cause, bool reached, Time now);
+  void scan(Time now);
+
+  // Faces.
+  bool may_be_asked(const Face& face, Time now) const;
+  void notice(const Faces& all, Time now);
+  void check(const Faces& all, Time now);
+  void confirm(Time now);
+  void refuse_face(Time now);
+  void remember_seen(const Faces& all, Time now);
+
+  // The way.
+  void watch_robot(Time now);
+  void follow_motion(Time now);
+  void drive_failed(Time now);
+  void pass_time(Time now);
+  void look_for_people(Cause cause, Time now);
+  void visit_if_remembered(Time now);
+  void approach(Time now);
+  void depart(Time now);
+
+  // Screens.
+  service::Screen build(Time now) const;
+  std::string say(Text text) const;
+  std::string room_title() const;
+
+  Parameters parameters_;
+  std::vector<Room> rooms_;
+  phrases::PhraseBook phrases_;
+  std::size_t language_;
+  grid::WayLengths ways_;
+  Motion motion_;
+  People people_;
+  Surroundings robot_;
+  State state_ = State::kInitialise;
+  Time since_{};
+  Actions actions_;
+  Turn turn_ = Turn::kStand;
+  Point2 face_to_{0, 0};  ///< [m] in map, of Turn::kFace
+  std::string reason_;
+
+  // This mission.
+  Report report_;
+  Time began_{}, limit_{};
+  std::vector<std::size_t> order_;  ///< rooms as they were gone to
+  std::size_t stop_ = 0;            ///< in order_
+  bool second_pass_ = false;
+  std::size_t reached_ = 0;  ///< rooms of this pass
+  std::size_t room_ = kNone;
+  double turned_ = 0.0;  ///< [rad] in this room
+  std::optional<double> yaw_;
+  FaceTrack track_, passing_;
+  Time face_seen_{};
+  bool anew_ = false;  ///< the exploration begins
+  int failures_ = 0;
+  std::optional<Time> failed_at_;
+  Point2 person_{0, 0};     ///< [m] in map, who is approached, asked, guided
+  Point2 departure_{0, 0};  ///< [m] in map, of the guidance
+  int tries_ = 0;
+  bool departed_ = false;
+  std::optional<Time> arrived_at_;  ///< where somebody was seen
+
+  std::optional<Time> held_since_, lost_since_;
+
+  std::uint64_t last_request_ = 0;
+  std::string last_client_;
+  std::uint64_t next_screen_;
+  service::Screen screen_;
+  std::map<std::string, std::uint64_t> handled_;  ///< newest answer of each client
+  service::Answer last_answer_;
+  service::AnswerResult last_result_ = service::AnswerResult::kNone;
+  std::uint64_t rejected_faces_ = 0, ignored_answers_ = 0;
+  std::array<std::uint64_t, kEdges.size()> edges_taken_{};
+};
+
+}  // namespace usher::meeting

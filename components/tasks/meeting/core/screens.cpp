@@ -1,0 +1,104 @@
+// What each state shows and says.
+#include <chrono>
+#include <cmath>
+
+#include "tasks/meeting/core/meeting.hpp"
+
+namespace usher::meeting {
+
+using service::OptionKind;
+using service::Panel;
+using service::Tone;
+
+std::string Meeting::say(Text text) const {
+  return phrases::filled(phrases_.phrase(language_, static_cast<std::size_t>(text)),
+                         {{"place", room_title()},
+                          {"n", std::to_string(report_.brought)},
+                          {"wanted", std::to_string(report_.wanted)}});
+}
+
+std::string Meeting::room_title() const {
+  for (const Room& room : rooms_) {
+    if (room.area.name == report_.room) return room.title.empty() ? room.area.name : room.title;
+  }
+  return {};
+}
+
+service::Screen Meeting::build(Time now) const {
+  service::Screen screen;
+  screen.id = next_screen_;
+  screen.state = text(state_);
+  screen.language = phrases_.languages()[language_].tag;
+  screen.place = report_.room;
+  const auto says = [&](const std::string& words, Tone tone) {
+    screen.spoken = words;
+    screen.spoken_id = next_screen_;
+    screen.tone = tone;
+  };
+  switch (state_) {
+    case State::kInitialise:
+      screen.title = say(Text::kNotReady);
+      screen.status = lacks();
+      return screen;
+    case State::kIdle:
+      screen.title = say(Text::kReady);
+      screen.place.clear();
+      return screen;
+    case State::kToRoom:
+      screen.title = say(Text::kLooksForRoom);
+      screen.place = rooms_[room_].area.name;
+      break;
+    case State::kScanRoom:
+    case State::kCheckRoom:
+      screen.title = say(Text::kLooksRound);
+      screen.place = rooms_[room_].area.name;
+      break;
+    case State::kExplore:
+      screen.title = say(Text::kLooksForPeople);
+      break;
+    case State::kCheckFace:
+      screen.title = say(Text::kOneMoment);
+      break;
+    case State::kRevisit:
+    case State::kApproach:
+      screen.title = say(Text::kComing);
+      break;
+    case State::kInvite: {
+      screen.title = say(Text::kInvitation);
+      screen.text = say(Text::kWouldYou);
+      screen.status = say(Text::kListening);
+      screen.listens = true;
+      screen.options = {{"yes", say(Text::kYes), OptionKind::kYes, Panel::kPrimary},
+                        {"no", say(Text::kNo), OptionKind::kNo, Panel::kPrimary}};
+      const double left =
+          std::chrono::duration<double>(parameters_.answer - (now - since_)).count();
+      screen.time_left = std::max(0.0, std::ceil(left - 1e-9));
+      says(screen.title + " " + screen.text, Tone::kCall);
+      return screen;
+    }
+    case State::kGuide:
+      screen.content = service::Content::kJourney;
+      screen.title = say(Text::kFollowMe);
+      screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
+      says(screen.title, Tone::kMoving);
+      break;
+    case State::kArrived:
+      screen.title = say(Text::kThere);
+      screen.text = say(Text::kThankYou);
+      says(screen.title + " " + screen.text, Tone::kNone);
+      break;
+    case State::kDone:
+      screen.title = say(Text::kAllThere);
+      says(screen.title, Tone::kNone);
+      break;
+    case State::kEnded:
+      screen.title = say(Text::kEnded);
+      screen.text = report_.reason;
+      says(screen.title, Tone::kNone);
+      break;
+  }
+  screen.status = say(Text::kCount);
+  return screen;
+}
+
+}  // namespace usher::meeting

@@ -1,0 +1,201 @@
+#include "tasks/meeting/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::meeting {
+namespace {
+
+using namespace usher_msgs::msg;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+namespace state = MeetingStatus_Constants;
+
+const std::string kParameters =
+    "robot.footprint: [0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2]\n"
+    "texts: " USHER_SOURCE_DIR
+    "/config/dialogue/en.yaml\n"
+    "site.meeting_rooms:\n"
+    "  - {name: west, west: 0.0, south: 0.0, east: 4.0, north: 4.0}\n";
+
+/// The component in a robot that is told by hand what it does, from a thread of time of its own.
+class Stage {
+ public:
+  explicit Stage() : host(runtime::component_factory<MeetingComponent>("meeting"), kParameters) {
+    nav_msgs::msg::OccupancyGrid map;
+    map =
+        wire::to_message(host.now(), frames::kMap,
+                         grid::OccupancyGrid(grid::GridGeometry{100, 100, 0.1, 0, 0}, grid::kFree));
+    host.publish(topics::kMap, map);
+    Locations locations;
+    auto& west = locations.locations().emplace_back();
+    west.name("west");
+    west.title("West room");
+    west.pose(wire::to_message(geometry::Pose2{2.0, 2.0, 0.0}));
+    host.publish(topics::kLocations, locations);
+    run(500);
+  }
+
+  runtime::TestHost host;
+  std::uint8_t supervisor = SupervisorStatus_Constants::STATE_INTERACTION;
+  bool navigator = true, explorer = true, detector = true, localized = true;
+  geometry::Pose2 pose{6.0, 6.0, 0.0};
+  NavigateStatus navigation;
+  std::vector<usher_msgs::msg::Face> faces;
+
+  void run(int ms) {
+    for (int i = 0; i < ms; i += 50) {
+      SupervisorStatus status;
+      status.header(wire::header(host.now(), ""));
+      status.state(supervisor);
+      if (supervisor != 255) host.publish(topics::kSupervisorStatus, status);
+      navigation.header(wire::header(host.now(), frames::kMap));
+      if (navigator) host.publish(topics::kNavigateStatus, navigation);
+      ExploreStatus exploration;
+      exploration.header(navigation.header());
+      if (explorer) host.publish(topics::kExploreStatus, exploration);
+      LocalizationStatus localization;
+      localization.header(navigation.header());
+      localization.state(localized ? LocalizationStatus_Constants::STATE_GOOD
+                                   : LocalizationStatus_Constants::STATE_LOST);
+      host.publish(topics::kLocalizationStatus, localization);
+      tf2_msgs::msg::TFMessage tf;
+      auto& transform = tf.transforms().emplace_back();
+      transform.header(wire::header(host.now(), frames::kMap));
+      transform.child_frame_id(frames::kBaseFootprint);
+      transform.transform().translation().x(pose.x);
+      transform.transform().translation().y(pose.y);
+      transform.transform().rotation().w(1.0);
+      host.publish(topics::kTf, tf);
+      usher_msgs::msg::Faces message;
+      message.header(wire::header(host.now(), frames::kBaseFootprint));
+      message.image_width(640);
+      message.image_height(480);
+      message.faces(faces);
+      if (detector && i % 100 == 0) host.publish(topics::kFaces, message);
+      host.run_for(milliseconds(50));
+    }
+  }
+  void call(std::uint32_t persons, std::uint64_t id = 7) {
+    MeetingRequest request;
+    request.id(id);
+    request.client("operator");
+    request.persons(persons);
+    host.publish(topics::kMeetingRequest, request);
+    run(100);
+  }
+  MeetingStatus status() const { return host.last(topics::kMeetingStatus).value(); }
+};
+
+TEST(MeetingComponent, TakesARequestAndDrivesToTheRoom) {
+  Stage stage;
+  EXPECT_EQ(stage.status().state(), state::STATE_IDLE);
+  stage.call(2);
+  EXPECT_EQ(stage.status().state(), state::STATE_TO_ROOM);
+  EXPECT_EQ(stage.status().last_request(), 7U);
+  EXPECT_EQ(stage.status().mission().wanted(), 2U);
+  EXPECT_NEAR(stage.status().time_left(), 900.0, 1.0);
+  const auto request = stage.host.last(topics::kSupervisorRequest);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->command(), SupervisorRequest_Constants::COMMAND_NAVIGATION_START);
+  EXPECT_EQ(request->client(), "meeting");
+  stage.supervisor = SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+  stage.run(200);
+  const auto goal = stage.host.last(topics::kNavigateGoal);
+  ASSERT_TRUE(goal);
+  EXPECT_EQ(goal->location(), "west");
+  const auto target = stage.host.last(topics::kInteractionTarget);
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->mode(), FaceTarget_Constants::MODE_STAND);
+}
+
+TEST(MeetingComponent, TurnsRoundAndFacesWhomItSees) {
+  Stage stage;
+  stage.call(1);
+  stage.supervisor = SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+  stage.run(200);
+  stage.navigation.id(stage.host.last(topics::kNavigateGoal)->id());
+  stage.navigation.client("meeting");
+  stage.navigation.state(GoalStatus_Constants::STATE_SUCCEEDED);
+  stage.pose = {2.0, 2.0, 0.0};
+  stage.run(100);
+  stage.supervisor = SupervisorStatus_Constants::STATE_INTERACTION;
+  stage.run(300);
+  EXPECT_EQ(stage.status().state(), state::STATE_SCAN_ROOM);
+  EXPECT_EQ(stage.host.last(topics::kInteractionTarget)->mode(), FaceTarget_Constants::MODE_SEARCH);
+  usher_msgs::msg::Face face;
+  face.left(250.0F), face.top(100.0F), face.width(60.0F), face.height(60.0F);
+  face.depth(1.4F), face.range(1.5F), face.bearing(0.2F);
+  stage.faces = {face};
+  stage.run(200);
+  EXPECT_EQ(stage.host.last(topics::kInteractionTarget)->mode(), FaceTarget_Constants::MODE_FACE);
+  EXPECT_NEAR(stage.host.last(topics::kInteractionTarget)->bearing(), 0.2, 0.02);
+  stage.run(600);
+  EXPECT_EQ(stage.status().mission().rooms_occupied(), 1U);
+}
+
+TEST(MeetingComponent, SaysWhatIsMissing) {
+  const auto reason = [](void (*act)(Stage&)) {
+    Stage stage;
+    act(stage);
+    stage.run(2500);
+    EXPECT_EQ(stage.host.heartbeat().state(), 2U);
+    EXPECT_EQ(stage.status().reason(), stage.host.heartbeat().reason());
+    return stage.host.heartbeat().reason();
+  };
+  EXPECT_EQ(reason([](Stage& s) { s.supervisor = 255; }), "no supervisor");
+  EXPECT_EQ(reason([](Stage& s) { s.navigator = false; }), "no navigator");
+  EXPECT_EQ(reason([](Stage& s) { s.explorer = false; }), "no explorer");
+  EXPECT_EQ(reason([](Stage& s) { s.detector = false; }), "no face detector");
+  EXPECT_EQ(reason([](Stage& s) { s.localized = false; }), "not localized");
+}
+
+TEST(MeetingComponent, CountsFacesAndRequestsThatAreNone) {
+  Stage stage;
+  usher_msgs::msg::Face face;
+  face.width(std::numeric_limits<float>::quiet_NaN());
+  stage.faces = {face};
+  stage.run(1200);
+  EXPECT_GT(stage.host.counter("faces: rejected"), 5U);
+  stage.call(0);
+  EXPECT_EQ(stage.status().last_request(), 7U);
+  EXPECT_NE(stage.status().reason().find("persons"), std::string::npos);
+  stage.run(1100);
+  EXPECT_EQ(stage.host.counter("inputs: rejected"), 1U);
+  stage.host.publish(topics::kMap, {});
+  stage.run(1100);
+  EXPECT_EQ(stage.host.counter("inputs: rejected"), 2U);
+  EXPECT_EQ(stage.status().state(), state::STATE_IDLE) << "keeps the map it has";
+}
+
+TEST(MeetingComponent, ReportsAMissionThatItsRestartEnded) {
+  Stage stage;
+  stage.call(3);
+  ASSERT_EQ(stage.status().state(), state::STATE_TO_ROOM);
+  stage.host.world().kill("meeting");
+  stage.host.clear();
+  stage.host.world().start("meeting");
+  stage.run(1500);
+  const auto report = stage.host.last(topics::kMeetingReport);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->id(), 7U);
+  EXPECT_EQ(report->wanted(), 3U);
+  EXPECT_EQ(report->outcome(), state::OUTCOME_FAILED);
+  EXPECT_EQ(report->reason(), "the assistant was restarted");
+  EXPECT_TRUE(stage.host.last(topics::kNavigateCancel));
+  EXPECT_EQ(stage.status().state(), state::STATE_IDLE);
+}
+
+TEST(MeetingComponent, RefusesTextsThatAreNone) {
+  EXPECT_FALSE(
+      runtime::TestHost::try_make(runtime::component_factory<MeetingComponent>("meeting"),
+                                  "robot.footprint: [0.2, 0.2, -0.2, 0.2, -0.2, -0.2, 0.2, -0.2]\n"
+                                  "texts: /nowhere/en.yaml\n")
+          .ok());
+}
+
+}  // namespace
+}  // namespace usher::meeting

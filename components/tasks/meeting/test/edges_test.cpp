@@ -1,0 +1,166 @@
+// Every edge of fig. 4, one mission each or more; the coverage is counted and printed.
+#include <cstdio>
+
+#include "meeting_rig.hpp"
+
+namespace usher::meeting {
+namespace {
+
+struct Step {
+  void (*act)(Rig&);
+  State state;
+};
+struct Case {
+  const char* name;
+  std::vector<Step> steps;
+};
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> kCases{
+      {"one person is brought",
+       {{[](Rig& r) { r.to_arrived(); }, State::kArrived},
+        {[](Rig& r) { r.wait(3000); }, State::kDone},
+        {[](Rig& r) { r.wait(5000); }, State::kIdle}}},
+      {"two are wanted, one is there",
+       {{[](Rig& r) { r.to_arrived(2); }, State::kArrived},
+        {[](Rig& r) { r.wait(3000); }, State::kExplore}}},
+      {"is not ready, then is",
+       {{[](Rig& r) { r.robot.pose.reset(), r.wait(100); }, State::kInitialise},
+        {[](Rig& r) { r.robot.pose = Pose2{}, r.wait(100); }, State::kIdle}}},
+      {"no way to the first room",
+       {{[](Rig& r) { r.to_room(); }, State::kToRoom},
+        {[](Rig& r) { r.no_way(); }, State::kToRoom}}},
+      {"cannot turn in the first room",
+       {{[](Rig& r) { r.to_scan(); }, State::kScanRoom},
+        {[](Rig& r) { r.wait(60000); }, State::kToRoom}}},
+      {"somebody in the first room",
+       {{[](Rig& r) { r.to_check_room(); }, State::kCheckRoom},
+        {[](Rig& r) { r.see(1.5, 0.1, 2); }, State::kToRoom}}},
+      {"it was nobody",
+       {{[](Rig& r) { r.to_check_room(); }, State::kCheckRoom},
+        {[](Rig& r) { r.wait(2500); }, State::kScanRoom}}},
+      {"a face that is none",
+       {{[](Rig& r) { r.to_check_face(); }, State::kCheckFace},
+        {[](Rig& r) { r.wait(2500); }, State::kExplore}}},
+      {"a person close by",
+       {{[](Rig& r) { r.to_explore(); }, State::kExplore},
+        {[](Rig& r) { r.see(1.2, 0.0, 3); }, State::kInvite}}},
+      {"the exploration fails",
+       {{[](Rig& r) { r.to_explore(); }, State::kExplore},
+        {[](Rig& r) { r.explorer(NavigationState::kFailed); }, State::kExplore}}},
+      {"the person cannot be reached",
+       {{[](Rig& r) { r.to_approach(); }, State::kApproach},
+        {[](Rig& r) { r.no_way(); }, State::kExplore}}},
+      {"says no",
+       {{[](Rig& r) { r.to_invite(); }, State::kInvite},
+        {[](Rig& r) { r.press("no"); }, State::kExplore}}},
+      {"says nothing",
+       {{[](Rig& r) { r.to_invite(); }, State::kInvite},
+        {[](Rig& r) { r.wait(14900); }, State::kInvite},
+        {[](Rig& r) { r.wait(100); }, State::kExplore}}},
+      {"leaves on the way",
+       {{[](Rig& r) { r.to_guide(); }, State::kGuide},
+        {[](Rig& r) { r.press("leave"); }, State::kExplore}}},
+      {"the way back is blocked, twice",
+       {{[](Rig& r) { r.to_guide(); }, State::kGuide},
+        {[](Rig& r) { r.wait(1000), r.no_way(); }, State::kGuide},
+        {[](Rig& r) { r.wait(1000), r.no_way(); }, State::kExplore}}},
+      {"was seen on the way and is still there",
+       {{[](Rig& r) { r.to_revisit(); }, State::kRevisit},
+        {[](Rig& r) {
+           r.depart(), r.see({r.face_at({4.5, 6.5})}, 2);
+         },
+         State::kCheckFace}}},
+      {"was seen on the way and has gone",
+       {{[](Rig& r) { r.to_revisit(); }, State::kRevisit},
+        {[](Rig& r) { r.arrive(); }, State::kRevisit},
+        {[](Rig& r) { r.wait(2000); }, State::kExplore}}},
+      {"was seen on the way and cannot be reached",
+       {{[](Rig& r) { r.to_revisit(); }, State::kRevisit},
+        {[](Rig& r) { r.no_way(); }, State::kExplore}}},
+  };
+  return kCases;
+}
+
+struct Begin {
+  State state;
+  void (*to)(Rig&);
+};
+/// A way into each state of a mission.
+const std::vector<Begin> kBegins{{State::kToRoom, [](Rig& r) { r.to_room(); }},
+                                 {State::kScanRoom, [](Rig& r) { r.to_scan(); }},
+                                 {State::kCheckRoom, [](Rig& r) { r.to_check_room(); }},
+                                 {State::kExplore, [](Rig& r) { r.to_explore(); }},
+                                 {State::kCheckFace, [](Rig& r) { r.to_check_face(); }},
+                                 {State::kRevisit, [](Rig& r) { r.to_revisit(); }},
+                                 {State::kApproach, [](Rig& r) { r.to_approach(); }},
+                                 {State::kInvite, [](Rig& r) { r.to_invite(); }},
+                                 {State::kGuide, [](Rig& r) { r.to_guide(); }},
+                                 {State::kArrived, [](Rig& r) { r.to_arrived(2); }}};
+
+TEST(Edges, AreAllTakenAndLeadWhereTheTableSays) {
+  std::array<std::uint64_t, kEdges.size()> taken{};
+  const auto count = [&](const Rig& rig) {
+    for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += rig.meeting.edges_taken()[i];
+  };
+  for (const Case& test : cases()) {
+    Rig rig;
+    int number = 0;
+    for (const Step& step : test.steps) {
+      SCOPED_TRACE(std::string(test.name) + ", step " + std::to_string(number++));
+      step.act(rig);
+      ASSERT_EQ(text(rig.state()), text(step.state));
+    }
+    count(rig);
+  }
+  ASSERT_EQ(kBegins.size(), edges::kActive);
+  for (const Begin& begin : kBegins) {
+    SCOPED_TRACE(text(begin.state));
+    Parameters hurried;
+    hurried.limit = std::chrono::seconds(30);
+    Rig limited(hurried), broken, cancelled;
+    begin.to(limited);
+    ASSERT_EQ(limited.state(), begin.state);
+    limited.now_ms = 40000;
+    limited.wait(100);
+    EXPECT_EQ(limited.meeting.report().outcome, Outcome::kTimeOver);
+    begin.to(broken);
+    broken.robot.supervisor = Supervisor::kFault;
+    broken.wait(100);
+    EXPECT_EQ(broken.meeting.report().outcome, Outcome::kFailed);
+    begin.to(cancelled);
+    cancelled.note(cancelled.meeting.cancel(0, cancelled.now()));
+    EXPECT_EQ(cancelled.meeting.report().outcome, Outcome::kCancelled);
+    for (Rig* rig : {&limited, &broken, &cancelled}) {
+      EXPECT_EQ(rig->state(), State::kEnded);
+      ASSERT_EQ(rig->reports.size(), 1U);
+      EXPECT_FALSE(rig->reports.back().reason.empty());
+      rig->robot.supervisor = Supervisor::kAvailable;
+      rig->wait(5100);
+      EXPECT_EQ(rig->state(), State::kIdle);
+      count(*rig);
+    }
+  }
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < kEdges.size(); ++i) {
+    const Edge& edge = kEdges[i];
+    std::printf("%4llu  %-12s -> %-12s %s\n", static_cast<unsigned long long>(taken[i]),
+                std::string(text(edge.from)).c_str(), std::string(text(edge.to)).c_str(),
+                std::string(text(edge.cause)).c_str());
+    covered += taken[i] > 0 ? 1 : 0;
+  }
+  std::printf("edges covered: %zu of %zu\n", covered, kEdges.size());
+  EXPECT_EQ(covered, kEdges.size());
+}
+
+TEST(Edges, LeaveNoStateWithoutAWayOut) {
+  for (std::size_t i = 0; i < kStates; ++i) {
+    const auto state = static_cast<State>(i);
+    EXPECT_TRUE(std::any_of(kEdges.begin(), kEdges.end(), [&](const Edge& edge) {
+      return edge.from == state && edge.to != state;
+    })) << text(state);
+  }
+}
+
+}  // namespace
+}  // namespace usher::meeting
