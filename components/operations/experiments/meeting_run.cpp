@@ -13,6 +13,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/results/result_sheet.hpp"
+#include "tasks/meeting/core/mission.hpp"
 
 namespace usher::operations {
 
@@ -149,8 +150,20 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
   auto& world = run.world();
 
   MeetingRun result;
-  world.observe(topics::kMeetingStatus,
-                [&](const auto& status, const auto&) { result.status = status; });
+  std::string journal = "t,state,x,y,yaw,brought,invited,navigator\n";
+  world.observe(topics::kMeetingStatus, [&](const auto& status, const auto&) {
+    const bool changed = status.state() != result.status.state();
+    result.status = status;
+    const auto truth = run.record().truth();
+    if (!changed || !truth) return;
+    const auto& navigation = run.record().navigation();
+    journal += format("%.1f,", runtime::seconds(world.elapsed())) +
+               std::string(meeting::text(static_cast<meeting::State>(status.state()))) +
+               format(",%.2f", truth->x) + format(",%.2f", truth->y) +
+               format(",%.2f,", truth->yaw) + std::to_string(status.mission().brought()) + "," +
+               std::to_string(status.mission().invited()) + "," +
+               (navigation ? navigation->reason() : "") + "\n";
+  });
   world.observe(topics::kNavigateGoal, [&](const auto& goal, const auto&) {
     if (result.first_room.empty()) result.first_room = goal.location();
   });
@@ -185,6 +198,7 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
   result.complaints = run.complaints();
   if (title.empty()) return result;
   Status saved = write_file(folder + "/" + name + ".csv", run_csv(run.record()));
+  if (saved) saved = write_file(folder + "/" + name + "_states.csv", journal);
   if (saved) saved = draw_run(run.record(), *map, title, folder + "/" + name + ".png");
   if (!saved) return Error{saved.error()};
   return result;

@@ -45,7 +45,7 @@ struct MeetingRun {
 Result<Deployment> meeting_deployment(const ExperimentOptions& options);
 
 /// One mission in lock-step. People go through a file in `folder`, named by `name`; with a `title`
-/// the run's picture and trace lie beside it.
+/// the run's picture, trace and states lie beside it.
 Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, std::uint64_t seed,
                                const std::string& folder, const std::string& name,
                                const std::string& title = {});

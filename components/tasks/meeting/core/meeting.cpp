@@ -256,6 +256,7 @@ std::string Meeting::lacks() const {
   if (!robot_.pose) return "not localized";
   if (!robot_.navigation) return "no navigator";
   if (!robot_.exploration) return "no explorer";
+  if (!robot_.sees) return "no face detector";
   switch (robot_.supervisor) {
     case Supervisor::kAvailable:
     case Supervisor::kInactive:
@@ -523,7 +524,9 @@ void Meeting::refuse_face(Time now) {
 /// Whom the robot passes by on its way is visited before it looks for others.
 void Meeting::remember_seen(const Faces& all, Time now) {
   const bool guides = state_ == State::kGuide;
-  if (guides && (!robot_.pose || (robot_.pose->position() - departure_).norm() < kDeparted)) return;
+  if (guides &&
+      !(departed_ && robot_.pose && (robot_.pose->position() - departure_).norm() >= kDeparted))
+    return;
   Faces some = all;
   std::erase_if(some.faces, [&](const Face& face) {
     return people_.left_alone(face.at, now) || in_a_room(face.at);

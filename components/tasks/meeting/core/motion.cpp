@@ -50,6 +50,12 @@ Motion::Outcome Motion::fail(const std::string& reason) {
   return Outcome::kFailed;
 }
 
+/// Of the journey; the supervisor starts none without.
+std::string Motion::name() const {
+  if (exploring_) return "exploration";
+  return goal_.location.empty() ? "person" : goal_.location;
+}
+
 void Motion::go(Time now) {
   phase_ = Phase::kDriving;
   phase_since_ = heard_ = now;
@@ -79,8 +85,7 @@ Motion::Outcome Motion::step(const Surroundings& robot, Time now) {
     case Phase::kAsking:
       if (now - began_ >= limits_.depart) return fail("the supervisor does not let me drive");
       if (robot.supervisor != Supervisor::kAvailable) return Outcome::kBusy;
-      actions_.requests.push_back(
-          {RequestKind::kNavigationStart, exploring_ ? "exploration" : goal_.location});
+      actions_.requests.push_back({RequestKind::kNavigationStart, name()});
       actions_.requests.push_back({RequestKind::kNavigationGo, {}});
       phase_ = Phase::kWaiting;
       phase_since_ = now;
@@ -126,8 +131,7 @@ Motion::Outcome Motion::follow(const Surroundings& robot, Time now) {
   if (robot.supervisor != Supervisor::kAvailable) held_since_ = now;
   if (held_since_ < phase_since_) held_since_ = phase_since_;
   if (now - held_since_ >= limits_.again) {
-    actions_.requests.push_back(
-        {RequestKind::kNavigationStart, exploring_ ? "exploration" : goal_.location});
+    actions_.requests.push_back({RequestKind::kNavigationStart, name()});
     actions_.requests.push_back({RequestKind::kNavigationGo, {}});
     held_since_ = now;
   }

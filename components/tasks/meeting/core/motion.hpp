@@ -23,6 +23,7 @@ struct Surroundings {
   std::optional<Pose2> pose;              ///< in map; nothing: not localized
   std::optional<GoalReport> navigation;   ///< nothing: the navigator is silent
   std::optional<GoalReport> exploration;  ///< nothing: the explorer is silent
+  bool sees = false;                      ///< the face detector is heard
 };
 
 /// Where the navigator shall go.
@@ -94,6 +95,7 @@ class Motion {
   Outcome fail(const std::string& reason);
   Outcome follow(const Surroundings& robot, Time now);
   void go(Time now);
+  std::string name() const;
 
   MotionLimits limits_;
   std::uint64_t last_id_;

@@ -183,7 +183,9 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
   locations_ = host.input(topics::kLocations, {},
                           [this](const auto& message, const auto&) { take_locations(message); });
   faces_ = host.input(topics::kFaces,
-                      {.max_age = kFacesAge, .on_loss = "takes no request; looks on, sees nobody"},
+                      {.max_age = kFacesAge,
+                       .on_loss = "takes no request; looks on, sees nobody",
+                       .optional = true},
                       [this](const auto& message, const auto&) { take_faces(message); });
   request_ = host.input(topics::kMeetingRequest, {.optional = true},
                         [this](const auto& request, const auto&) { take_request(request); });
@@ -305,6 +307,7 @@ Surroundings MeetingComponent::surroundings() const {
   };
   if (const auto* status = navigation_.fresh()) s.navigation = report(*status);
   if (const auto* status = exploration_.fresh()) s.exploration = report(*status);
+  s.sees = faces_.fresh() != nullptr;
   return s;
 }
 

@@ -47,6 +47,7 @@ class Rig {
     robot.pose = Pose2{8.0, 4.0, 0.0};
     robot.navigation = GoalReport{};
     robot.exploration = GoalReport{};
+    robot.sees = true;
     wait(100);
   }
 

@@ -251,6 +251,7 @@ TEST(Meeting, RemembersOnItsWayToARoomButNotWhomItGuides) {
   EXPECT_EQ(rig.meeting.people().remembered().size(), 1U);
   Rig guide;
   guide.to_guide(2);
+  guide.see(1.0, 0.1, 5);
   guide.wait(1500);
   guide.see(1.0, 0.3, 5);
   EXPECT_TRUE(guide.meeting.people().remembered().empty());
@@ -309,6 +310,7 @@ TEST(Meeting, IsNotReadyAndSaysWhy) {
   EXPECT_EQ(lacks([](Rig& r) { r.robot.pose = Pose2{1e12, 0, 0}; }), "not localized");
   EXPECT_EQ(lacks([](Rig& r) { r.robot.navigation.reset(); }), "no navigator");
   EXPECT_EQ(lacks([](Rig& r) { r.robot.exploration.reset(); }), "no explorer");
+  EXPECT_EQ(lacks([](Rig& r) { r.robot.sees = false; }), "no face detector");
   EXPECT_EQ(lacks([](Rig& r) { r.robot.supervisor = Supervisor::kUnknown; }), "no supervisor");
   EXPECT_EQ(lacks([](Rig& r) { r.robot.supervisor = Supervisor::kManual; }), "an operator drives");
   EXPECT_EQ(lacks([](Rig& r) { r.meeting.set_places({}); }), "no location 'west'");

@@ -68,6 +68,18 @@ TEST(Motion, AsksForTheNavigationThenGivesTheGoal) {
   EXPECT_TRUE(bench.motion.may_turn(bench.robot));
 }
 
+TEST(Motion, NamesEachJourneyToTheSupervisor) {
+  const auto name = [](void (*begin)(Motion&)) {
+    Bench bench;
+    begin(bench.motion);
+    bench.motion.step(bench.robot, milliseconds(100));
+    return bench.motion.take_actions().requests.at(0).goal;
+  };
+  EXPECT_EQ(name([](Motion& m) { m.drive({0, "room", {}}, {}); }), "room");
+  EXPECT_EQ(name([](Motion& m) { m.drive({0, {}, {1.0, 2.0, 0.0}}, {}); }), "person");
+  EXPECT_EQ(name([](Motion& m) { m.explore(false, {}); }), "exploration");
+}
+
 TEST(Motion, ExploresAnewOnceThoughItIsReplacedBefore) {
   Bench bench;
   bench.motion.explore(true, bench.now());
