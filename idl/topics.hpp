@@ -189,7 +189,7 @@ inline constexpr Topic<usher_msgs::msg::SupervisorRequest> kSupervisorRequest{
     Kind::kEvent,
     32,
     0,
-    "guide manual_control meeting tablet operator",
+    "guide manual_control meeting tablet speech operator",
     "Changes of the supervisor's state."};
 
 // --- Localization and maps
@@ -300,6 +300,10 @@ inline constexpr Topic<usher_msgs::msg::GuideVisit> kGuideVisit{
     "guide/visit", Kind::kEvent, 32, 0, "guide", "A visit is over."};
 inline constexpr Topic<usher_msgs::msg::Visitor> kVisitor{
     "visitor", Kind::kStream, 1, 10, "people_detector", "The person whom the robot serves."};
+inline constexpr Topic<usher_msgs::msg::SpeechStatus> kSpeechStatus{
+    "speech/status", Kind::kLatched, 1, 2, "speech", "What is said, what is heard."};
+inline constexpr Topic<usher_msgs::msg::SpeechLevel> kSpeechLevel{
+    "speech/level", Kind::kStream, 1, 25, "speech", "How loud the robot speaks."};
 
 // --- Meeting assistant
 inline constexpr Topic<usher_msgs::msg::MeetingRequest> kMeetingRequest{
@@ -387,10 +391,10 @@ inline constexpr auto kAll = std::tie(
     kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,
     kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kExploreGoal,
     kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen, kDialogueAnswer,
-    kGuideStatus, kGuideVisit, kVisitor, kMeetingRequest, kMeetingCancel, kMeetingStatus,
-    kMeetingReport, kSimKinectFaces, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
-    kSimSensorBoardCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth,
-    kSimRearInfo, kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople, kSimRearPeople,
-    kSimGroundTruth, kSimPersonGoal);
+    kGuideStatus, kGuideVisit, kVisitor, kSpeechStatus, kSpeechLevel, kMeetingRequest,
+    kMeetingCancel, kMeetingStatus, kMeetingReport, kSimKinectFaces, kSimBaseCommand,
+    kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth,
+    kSimKinectColor, kSimKinectInfo, kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow,
+    kSimRearScan, kSimKinectPeople, kSimRearPeople, kSimGroundTruth, kSimPersonGoal);
 
 }  // namespace usher::topics

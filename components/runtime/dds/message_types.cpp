@@ -74,6 +74,8 @@
   TYPE(usher_msgs::msg::DialogueAnswer)               \
   TYPE(usher_msgs::msg::GuideStatus)                  \
   TYPE(usher_msgs::msg::GuideVisit)                   \
+  TYPE(usher_msgs::msg::SpeechStatus)                 \
+  TYPE(usher_msgs::msg::SpeechLevel)                  \
   TYPE(usher_msgs::msg::Visitor)                      \
   TYPE(usher_msgs::msg::NavigatePace)                 \
   TYPE(usher_sim_msgs::msg::BaseCommand)              \

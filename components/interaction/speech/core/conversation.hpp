@@ -1,0 +1,121 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interaction/speech/core/grammar.hpp"
+#include "interaction/speech/core/hearing.hpp"
+#include "interaction/speech/core/tones.hpp"
+
+namespace usher::speech {
+
+using Time = std::chrono::nanoseconds;
+
+/// What the dialogue says and waits for.
+struct Screen {
+  std::uint64_t id = 0;
+  std::string language;
+  std::string spoken;
+  std::uint64_t spoken_id = 0;
+  Tone tone = Tone::kNone;
+  bool listens = false;
+  std::vector<Option> options;
+};
+
+/// What the conversation wants of the others, in this order.
+struct Wishes {
+  bool break_off = false;  ///< what is being said
+  std::vector<Tone> tones;
+  struct Say {
+    std::uint64_t id = 0;  ///< the dialogue's, 0 = our own
+    std::string text, language;
+  };
+  std::optional<Say> say;
+  struct Answer {
+    std::uint64_t screen_id = 0;
+    std::string option_id;
+  };
+  std::optional<Answer> answer;
+  bool halt = false;   ///< the supervisor shall stop the robot, since no dialogue can
+  bool go_on = false;  ///< and let it move again
+};
+
+/// Our own sentences, in the language of the dialogue.
+struct Sentences {
+  std::string did_you_say;  ///< with {answer}
+  std::string by_touch;     ///< in a language that is not understood
+};
+
+/// Who speaks when, and what an answer is. Says what a screen wants said, once for each spoken_id:
+/// a new question breaks the old one off, more about the same waits its turn. Takes what was heard
+/// for an answer only when it is sure, else asks back; a stop it takes at once.
+class Conversation {
+ public:
+  /// How long a question back waits.
+  static constexpr Time kPatience = std::chrono::seconds(8);
+  static constexpr int kMostQuestions = 2;  ///< about one utterance
+
+  explicit Conversation(const DecisionRule& rule) : rule_(rule) {}
+
+  /// Languages that the recognizer knows: English or none.
+  void can_understand(bool able) { able_ = able; }
+  void set_sentences(Sentences sentences) { sentences_ = std::move(sentences); }
+  void take(const Screen& screen, Time now);
+  /// The dialogue is heard from or is not.
+  void hear_dialogue(bool alive) { alive_ = alive; }
+  /// What was heard, with the number of the phrases that it was listened for.
+  void heard(const Hearing& hearing, std::uint64_t phrases_id, Time now);
+  /// The robot's voice sounds or not; call often.
+  void step(bool sounds, Time now);
+  Wishes take_wishes();
+
+  /// What may be said now; a new number whenever it changes. Empty: nobody listens.
+  const std::vector<Phrase>& phrases() const { return phrases_; }
+  std::uint64_t phrases_id() const { return phrases_id_; }
+  bool listens() const { return !phrases_.empty(); }
+  bool asks() const { return question_.has_value(); }
+  /// What the visitor should read besides the screen; empty: nothing.
+  std::string hint() const;
+  const std::string& last_heard() const { return last_heard_; }
+  double last_confidence() const { return last_confidence_; }
+  /// Answers since the start: given at once, after a question, denied or unanswered, ignored.
+  struct Counts {
+    std::uint64_t acted = 0, confirmed = 0, denied = 0, ignored = 0;
+  };
+  const Counts& counts() const { return counts_; }
+  bool holds() const { return holds_; }
+  /// After a restart while the robot was stopped through us.
+  void hold_again() { holds_ = true; }
+
+ private:
+  struct Question {
+    std::vector<Phrase> candidates;  ///< the first is asked about
+    std::size_t at = 0;
+    Time since{};
+  };
+  bool english() const { return screen_.language == "en"; }
+  bool offers(std::string_view option_id) const;
+  void listen();
+  void ask(Time now);
+  void answer(const std::string& option_id);
+  void stop();
+  void reply(const Phrase& phrase, Time now);
+
+  DecisionRule rule_;
+  Sentences sentences_;
+  Screen screen_;
+  std::uint64_t said_ = 0;
+  bool able_ = false, alive_ = true, holds_ = false, waited_ = false, greeted_ear_ = false;
+  std::optional<Question> question_;
+  std::vector<Phrase> phrases_;
+  std::uint64_t phrases_id_ = 0;
+  Wishes wishes_;
+  std::string last_heard_;
+  double last_confidence_ = 0.0;
+  Counts counts_;
+};
+
+}  // namespace usher::speech

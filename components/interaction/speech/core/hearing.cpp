@@ -1,0 +1,26 @@
+#include "interaction/speech/core/hearing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace usher::speech {
+
+Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always) {
+  if (hearing.candidates.empty()) return Verdict::kIgnore;
+  const double fit = hearing.candidates.front().fit;
+  if (!(fit >= rule.ask_fit)) return Verdict::kIgnore;
+  if (always) return Verdict::kAct;
+  const bool alone = hearing.candidates.size() < 2;
+  const bool clear = alone || hearing.candidates[1].behind >= rule.act_margin;
+  return fit >= rule.act_fit && clear ? Verdict::kAct : Verdict::kAsk;
+}
+
+double confidence(const Hearing& hearing, const DecisionRule& rule) {
+  if (hearing.candidates.empty()) return 0.0;
+  const double fit = hearing.candidates.front().fit;
+  if (!std::isfinite(fit)) return 0.0;
+  const double span = rule.act_fit - rule.ask_fit;
+  return span > 0.0 ? std::clamp(0.5 * (fit - rule.ask_fit) / span, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace usher::speech

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace usher::speech {
+
+/// What a recognizer makes of an utterance. Both measures are logarithms of likelihood ratios for a
+/// frame of 10 ms, so they depend on neither the length nor the loudness.
+struct Hearing {
+  struct Candidate {
+    std::size_t phrase = 0;  ///< place in the list that was listened for
+    double fit = 0.0;        ///< {.., about 0} of its speech, against any sequence of sounds at all
+    double behind = 0.0;     ///< {0..} of the whole utterance: how much less likely than the first
+  };
+  std::vector<Candidate> candidates;  ///< best first, at most 3; empty: nothing like speech
+};
+
+/// What to do about it.
+enum class Verdict : std::uint8_t {
+  kIgnore,  ///< no answer: noise, or words that were not asked for
+  kAsk,     ///< may be an answer: ask back before anything is done
+  kAct,     ///< an answer
+};
+
+struct DecisionRule {
+  double act_fit = -14.0;   ///< at least, to act without asking
+  double act_margin = 1.0;  ///< and at least so far before the second
+  double ask_fit = -45.0;   ///< at least, to ask
+};
+
+/// A stop is an answer whenever it might be one: `always` acts where others are asked about.
+Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always);
+
+/// How sure, for people: 0 at ask_fit, 0.5 at act_fit, towards 1 above.
+double confidence(const Hearing& hearing, const DecisionRule& rule);
+
+}  // namespace usher::speech

@@ -1,0 +1,345 @@
+#include "interaction/speech/shell/component.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "interaction/speech/core/loudness.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::speech {
+
+namespace {
+
+using std::chrono::milliseconds;
+namespace command = usher_msgs::msg::SupervisorRequest_Constants;
+namespace state = usher_msgs::msg::SpeechStatus_Constants;
+
+constexpr auto kStep = milliseconds(20);
+constexpr auto kDialogueAge = milliseconds(3000);
+constexpr std::uint64_t kLevelEvery = 2;    // steps: 25 Hz
+constexpr std::uint64_t kStatusEvery = 25;  // steps, when nothing changes: 2 Hz
+constexpr std::uint64_t kRetryEvery = 250;  // steps between two tries to open a device: 5 s
+constexpr std::size_t kMostJobs = 4;        // that wait for voice or recognizer
+constexpr double kDucked = 0.25;            // of the volume, while somebody speaks
+constexpr auto kLoadTime = milliseconds(1000);
+constexpr auto kSynthesisTime = milliseconds(30);
+constexpr auto kRecognitionTime = milliseconds(120);
+constexpr std::size_t kMostWords = 400;  // [byte] of a text
+constexpr const char* kHoldKey = "holds";
+
+enum class Text : std::size_t { kDidYouSay, kByTouch };
+constexpr std::array<std::string_view, 2> kTextKeys{"did_you_say", "by_touch"};
+
+}  // namespace
+
+SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
+  auto& parameters = host.parameters();
+  Settings settings;
+  settings.loudspeaker =
+      parameters.text("loudspeaker", "default", "ALSA device, a file that ends in .wav, or none.");
+  settings.microphone =
+      parameters.text("microphone", "default", "ALSA device, a file that ends in .wav, or none.");
+  settings.volume = parameters.number("volume", "-", {0.0, 1.0}, 0.8, "Of the robot's voice.");
+  settings.voice.voice = parameters.text(
+      "voice", "", "Variant of espeak-ng, for example m3 or f2; empty = the language's own.");
+  settings.voice.words_per_minute =
+      parameters.number("words_per_minute", "-", {80.0, 300.0}, 150.0, "How fast it speaks.");
+  settings.voice.pitch = parameters.number("pitch", "-", {0.0, 100.0}, 45.0, "How high it speaks.");
+  DecisionRule& rule = settings.rule;
+  rule.act_fit = parameters.number("act_fit", "-", {-200.0, 50.0}, rule.act_fit,
+                                   "Fit to a phrase from which on an answer is taken; per frame.");
+  rule.act_margin = parameters.number("act_margin", "-", {0.0, 50.0}, rule.act_margin,
+                                      "Distance to the second phrase that this needs; per frame.");
+  rule.ask_fit = parameters.number("ask_fit", "-", {-200.0, 50.0}, rule.ask_fit,
+                                   "Fit from which on it asks back; less is ignored.");
+  VoiceActivity::Settings& activity = settings.activity;
+  activity.over_noise = parameters.number("over_noise", "-", {3.0, 40.0}, activity.over_noise,
+                                          "Decibels that a voice is above the background.");
+  activity.over_echo =
+      parameters.number("over_echo", "-", {3.0, 40.0}, activity.over_echo,
+                        "Decibels that a voice is above the robot's own in the microphone.");
+  return settings;
+}
+
+phrases::PhraseBook SpeechComponent::read_phrases(runtime::Host& host) {
+  auto& parameters = host.parameters();
+  const std::filesystem::path file = parameters.file(
+      "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
+  std::istringstream list(
+      parameters.text("languages", "en mi de fr", "Languages that the dialogue may speak."));
+  std::vector<std::string> tags;
+  for (std::string tag; list >> tag;) tags.push_back(tag);
+  if (file.empty()) return phrases::PhraseBook::of_keys(kTextKeys);
+  auto book = phrases::PhraseBook::load(file.parent_path(), tags, "speech", kTextKeys);
+  if (!book) host.fault("texts: " + book.error());
+  return std::move(book).value();
+}
+
+SpeechComponent::SpeechComponent(runtime::Host& host)
+    : SpeechComponent(host, Equipment{std::make_unique<NullSoundCard>(),
+                                      std::make_unique<NullSynthesizer>(), nullptr}) {}
+
+SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
+    : host_(host),
+      settings_(read_settings(host)),
+      texts_(read_phrases(host)),
+      conversation_(settings_.rule),
+      activity_(settings_.activity),
+      card_(std::move(equipment.card)),
+      synthesizer_(std::move(equipment.synthesizer)),
+      recognizer_(std::move(equipment.recognizer)),
+      player_(synthesizer_->rate()),
+      understood_(host.health().counter("answers: understood")),
+      ignored_(host.health().counter("answers: ignored")),
+      rejected_(host.health().counter("inputs: rejected")),
+      status_output_(host.output(topics::kSpeechStatus)),
+      level_output_(host.output(topics::kSpeechLevel)),
+      answers_(host, topics::kDialogueAnswer),
+      requests_(host, topics::kSupervisorRequest) {
+  screen_ = host.input(topics::kDialogueScreen, {},
+                       [this](const auto& screen, const auto&) { take_screen(screen); });
+  guide_ = host.input(topics::kGuideStatus,
+                      {.max_age = kDialogueAge, .on_loss = "a spoken stop goes to the supervisor"});
+  supervisor_ = host.input(
+      topics::kSupervisorStatus, {.optional = true},
+      [this](const auto& status, const auto&) { requests_.answered(status.last_request()); });
+  timer_ = host.timer("step", kStep, [this](auto) { tick(); });
+  player_.set_gain(settings_.volume);
+  if (recognizer_ == nullptr) models_trouble_ = "there is no recognizer";
+  if (const auto kept = host.kept(kHoldKey); kept && !kept->empty()) conversation_.hold_again();
+}
+
+void SpeechComponent::open_devices() {
+  const auto open = [](std::string& trouble, const Status& status) {
+    trouble = status ? "" : status.error();
+  };
+  if (ticks_ == 1 || !loudspeaker_trouble_.empty()) {
+    open(loudspeaker_trouble_,
+         card_->open_loudspeaker(settings_.loudspeaker, synthesizer_->rate()));
+  }
+  if (ticks_ == 1 || !microphone_trouble_.empty())
+    open(microphone_trouble_, card_->open_microphone(settings_.microphone));
+}
+
+void SpeechComponent::load() {
+  if (recognizer_ == nullptr) return;
+  const auto loaded = std::make_shared<Status>();
+  host_.offload(
+      kLoadTime, [recognizer = recognizer_, loaded] { *loaded = recognizer->load(); },
+      [this, loaded] {
+        models_ready_ = loaded->ok();
+        if (!loaded->ok()) models_trouble_ = loaded->error();
+      });
+}
+
+void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen) {
+  if (screen.answer_client() == host_.name()) answers_.answered(screen.answer_id());
+  Screen taken;
+  taken.id = screen.id();
+  taken.language = screen.language();
+  taken.spoken = screen.spoken().substr(0, kMostWords);
+  taken.spoken_id = screen.spoken_id();
+  if (screen.tone() <= static_cast<std::uint8_t>(Tone::kCall))
+    taken.tone = static_cast<Tone>(screen.tone());
+  else
+    ++rejected_;
+  taken.listens = screen.listens();
+  for (const auto& option : screen.options())
+    taken.options.push_back({option.id(), option.label(), option.takes_text()});
+  const std::size_t language = texts_.find(taken.language);
+  conversation_.set_sentences({texts_.phrase(language, static_cast<std::size_t>(Text::kDidYouSay)),
+                               texts_.phrase(language, static_cast<std::size_t>(Text::kByTouch))});
+  conversation_.take(taken, now());
+  fulfil();
+}
+
+void SpeechComponent::ask_supervisor(std::uint8_t what) {
+  usher_msgs::msg::SupervisorRequest request;
+  request.id(requests_.next_id());
+  request.command(what);
+  requests_.give_up();  // the newest word is what counts
+  requests_.ask(std::move(request));
+}
+
+void SpeechComponent::fulfil() {
+  Wishes wishes = conversation_.take_wishes();
+  if (wishes.break_off) {
+    player_.break_off();
+    to_say_.clear();
+    ++said_epoch_;
+    finished_id_ = spoken_id_;
+  }
+  for (const Tone wanted : wishes.tones) {
+    const Sound sound = tone(wanted, player_.rate());
+    player_.add({0, {}, sound, {}});
+  }
+  if (wishes.say) {
+    if (to_say_.size() == kMostJobs) to_say_.pop_front();
+    to_say_.push_back(std::move(*wishes.say));
+    say_next();
+  }
+  if (wishes.answer) {
+    usher_msgs::msg::DialogueAnswer answer;
+    answer.id(answers_.next_id());
+    answer.screen_id(wishes.answer->screen_id);
+    answer.option_id(wishes.answer->option_id);
+    answer.input(usher_msgs::msg::DialogueAnswer_Constants::INPUT_VOICE);
+    answers_.give_up();
+    answers_.ask(std::move(answer));
+  }
+  if (wishes.halt) ask_supervisor(command::COMMAND_STOP);
+  if (wishes.go_on) ask_supervisor(command::COMMAND_MOVEMENT_ON);
+  if (wishes.halt || wishes.go_on) {
+    const std::uint8_t one = 1;
+    static_cast<void>(host_.keep(kHoldKey, {&one, wishes.halt ? 1U : 0U}).ok());
+  }
+}
+
+void SpeechComponent::say_next() {
+  if (synthesizing_ || to_say_.empty()) return;
+  synthesizing_ = true;
+  const Wishes::Say say = to_say_.front();
+  to_say_.pop_front();
+  const auto made = std::make_shared<Result<Utterance>>(Error{"nothing was made"});
+  host_.offload(
+      kSynthesisTime,
+      [synthesizer = synthesizer_, made, say, voice = settings_.voice] {
+        *made = synthesizer->say(say.text, say.language, voice);
+      },
+      [this, made, say, epoch = said_epoch_] {
+        synthesizing_ = false;
+        voice_trouble_ = made->ok() ? "" : made->error();
+        if (epoch == said_epoch_) {
+          if (say.id != 0) spoken_id_ = say.id;
+          if (made->ok()) {
+            Utterance utterance = std::move(*made).value();
+            utterance.id = say.id;
+            player_.add(std::move(utterance));
+          } else {
+            finished_id_ = spoken_id_;  // nobody waits for what cannot be said
+          }
+        }
+        say_next();
+      });
+}
+
+void SpeechComponent::play() {
+  out_.resize(card_->room());
+  if (out_.empty()) return;
+  player_.set_gain(settings_.volume * (activity_.voice() ? kDucked : 1.0));
+  player_.take(out_);
+  if (!loudspeaker_trouble_.empty()) return;  // time passes all the same
+  if (const Status written = card_->write(out_); !written) loudspeaker_trouble_ = written.error();
+}
+
+void SpeechComponent::hear() {
+  if (!microphone_trouble_.empty()) return;
+  in_.clear();
+  if (const Status got = card_->read(in_); !got) {
+    microphone_trouble_ = got.error();
+    return;
+  }
+  if (!conversation_.listens()) {
+    activity_.restart();
+    return;
+  }
+  auto utterance = activity_.hear(in_, player_.loudness(card_->unheard()));
+  if (!utterance) return;
+  if (to_recognize_.size() == kMostJobs) to_recognize_.pop_front();
+  to_recognize_.push_back(
+      {std::move(*utterance), conversation_.phrases(), conversation_.phrases_id()});
+  recognize_next();
+}
+
+void SpeechComponent::recognize_next() {
+  if (recognizing_ || to_recognize_.empty() || !models_ready_) return;
+  recognizing_ = true;
+  const auto heard = std::make_shared<Heard>(std::move(to_recognize_.front()));
+  to_recognize_.pop_front();
+  const auto hearing = std::make_shared<Result<Hearing>>(Hearing{});
+  host_.offload(
+      kRecognitionTime,
+      [recognizer = recognizer_, heard, hearing] {
+        *hearing = recognizer->hear(heard->sound, heard->phrases);
+      },
+      [this, heard, hearing] {
+        recognizing_ = false;
+        models_trouble_ = hearing->ok() ? "" : hearing->error();
+        if (hearing->ok()) conversation_.heard(**hearing, heard->phrases_id, now());
+        fulfil();
+        recognize_next();
+      });
+}
+
+void SpeechComponent::tick() {
+  if (++ticks_ == 1) load();
+  if (ticks_ % kRetryEvery == 1) open_devices();
+  conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
+  conversation_.hear_dialogue(guide_.fresh() != nullptr);
+  play();
+  hear();
+  const bool sounds = player_.sounds(card_->unheard()) || synthesizing_ || !to_say_.empty();
+  conversation_.step(sounds, now());
+  fulfil();
+  understood_ = conversation_.counts().acted + conversation_.counts().confirmed;
+  ignored_ = conversation_.counts().ignored + conversation_.counts().denied;
+  finished_id_ = std::max(finished_id_, player_.finished(card_->unheard()));
+  report();
+}
+
+usher_msgs::msg::SpeechStatus SpeechComponent::status() {
+  usher_msgs::msg::SpeechStatus status;
+  const std::uint64_t unheard = card_->unheard();
+  const auto caption = player_.caption(unheard);
+  const bool sounds = player_.sounds(unheard);
+  status.state(conversation_.asks()      ? state::STATE_ASKING
+               : sounds                  ? state::STATE_SPEAKING
+               : conversation_.listens() ? state::STATE_LISTENING
+                                         : state::STATE_SILENT);
+  const auto* screen = screen_.latest();
+  if (screen != nullptr) status.language(screen->language());
+  status.audible(loudspeaker_trouble_.empty() && voice_trouble_.empty());
+  status.understands(conversation_.listens());
+  status.listens(conversation_.listens());
+  status.spoken_id(spoken_id_);
+  status.finished(finished_id_ >= spoken_id_);
+  if (caption) {
+    status.sentence(caption->sentence);
+    status.word_begin(caption->word_begin);
+    status.word_length(caption->word_length);
+  }
+  status.heard(conversation_.last_heard());
+  status.confidence(static_cast<float>(conversation_.last_confidence()));
+  status.hint(conversation_.hint());
+  return status;
+}
+
+void SpeechComponent::report() {
+  if (ticks_ % kLevelEvery == 0) {
+    const double level = level_of(player_.loudness(card_->unheard()));
+    if (level > 0.0 || !level_was_zero_ || ticks_ % kStatusEvery == 0) {
+      usher_msgs::msg::SpeechLevel message;
+      message.header(wire::header(host_.now(), ""));
+      message.level(static_cast<float>(level));
+      level_output_.publish(message);
+    }
+    level_was_zero_ = level == 0.0;
+  }
+  auto message = status();
+  if (message != reported_ || ticks_ % kStatusEvery == 0) {
+    reported_ = message;
+    message.header(wire::header(host_.now(), ""));
+    status_output_.publish(message);
+  }
+  if (ticks_ % kStatusEvery != 0) return;
+  std::string trouble;
+  for (const std::string* each :
+       {&loudspeaker_trouble_, &voice_trouble_, &microphone_trouble_, &models_trouble_}) {
+    if (!each->empty()) trouble += (trouble.empty() ? "" : "; ") + *each;
+  }
+  using runtime::HealthState;
+  host_.health().set(trouble.empty() ? HealthState::kOk : HealthState::kDegraded, trouble);
+}
+
+}  // namespace usher::speech

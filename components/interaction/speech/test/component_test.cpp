@@ -1,0 +1,295 @@
+#include "interaction/speech/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::speech {
+namespace {
+
+using std::chrono::milliseconds;
+namespace command = usher_msgs::msg::SupervisorRequest_Constants;
+namespace state = usher_msgs::msg::SpeechStatus_Constants;
+
+/// What the test hears and says; outlives the component.
+struct Room {
+  bool microphone = true, loudspeaker = true, models = true;
+  double voice = 0.0;  ///< {0..1} loudness of a visitor
+  Hearing hearing;     ///< what the recognizer will make of it
+  std::vector<Phrase> listened_for;
+  double heard_peak = 0.0;  ///< of the loudspeaker
+};
+
+class FakeCard final : public SoundCard {
+ public:
+  explicit FakeCard(Room& room) : room_(room) {}
+  Status open_loudspeaker(const std::string&, int rate) override {
+    rate_ = static_cast<std::size_t>(rate);
+    return room_.loudspeaker ? Status{} : Error{"no loudspeaker here"};
+  }
+  Status open_microphone(const std::string&) override {
+    return room_.microphone ? Status{} : Error{"no microphone here"};
+  }
+  std::size_t room() override { return rate_ / 50; }
+  Status write(std::span<const std::int16_t> samples) override {
+    for (const auto sample : samples)
+      room_.heard_peak = std::max(room_.heard_peak, std::abs(double{1} * sample));
+    return {};
+  }
+  std::uint64_t unheard() override { return 0; }
+  Status read(std::vector<std::int16_t>& samples) override {
+    if (!room_.microphone) return Error{"no microphone here"};
+    for (int i = 0; i < 320; ++i) {
+      samples.push_back(static_cast<std::int16_t>(20.0 * std::sin(0.9 * at_) +
+                                                  32000.0 * room_.voice * std::sin(0.1 * at_)));
+      at_ += 1.0;
+    }
+    return {};
+  }
+
+ private:
+  Room& room_;
+  std::size_t rate_ = 8000;
+  double at_ = 0.0;
+};
+
+class FakeRecognizer final : public Recognizer {
+ public:
+  explicit FakeRecognizer(Room& room) : room_(room) {}
+  Status load() override { return room_.models ? Status{} : Error{"no models here"}; }
+  Result<Hearing> hear(const Sound&, std::span<const Phrase> phrases) override {
+    room_.listened_for.assign(phrases.begin(), phrases.end());
+    return room_.hearing;
+  }
+
+ private:
+  Room& room_;
+};
+
+class Speech : public testing::Test {
+ protected:
+  void start() {
+    host_ = std::make_unique<runtime::TestHost>(
+        runtime::ComponentFactory{"speech",
+                                  [this](runtime::Host& host) {
+                                    Equipment equipment{std::make_unique<FakeCard>(room_),
+                                                        std::make_unique<NullSynthesizer>(),
+                                                        std::make_unique<FakeRecognizer>(room_)};
+                                    return std::unique_ptr<runtime::Component>(
+                                        std::make_unique<SpeechComponent>(host,
+                                                                          std::move(equipment)));
+                                  }},
+        "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml");
+    pass(2.0);
+  }
+  void pass(double time) {
+    for (int i = 0; i < static_cast<int>(time * 10.0 + 0.5); ++i) {
+      if (guide_) {
+        usher_msgs::msg::GuideStatus guide;
+        guide.header(wire::header(host_->now(), ""));
+        host_->publish(topics::kGuideStatus, guide, "guide");
+      }
+      host_->run_for(milliseconds(100));
+    }
+  }
+  void show(std::uint64_t id, const std::vector<std::string>& options,
+            const std::string& spoken = "Where to?", const std::string& language = "en") {
+    usher_msgs::msg::DialogueScreen screen;
+    screen.id(id);
+    screen.language(language);
+    screen.spoken(spoken);
+    screen.spoken_id(id);
+    screen.listens(true);
+    for (const auto& option : options) {
+      auto& entry = screen.options().emplace_back();
+      entry.id(option);
+      entry.label(option);
+    }
+    host_->publish(topics::kDialogueScreen, screen, "guide");
+    pass(0.1);
+  }
+  /// A visitor says something that the recognizer will take for this phrase.
+  void say(std::size_t phrase, double fit) {
+    room_.hearing = {{{phrase, fit, 0.0}, {phrase + 1, fit - 10.0, 10.0}}};
+    room_.voice = 0.3;
+    pass(0.6);
+    room_.voice = 0.0;
+    pass(1.0);
+  }
+  usher_msgs::msg::SpeechStatus status() { return host_->last(topics::kSpeechStatus).value(); }
+  std::vector<usher_msgs::msg::DialogueAnswer> answers() {
+    return host_->written(topics::kDialogueAnswer);
+  }
+
+  Room room_;
+  bool guide_ = true;
+  std::unique_ptr<runtime::TestHost> host_;
+};
+
+TEST_F(Speech, SaysTheScreenWithCaptionsAndTellsWhenItIsFinished) {
+  start();
+  show(5, {"yes", "no"}, "Would you like to see our location?");
+  pass(0.3);
+  EXPECT_EQ(status().state(), state::STATE_SPEAKING);
+  EXPECT_EQ(status().spoken_id(), 5U);
+  EXPECT_FALSE(status().finished());
+  EXPECT_EQ(status().sentence(), "Would you like to see our location?");
+  EXPECT_GT(status().word_length(), 0U);
+  const auto word = status().word_begin();
+  pass(1.0);
+  EXPECT_GT(status().word_begin(), word);
+  pass(2.0);
+  EXPECT_TRUE(status().finished());
+  EXPECT_EQ(status().sentence(), "");
+  EXPECT_EQ(status().state(), state::STATE_LISTENING);
+  EXPECT_GT(room_.heard_peak, 3000.0) << "the tone that says: I listen";
+}
+
+TEST_F(Speech, TellsTheLevelWhileItSounds) {
+  start();
+  show(5, {"yes"}, "Hm");
+  host_->clear();
+  pass(1.0);
+  float loudest = 0.0F;
+  for (const auto& level : host_->written(topics::kSpeechLevel))
+    loudest = std::max(loudest, level.level());
+  EXPECT_GT(loudest, 0.5F) << "the tone";
+  EXPECT_EQ(host_->last(topics::kSpeechLevel)->level(), 0.0F);
+}
+
+TEST_F(Speech, AnswersAsATouchWouldAndRepeatsUntilTheScreenNamesIt) {
+  start();
+  show(5, {"yes", "no"}, "Go?");
+  pass(1.0);
+  say(0, 0.0);
+  ASSERT_FALSE(answers().empty());
+  const auto answer = answers().back();
+  EXPECT_EQ(answer.option_id(), "yes");
+  EXPECT_EQ(answer.screen_id(), 5U);
+  EXPECT_EQ(answer.client(), "speech");
+  EXPECT_EQ(answer.input(), usher_msgs::msg::DialogueAnswer_Constants::INPUT_VOICE);
+  EXPECT_EQ(status().heard(), "yes");
+  const auto before = answers().size();
+  EXPECT_GT(before, 2U) << "5 Hz";
+  usher_msgs::msg::DialogueScreen reply;
+  reply.id(6);
+  reply.language("en");
+  reply.answer_client("speech");
+  reply.answer_id(answer.id());
+  host_->publish(topics::kDialogueScreen, reply, "guide");
+  pass(0.2);
+  host_->clear();
+  pass(1.0);
+  EXPECT_TRUE(answers().empty());
+}
+
+TEST_F(Speech, AsksBackWhenUnsure) {
+  start();
+  show(5, {"library", "cafe"}, "Go?");
+  pass(1.0);
+  say(0, -25.0);
+  EXPECT_TRUE(answers().empty());
+  EXPECT_EQ(status().state(), state::STATE_ASKING);
+  EXPECT_EQ(status().hint(), "Did you say \"library\"?");
+  pass(3.0);
+  ASSERT_EQ(room_.listened_for.front().option_id, "library");
+  say(0, -25.0);  // the first phrase is "yes" now
+  EXPECT_EQ(room_.listened_for.front().option_id, "yes");
+  ASSERT_FALSE(answers().empty());
+  EXPECT_EQ(answers().back().option_id(), "library");
+}
+
+TEST_F(Speech, IgnoresForeignWords) {
+  start();
+  show(5, {"library", "cafe"}, "Go?");
+  pass(1.0);
+  say(0, -100.0);
+  EXPECT_TRUE(answers().empty());
+  EXPECT_EQ(status().state(), state::STATE_LISTENING);
+  EXPECT_EQ(host_->counter("answers: ignored"), 1U);
+}
+
+TEST_F(Speech, BreaksOffItsSentenceWhenItUnderstoodSomebody) {
+  start();
+  show(5, {"yes", "no"}, std::string(200, 'a'));
+  pass(1.0);
+  EXPECT_EQ(status().state(), state::STATE_SPEAKING);
+  say(0, 0.0);
+  EXPECT_TRUE(status().finished());
+  EXPECT_NE(status().state(), state::STATE_SPEAKING);
+}
+
+TEST_F(Speech, StopsThroughTheSupervisorWhenTheGuideIsGone) {
+  start();
+  show(5, {"stop"}, "Go.");
+  guide_ = false;
+  pass(4.0);
+  say(0, -25.0);
+  const auto requests = host_->written(topics::kSupervisorRequest);
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.back().command(), command::COMMAND_STOP);
+  EXPECT_TRUE(answers().empty());
+}
+
+TEST_F(Speech, SpeaksWithoutAMicrophoneAndSaysSo) {
+  room_.microphone = false;
+  start();
+  show(5, {"yes", "no"}, "Go?");
+  EXPECT_FALSE(status().listens());
+  EXPECT_FALSE(status().understands());
+  EXPECT_TRUE(status().audible());
+  EXPECT_EQ(host_->heartbeat().state(), 2) << "degraded";
+  EXPECT_NE(host_->heartbeat().reason().find("no microphone here"), std::string::npos);
+  room_.microphone = true;
+  pass(6.0);
+  EXPECT_TRUE(status().listens()) << "it is tried again each five seconds";
+}
+
+TEST_F(Speech, CaptionsGoOnWithoutALoudspeaker) {
+  room_.loudspeaker = false;
+  start();
+  show(5, {"yes", "no"}, "Would you like to go?");
+  pass(0.3);
+  EXPECT_FALSE(status().audible());
+  EXPECT_EQ(status().sentence(), "Would you like to go?");
+  pass(3.0);
+  EXPECT_TRUE(status().finished()) << "so nobody waits for it";
+}
+
+TEST_F(Speech, SpeaksWithoutModels) {
+  room_.models = false;
+  start();
+  show(5, {"yes"}, "Go?");
+  EXPECT_FALSE(status().listens());
+  EXPECT_NE(host_->heartbeat().reason().find("no models here"), std::string::npos);
+}
+
+TEST_F(Speech, ListensToEnglishOnlyAndSaysSo) {
+  start();
+  show(5, {"yes"}, "Ja?", "de");
+  EXPECT_FALSE(status().listens());
+  EXPECT_NE(status().hint().find("Englisch"), std::string::npos) << status().hint();
+}
+
+TEST_F(Speech, CountsScreensWithAToneThatItDoesNotKnow) {
+  start();
+  usher_msgs::msg::DialogueScreen screen;
+  screen.id(1);
+  screen.tone(77);
+  host_->publish(topics::kDialogueScreen, screen, "guide");
+  pass(1.5);
+  EXPECT_EQ(host_->counter("inputs: rejected"), 1U);
+}
+
+TEST(SpeechComponentAlone, RunsWithoutAnythingThatSounds) {
+  runtime::TestHost host(runtime::component_factory<SpeechComponent>("speech"));
+  host.run_for(std::chrono::seconds(2));
+  EXPECT_TRUE(host.running());
+  EXPECT_EQ(host.heartbeat().state(), 2);
+}
+
+}  // namespace
+}  // namespace usher::speech

@@ -1,0 +1,264 @@
+#include "interaction/speech/core/conversation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace usher::speech {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(SpokenWords, AreWhatADictionaryHas) {
+  EXPECT_EQ(spoken_words("I am still here"), "i am still here");
+  EXPECT_EQ(spoken_words("Where is …"), "where is");
+  EXPECT_EQ(spoken_words("Room 3.14"), "room three point one four");
+  EXPECT_EQ(spoken_words("AM-102 & Labs"), "am one hundred two and labs");
+  EXPECT_EQ(spoken_words("1942, 007, 40, 2000"),
+            "nineteen forty two zero zero seven forty two zero zero zero");
+  EXPECT_EQ(spoken_words("Café Māori Straße"), "cafe maori strase");
+  EXPECT_EQ(spoken_words("Let's go!"), "let's go");
+  EXPECT_EQ(spoken_words("… 日本 \xff\xc3"), "");
+  EXPECT_EQ(spoken_words(""), "");
+}
+
+TEST(Phrases, AreTheButtonsAndAlwaysStop) {
+  const Option options[] = {
+      {"yes", "Yes", false}, {"query", "Type", true}, {"language:mi", "Māori", false}};
+  const auto phrases = phrases_for(options);
+  const auto option_of = [&](const std::string& words) -> std::string {
+    for (const Phrase& phrase : phrases) {
+      if (phrase.words == words) return phrase.option_id;
+    }
+    return "";
+  };
+  EXPECT_EQ(option_of("yes"), "yes");
+  EXPECT_EQ(option_of("yeah"), "yes");
+  EXPECT_EQ(option_of("maori"), "language:mi");
+  EXPECT_EQ(option_of("stop"), "stop");
+  EXPECT_EQ(option_of("type"), "");
+}
+
+TEST(Phrases, AreThereOnceAndBoundedAndTheFirstWins) {
+  std::vector<Option> options{{"a", "Back", false}, {"b", "back!", false}};
+  EXPECT_EQ(phrases_for(options).size(), 2U);
+  EXPECT_EQ(phrases_for(options)[0].option_id, "a");
+  for (int i = 0; i < 500; ++i) options.push_back({std::to_string(i), std::to_string(i), false});
+  const auto many = phrases_for(options);
+  EXPECT_EQ(many.size(), kMostPhrases);
+  EXPECT_EQ(many.back().option_id, "stop");
+}
+
+TEST(Phrases, BecomeAGrammar) {
+  const Phrase phrases[] = {{"yes", "Yes", "yes please"}, {"no", "No", "no"}};
+  EXPECT_EQ(jsgf(phrases), "#JSGF V1.0;\ngrammar screen;\npublic <answer> = yes please | no;\n");
+}
+
+Hearing hearing(std::size_t phrase, double fit, double margin = 10.0, std::size_t second = 1) {
+  return {{{phrase, fit, 0.0}, {second, fit - margin, margin}}};
+}
+
+TEST(Judge, ActsWhenSureAsksWhenNotAndIgnoresTheRest) {
+  const DecisionRule rule{-10.0, 2.0, -40.0};
+  EXPECT_EQ(judge(hearing(0, -5.0), rule, false), Verdict::kAct);
+  EXPECT_EQ(judge(hearing(0, -5.0, 1.0), rule, false), Verdict::kAsk);
+  EXPECT_EQ(judge(hearing(0, -20.0), rule, false), Verdict::kAsk);
+  EXPECT_EQ(judge(hearing(0, -20.0), rule, true), Verdict::kAct);
+  EXPECT_EQ(judge(hearing(0, -41.0), rule, true), Verdict::kIgnore);
+  EXPECT_EQ(judge({}, rule, true), Verdict::kIgnore);
+  EXPECT_EQ(judge(hearing(0, std::numeric_limits<double>::quiet_NaN()), rule, true),
+            Verdict::kIgnore);
+  EXPECT_NEAR(confidence(hearing(0, -10.0), rule), 0.5, 1e-12);
+  EXPECT_EQ(confidence(hearing(0, -90.0), rule), 0.0);
+  EXPECT_EQ(confidence({}, rule), 0.0);
+}
+
+class Talk : public testing::Test {
+ protected:
+  static constexpr double kSure = 0.0, kUnsure = -20.0, kForeign = -90.0;
+
+  Talk() {
+    talk_.can_understand(true);
+    talk_.set_sentences({"Did you say {answer}?", "Please touch."});
+  }
+  Screen screen(std::uint64_t id, const std::vector<std::string>& options) {
+    Screen made;
+    made.id = id;
+    made.language = "en";
+    made.spoken = "Question " + std::to_string(id);
+    made.spoken_id = id;
+    made.listens = true;
+    for (const auto& option : options) made.options.push_back({option, option, false});
+    return made;
+  }
+  void show(const Screen& shown) { talk_.take(shown, now_); }
+  /// Time passes, while the robot speaks or not.
+  void pass(Time time, bool sounds = false) {
+    for (Time end = now_ + time; now_ < end; now_ += milliseconds(20)) talk_.step(sounds, now_);
+  }
+  void hear(const std::string& words, double fit) {
+    for (std::size_t i = 0; i < talk_.phrases().size(); ++i) {
+      if (talk_.phrases()[i].words != words) continue;
+      talk_.heard(hearing(i, fit, 10.0, (i + 1) % talk_.phrases().size()), talk_.phrases_id(),
+                  now_);
+      return;
+    }
+    ADD_FAILURE() << words << " is no phrase";
+  }
+  std::string answer() {
+    const Wishes wishes = talk_.take_wishes();
+    return wishes.answer ? wishes.answer->option_id : "";
+  }
+
+  Conversation talk_{DecisionRule{-10.0, 2.0, -40.0}};
+  Time now_{seconds(100)};
+};
+
+TEST_F(Talk, SaysEachThingOnceAndANewQuestionBreaksTheOldOneOff) {
+  show(screen(1, {"yes", "no"}));
+  auto wishes = talk_.take_wishes();
+  ASSERT_TRUE(wishes.say.has_value());
+  EXPECT_EQ(wishes.say->text, "Question 1");
+  show(screen(1, {"yes", "no"}));
+  EXPECT_FALSE(talk_.take_wishes().say.has_value());
+  auto more = screen(1, {"yes", "no"});
+  more.spoken_id = 2;
+  show(more);
+  wishes = talk_.take_wishes();
+  EXPECT_TRUE(wishes.say.has_value());
+  EXPECT_FALSE(wishes.break_off) << "more about the same waits its turn";
+  auto other = screen(3, {"yes"});
+  other.tone = Tone::kMoving;
+  show(other);
+  wishes = talk_.take_wishes();
+  EXPECT_TRUE(wishes.break_off);
+  EXPECT_EQ(wishes.tones, std::vector<Tone>{Tone::kMoving});
+}
+
+TEST_F(Talk, SoundsWhenItBeginsAndWhenItEndsToListen) {
+  show(screen(1, {"yes", "no"}));
+  talk_.take_wishes();
+  pass(seconds(1), true);
+  EXPECT_TRUE(talk_.take_wishes().tones.empty()) << "not into its own sentence";
+  pass(seconds(1));
+  EXPECT_EQ(talk_.take_wishes().tones, std::vector<Tone>{Tone::kListening});
+  pass(seconds(5));
+  EXPECT_TRUE(talk_.take_wishes().tones.empty());
+  auto done = screen(1, {"yes", "no"});
+  done.listens = false;
+  show(done);
+  pass(milliseconds(40));
+  EXPECT_EQ(talk_.take_wishes().tones, std::vector<Tone>{Tone::kHeard});
+}
+
+TEST_F(Talk, AnswersWhenSure) {
+  show(screen(7, {"yes", "no"}));
+  talk_.take_wishes();
+  hear("yes", kSure);
+  const auto wishes = talk_.take_wishes();
+  ASSERT_TRUE(wishes.answer.has_value());
+  EXPECT_EQ(wishes.answer->option_id, "yes");
+  EXPECT_EQ(wishes.answer->screen_id, 7U);
+  EXPECT_TRUE(wishes.break_off) << "barge-in";
+  hear("no", kForeign);
+  EXPECT_EQ(answer(), "");
+  EXPECT_EQ(talk_.counts().acted, 1U);
+  EXPECT_EQ(talk_.counts().ignored, 1U);
+}
+
+TEST_F(Talk, AsksBackWhenUnsureAndTakesYes) {
+  show(screen(7, {"library", "cancel"}));
+  talk_.take_wishes();
+  hear("library", kUnsure);
+  const auto wishes = talk_.take_wishes();
+  EXPECT_FALSE(wishes.answer.has_value());
+  ASSERT_TRUE(wishes.say.has_value());
+  EXPECT_EQ(wishes.say->text, "Did you say library?");
+  EXPECT_EQ(talk_.hint(), "Did you say library?");
+  EXPECT_TRUE(talk_.asks());
+  hear("yes", kUnsure);
+  EXPECT_EQ(answer(), "library");
+  EXPECT_EQ(talk_.hint(), "");
+}
+
+TEST_F(Talk, OffersTheSecondAfterNoAndThenGivesUp) {
+  show(screen(7, {"library", "cafe"}));
+  talk_.take_wishes();
+  hear("library", kUnsure);
+  talk_.take_wishes();
+  hear("no", kUnsure);
+  EXPECT_EQ(talk_.take_wishes().say->text, "Did you say cafe?");
+  hear("no", kSure);
+  EXPECT_EQ(answer(), "");
+  EXPECT_FALSE(talk_.asks());
+  hear("library", kSure);
+  EXPECT_EQ(answer(), "library");
+}
+
+TEST_F(Talk, ForgetsAQuestionBackWithoutReplyOrWhenTheScreenChanges) {
+  show(screen(7, {"library"}));
+  hear("library", kUnsure);
+  pass(seconds(20), true);
+  EXPECT_TRUE(talk_.asks()) << "patience counts from the end of the sentence";
+  pass(Conversation::kPatience + milliseconds(100));
+  EXPECT_FALSE(talk_.asks());
+  hear("library", kUnsure);
+  EXPECT_TRUE(talk_.asks());
+  show(screen(8, {"yes"}));
+  EXPECT_FALSE(talk_.asks());
+}
+
+TEST_F(Talk, IgnoresWhatWasSaidToAnotherScreen) {
+  show(screen(7, {"yes", "no"}));
+  const auto old = talk_.phrases_id();
+  show(screen(8, {"library"}));
+  talk_.take_wishes();
+  talk_.heard(hearing(0, kSure), old, now_);
+  EXPECT_EQ(answer(), "");
+}
+
+TEST_F(Talk, StopsAtOnceHoweverUnsure) {
+  show(screen(7, {"stop", "cancel"}));
+  talk_.take_wishes();
+  hear("stop", kUnsure);
+  EXPECT_EQ(answer(), "stop");
+  show(screen(8, {"library", "cancel"}));
+  hear("library", kUnsure);
+  talk_.take_wishes();
+  hear("stop", kUnsure);
+  EXPECT_EQ(answer(), "cancel") << "where there is nothing to stop";
+  show(screen(9, {"yes"}));
+  talk_.take_wishes();
+  hear("stop", kUnsure);
+  EXPECT_EQ(answer(), "");
+}
+
+TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueIsGoneAndGoesOnWhenAsked) {
+  show(screen(7, {"stop", "cancel"}));
+  talk_.take_wishes();
+  talk_.hear_dialogue(false);
+  hear("stop", kUnsure);
+  EXPECT_TRUE(talk_.take_wishes().halt);
+  EXPECT_TRUE(talk_.holds());
+  hear("start", kSure);
+  EXPECT_TRUE(talk_.take_wishes().go_on);
+  EXPECT_FALSE(talk_.holds());
+}
+
+TEST_F(Talk, DoesNotListenInOtherLanguagesAndSaysSo) {
+  auto german = screen(7, {"yes"});
+  german.language = "de";
+  show(german);
+  EXPECT_FALSE(talk_.listens());
+  EXPECT_EQ(talk_.hint(), "Please touch.");
+  EXPECT_TRUE(talk_.take_wishes().say.has_value()) << "but it speaks";
+  pass(seconds(2));
+  EXPECT_TRUE(talk_.take_wishes().tones.empty());
+  talk_.can_understand(false);
+  show(screen(8, {"yes"}));
+  EXPECT_FALSE(talk_.listens());
+}
+
+}  // namespace
+}  // namespace usher::speech
