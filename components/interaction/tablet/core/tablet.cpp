@@ -144,6 +144,7 @@ View Tablet::view(Time now) const {
     view.title = screen_.title;
     view.text = screen_.text;
     view.status = screen_.status;
+    if (!hint_.empty()) (asks_ ? view.text : view.status) = hint_;
     view.place = screen_.place;
     view.progress = screen_.progress;
     view.way_text = way_text(screen_.remaining, screen_.eta);

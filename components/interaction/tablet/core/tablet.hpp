@@ -87,6 +87,12 @@ class Tablet {
     dialogue_heard_ = dialogue;
   }
   void locate(const std::optional<geometry::Pose2>& pose) { pose_ = pose; }
+  /// What the robot's ear has to say: a question back takes the place of the text, anything else
+  /// that of the status; empty: nothing.
+  void hear_speech(const std::string& hint, bool asks) {
+    hint_ = hint;
+    asks_ = asks;
+  }
   /// A screen arrived; whether the tablet's own stop ends with it.
   Touched take(const Screen& screen, Time now);
   /// The dialogue has replied to this tablet's newest answer.
@@ -125,7 +131,8 @@ class Tablet {
   bool robot_heard_ = false, dialogue_heard_ = false;
   std::optional<geometry::Pose2> pose_;
   std::optional<Pending> pending_;
-  std::string typed_;
+  std::string typed_, hint_;
+  bool asks_ = false;
   Hold hold_ = Hold::kNone;
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 namespace command = usher_msgs::msg::SupervisorRequest_Constants;
+namespace speech_state = usher_msgs::msg::SpeechStatus_Constants;
 
 constexpr auto kRobotAge = milliseconds(1500);
 constexpr auto kDialogueAge = milliseconds(3000);
@@ -60,6 +61,12 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   guide_ = host.input(
       topics::kGuideStatus,
       {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works"},
+      [this](const auto&, const auto&) { show(); }, [this] { show(); });
+  speech_ = host.input(
+      topics::kSpeechStatus,
+      {.max_age = kDialogueAge,
+       .on_loss = "shows no question back; answers by touch go on",
+       .optional = true},
       [this](const auto&, const auto&) { show(); }, [this] { show(); });
   supervisor_ = host.input(
       topics::kSupervisorStatus,
@@ -182,6 +189,9 @@ void TabletComponent::tick() {
 
 void TabletComponent::show() {
   core_.hear(supervisor_.fresh() != nullptr, guide_.fresh() != nullptr);
+  const auto* speech = speech_.fresh();
+  core_.hear_speech(speech != nullptr ? speech->hint() : "",
+                    speech != nullptr && speech->state() == speech_state::STATE_ASKING);
   std::optional<geometry::Pose2> pose;
   const auto* localization = localization_.fresh();
   if (localization != nullptr && pose_.latest() != nullptr &&

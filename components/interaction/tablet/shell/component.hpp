@@ -41,6 +41,7 @@ class TabletComponent final : public runtime::Component {
   std::uint64_t& rejected_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
   runtime::Input<usher_msgs::msg::GuideStatus> guide_;
+  runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<geometry_msgs::msg::PoseWithCovarianceStamped> pose_;

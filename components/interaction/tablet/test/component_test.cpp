@@ -52,6 +52,26 @@ class Component : public testing::Test {
   std::uint64_t request_seen_ = 0;
 };
 
+TEST_F(Component, ShowsWhatTheEarAsks) {
+  hear();
+  show(screen(5, "guide_options", {"library"}));
+  usher_msgs::msg::SpeechStatus speech;
+  speech.header(wire::header(host_.now(), ""));
+  speech.state(usher_msgs::msg::SpeechStatus_Constants::STATE_ASKING);
+  speech.hint("Did you say library?");
+  host_.publish(topics::kSpeechStatus, speech, "speech");
+  hear();
+  EXPECT_EQ(window_.view.text, "Did you say library?");
+  speech.state(usher_msgs::msg::SpeechStatus_Constants::STATE_SILENT);
+  speech.hint("Please touch");
+  host_.publish(topics::kSpeechStatus, speech, "speech");
+  hear();
+  EXPECT_EQ(window_.view.text, "");
+  EXPECT_EQ(window_.view.status, "Please touch");
+  for (int i = 0; i < 40; ++i) hear();
+  EXPECT_EQ(window_.view.status, "") << "the ear is silent";
+}
+
 TEST_F(Component, ShowsTheDialogueAndSaysWhenTheRobotIsAway) {
   host_.run_for(milliseconds(200));
   EXPECT_EQ(window_.view.page, Page::kAway);
