@@ -25,9 +25,9 @@ enum class Verdict : std::uint8_t {
 };
 
 struct DecisionRule {
-  double act_fit = -14.0;   ///< at least, to act without asking
-  double act_margin = 1.0;  ///< and at least so far before the second
-  double ask_fit = -45.0;   ///< at least, to ask
+  double act_fit = -16.0;   ///< at least, to act without asking
+  double act_margin = 3.0;  ///< and at least so far before the second
+  double ask_fit = -50.0;   ///< at least, to ask
 };
 
 /// A stop is an answer whenever it might be one: `always` acts where others are asked about.
