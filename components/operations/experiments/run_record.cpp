@@ -68,6 +68,7 @@ void RunRecord::take(const usher_msgs::msg::NavigateStatus& status) {
     if (!active_from_) active_from_ = stamp;
     active_until_ = stamp;
   }
+  reached_ = reached_ || status.state() == STATE_SUCCEEDED;
   navigation_ = status;
 }
 

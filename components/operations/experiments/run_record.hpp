@@ -59,6 +59,7 @@ class RunRecord {
   /// The newest position of a person by name.
   std::optional<geometry::Point2> person(const std::string& name) const;
   const std::optional<usher_msgs::msg::NavigateStatus>& navigation() const { return navigation_; }
+  bool reached_a_goal() const { return reached_; }  ///< the navigator says so
   const std::vector<std::string>& dialogue() const { return dialogue_; }  ///< states, in order
   const std::optional<usher_msgs::msg::DialogueScreen>& screen() const { return screen_; }
   std::optional<geometry::Pose2> truth() const;
@@ -73,6 +74,7 @@ class RunRecord {
   std::map<std::uint32_t, std::vector<geometry::Point2>> people_;
   std::map<std::string, geometry::Point2> named_;
   std::optional<usher_msgs::msg::NavigateStatus> navigation_;
+  bool reached_ = false;
   geometry_msgs::msg::TwistStamped wanted_;
   usher_msgs::msg::DriveCommand command_;
   std::string whiskers_;

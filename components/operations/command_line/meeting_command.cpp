@@ -1,0 +1,106 @@
+#include <signal.h>
+
+#include <atomic>
+#include <iostream>
+#include <limits>
+#include <memory>
+
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/meeting_client.hpp"
+#include "operations/command_line/robot.hpp"
+#include "operations/command_line/supervisor_client.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Observer;
+using std::chrono::milliseconds;
+namespace outcome = usher_msgs::msg::MeetingStatus_Constants;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
+
+std::atomic<bool> stop_asked{false};
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+struct MeetingArguments {
+  std::uint32_t domain = 0;
+  std::uint32_t persons = 2;
+  double minutes = 0.0;
+  bool no_wait = false;
+};
+
+/// Calls the meeting and tells how it goes; Ctrl-C gives it up.
+int meet(const MeetingArguments& arguments) {
+  auto observer = Observer::create(reach_robot(kOperatorName, arguments.domain));
+  if (!observer) return fail(observer.error());
+  auto requests = (*observer)->writer(topics::kMeetingRequest);
+  if (!requests) return fail(requests.error());
+  auto cancels = (*observer)->writer(topics::kMeetingCancel);
+  if (!cancels) return fail(cancels.error());
+  auto statuses = (*observer)->reader(topics::kMeetingStatus);
+  if (!statuses) return fail(statuses.error());
+  if (!requests->wait_for_readers(1, kPatience))
+    return fail(nobody_there("meeting assistant", arguments.domain));
+
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = true; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  MeetingCall call(arguments.persons, 60.0 * arguments.minutes);
+  auto heard = Clock::now();
+  std::string told;
+  for (;;) {
+    if (const auto request = call.due()) requests->write(*request);
+    if (stop_asked) {
+      usher_msgs::msg::GoalCancel cancel;
+      cancel.id(call.id());
+      cancel.client(kOperatorName);
+      cancels->write(cancel);
+    }
+    const auto status = statuses->take(milliseconds(100));
+    if (Clock::now() - heard > kGone)
+      return fail("the meeting assistant has been silent for 5 s; what it does is not known");
+    if (!status) continue;
+    heard = Clock::now();
+    const bool was_taken = call.taken();
+    call.take(*status);
+    if (!call.refusal().empty()) return fail(call.refusal());
+    if (was_taken && !call.taken()) return fail("the meeting assistant works for somebody else");
+    if (!call.taken()) continue;
+    if (arguments.no_wait) return 0;
+    // Each line once: the seconds that are left change all the time.
+    auto quiet = *status;
+    quiet.time_left(std::numeric_limits<float>::quiet_NaN());
+    if (const auto line = meeting_progress(quiet); line != told)
+      std::cout << (told = line) << "\n" << std::flush;
+    if (status->mission().outcome() == outcome::OUTCOME_OPEN) continue;
+    if (status->mission().outcome() == outcome::OUTCOME_COMPLETE) return 0;
+    return fail(status->mission().reason());
+  }
+}
+
+}  // namespace
+
+void add_meeting_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<MeetingArguments>();
+  auto* command = app.add_subcommand(
+      "meet", "Call a meeting: the assistant finds a free room, finds people and brings them");
+  command->add_option("--domain", arguments->domain, "DDS domain")->capture_default_str();
+  command->add_option("--persons", arguments->persons, "How many it brings")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_option("--minutes", arguments->minutes, "It gives up then; 0 = its own limit")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command->add_flag("--no-wait", arguments->no_wait, "Return when the assistant took it");
+  command->callback([arguments, &exit_code] { exit_code = meet(*arguments); });
+}
+
+}  // namespace usher::operations
