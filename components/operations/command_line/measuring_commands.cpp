@@ -14,9 +14,9 @@ namespace usher::operations {
 
 namespace {
 
-int fail(const std::string& message) {
+int fail(const std::string& message, int exit_code = 1) {
   std::cerr << "usher: " << message << "\n";
-  return 1;
+  return exit_code;
 }
 
 /// Becomes another program of the installation.
@@ -31,6 +31,7 @@ int become(const std::string& program, const std::vector<std::string>& arguments
   return fail("cannot run " + program + ": " + std::strerror(errno));
 }
 
+constexpr int kMisused = 2;  // as `usher experiment` ends then
 constexpr const char* kBenchPrefix = "usher-bench-";
 
 std::vector<std::string> benchmarks(const std::string& programs) {
@@ -48,10 +49,10 @@ int bench(const std::string& name, bool list, const std::vector<std::string>& re
   const auto names = benchmarks(installation.programs);
   if (list || name.empty()) {
     for (const auto& known : names) std::cout << known << "\n";
-    return name.empty() && !list ? fail("name a benchmark of the list above") : 0;
+    return name.empty() && !list ? fail("name a benchmark of the list above", kMisused) : 0;
   }
   if (std::find(names.begin(), names.end(), name) == names.end())
-    return fail("unknown benchmark '" + name + "'; see usher bench --list");
+    return fail("unknown benchmark '" + name + "'; see usher bench --list", kMisused);
   return become(installation.programs + "/" + kBenchPrefix + name, rest);
 }
 

@@ -94,13 +94,27 @@ Status judge(const GoalArguments& arguments, const navigator::Locations& locatio
   return Error{found.error() + "\nlocations: " + names};
 }
 
-/// One line that is rewritten while the robot drives.
-void show_progress(const NavigateStatus& status) {
-  std::cout << "\r" << format("%3.0f %%", status.progress() * 100.0) << "  "
-            << format("%5.1f m left", status.remaining()) << "  "
-            << (std::isfinite(status.eta()) ? format("%4.0f s", status.eta()) : "   -")
-            << (status.reason().empty() ? "" : "  " + status.reason()) << "\033[K" << std::flush;
-}
+/// How the robot drives: on a terminal one line that is rewritten, else a line now and then.
+class ProgressLine {
+ public:
+  void show(const NavigateStatus& status) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ && now - shown_ < kEvery) return;
+    shown_ = now;
+    std::cout << (terminal_ ? "\r" : "") << format("%3.0f %%", status.progress() * 100.0) << "  "
+              << format("%5.1f m left", status.remaining()) << "  "
+              << (std::isfinite(status.eta()) ? format("%4.0f s", status.eta()) : "   -")
+              << (status.reason().empty() ? "" : "  " + status.reason())
+              << (terminal_ ? "\033[K" : "\n") << std::flush;
+  }
+  /// What follows begins a line of its own.
+  void end() const { std::cout << (terminal_ ? "\n" : "") << std::flush; }
+
+ private:
+  static constexpr auto kEvery = std::chrono::seconds(5);
+  bool terminal_ = isatty(STDOUT_FILENO) != 0;
+  std::chrono::steady_clock::time_point shown_{};
+};
 
 /// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
 /// another one is an answer too.
@@ -188,12 +202,11 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
   Clock::time_point told{}, heard = Clock::now(), given = heard;
   bool accepted = false;
   SupervisorWatch supervisor(*guard);
-  const bool terminal = isatty(STDOUT_FILENO) != 0;
-  const auto end_line = [&] { std::cout << (terminal ? "\n" : "") << std::flush; };
+  ProgressLine progress;
   for (;;) {
     if (stop_asked) {
       const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
-      end_line();
+      progress.end();
       return failed(cancelled ? "cancelled" : cancelled.error());
     }
     if (!accepted && Clock::now() - given > kPatience)
@@ -205,13 +218,13 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
     const auto status = reader->take(milliseconds(100));
     if (status) heard = Clock::now();
     if (Clock::now() - heard > kGone) {
-      end_line();
+      progress.end();
       return failed(
           "the navigator has been silent for 5 s; what it did with the goal is not known");
     }
     if (const auto why = supervisor.ended_navigation(); accepted && why) {
       const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
-      end_line();
+      progress.end();
       return failed(*why + (cancelled ? "" : "; " + cancelled.error()));
     }
     if (!status) continue;
@@ -223,15 +236,15 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
         given = Clock::now();
       }
       if (!accepted || !runs) continue;
-      end_line();
+      progress.end();
       fail("another goal took its place");
       return Outcome::kReplaced;
     }
     accepted = true;
     if (arguments.no_wait && runs) return Outcome::kUnderWay;
-    if (terminal) show_progress(*status);
+    progress.show(*status);
     if (runs) continue;
-    end_line();
+    progress.end();
     if (status->state() == GoalStatus_Constants::STATE_SUCCEEDED) {
       std::cout << "arrived\n";
       return Outcome::kArrived;

@@ -61,7 +61,10 @@ std::int64_t clock_anchor() {
 }
 
 std::string words_for(int status) {
-  if (WIFSIGNALED(status)) return std::string("killed by ") + strsignal(WTERMSIG(status));
+  if (WIFSIGNALED(status)) {
+    const char* name = sigabbrev_np(WTERMSIG(status));
+    return "killed by SIG" + (name != nullptr ? name : std::to_string(WTERMSIG(status)));
+  }
   const int code = WEXITSTATUS(status);
   if (code == 0) return "ended by itself";
   if (code == kWrongParameters) return "refused its parameters";

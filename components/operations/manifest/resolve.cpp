@@ -7,6 +7,7 @@
 #include <set>
 
 #include "idl/topics.hpp"
+#include "operations/manifest/suggestion.hpp"
 #include "operations/manifest/wiring.hpp"
 #include "runtime/parameters/interpret.hpp"
 
@@ -24,7 +25,8 @@ constexpr const char* kCommandLine = "command line";
 struct Layer {
   std::map<std::string, ParameterValue> shared;  ///< by full name, "robot.laser.x"
   std::map<std::string, std::map<std::string, ParameterValue>>
-      components;  ///< by component name, then parameter
+      components;     ///< by component name, then parameter
+  bool read = false;  ///< the file is there and is YAML
 };
 
 Movement movement_of(const Contract& contract) {
@@ -73,6 +75,7 @@ Layer read_layer(const std::string& path, const std::string& prefix,
           {Verdict::kWrongValue, what + " must be a map, got " + node.yaml(), node.origin});
     return false;
   };
+  layer.read = true;
   if (!is_map(*tree, "the " + prefix + "'s file")) return layer;
   for (const auto& [key, value] : tree->entries) {
     if (key != "components") {
@@ -146,7 +149,8 @@ class Resolver {
     const auto contract = contracts_.find(component.type);
     if (contract == contracts_.end()) {
       found(Verdict::kUnknownType,
-            "component '" + component.name + "' has the unknown type '" + component.type + "'",
+            "component '" + component.name + "' has the unknown type '" + component.type + "'" +
+                suggestion(component.type, known_types()),
             component.origin_of("type"));
       return;
     }
@@ -160,7 +164,7 @@ class Resolver {
     for (const auto& parameter : contract->second.parameters) {
       const auto value = value_of(parameter, own);
       if (value.yaml.empty()) {
-        if (parameter.required) {
+        if (parameter.required && !lies_in_a_missing_file(parameter.name)) {
           found(
               Verdict::kMissingValue,
               "'" + parameter.name + "' of '" + component.name + "' must be set: " + parameter.text,
@@ -174,10 +178,26 @@ class Resolver {
       if (const auto owner = owner_of(name); !owner.empty()) {
         found(Verdict::kMisplaced, "'" + name + "' can be set only by " + owner, value.origin);
       } else {
+        std::vector<std::string> known;
+        for (const auto& parameter : contract->second.parameters) known.push_back(parameter.name);
         found(Verdict::kUnknownKey,
-              "component '" + component.name + "' has no parameter '" + name + "'", value.origin);
+              "component '" + component.name + "' has no parameter '" + name + "'" +
+                  suggestion(name, known),
+              value.origin);
       }
     }
+  }
+
+  std::vector<std::string> known_types() const {
+    std::vector<std::string> types;
+    for (const auto& [type, contract] : contracts_) types.push_back(type);
+    return types;
+  }
+
+  /// That the robot's or the site's file is missing is a finding already, and one is enough.
+  bool lies_in_a_missing_file(const std::string& parameter) const {
+    return (parameter.starts_with("robot.") && !robot_.read) ||
+           (parameter.starts_with("site.") && !site_.read);
   }
 
   /// Where a value that is missing would have to be set.

@@ -146,7 +146,7 @@ TEST_F(Launching, RestartsAtOnceWhatWasKilled) {
   ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->starts == 2; }));
   EXPECT_NE(made.find("legs")->pid, legs);
   EXPECT_EQ(made.find("arms")->pid, arms);
-  EXPECT_EQ(made.find("legs")->last_end, "killed by Killed");
+  EXPECT_EQ(made.find("legs")->last_end, "killed by SIGKILL");
   EXPECT_THAT(events_, Contains("legs: started again"));
   EXPECT_FALSE(made.broken());
 }
