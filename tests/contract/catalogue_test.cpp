@@ -92,7 +92,7 @@ TEST(Catalogue, DepthsFollowTheKindOfTopic) {
 /// Component types are folders of components/. Roles are participants that are no component, and
 /// components that later work brings or that live in another's folder; a role that has become a
 /// folder must leave this list.
-const std::set<std::string> kRoles{"waypoint_follower", "operator", "segway_emulator", "meeting"};
+const std::set<std::string> kRoles{"waypoint_follower", "operator", "segway_emulator", "attendees"};
 
 TEST(Catalogue, WritersAreComponentsOrKnownRoles) {
   std::set<std::string> types;

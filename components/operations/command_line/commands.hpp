@@ -8,7 +8,7 @@ namespace usher::operations {
 void add_deployment_commands(CLI::App& app, int& exit_code);  ///< check components launch graph
 void add_inspection_commands(CLI::App& app, int& exit_code);  ///< status topics
 void add_operator_commands(CLI::App& app, int& exit_code);    ///< goto stop clear map
-void add_meeting_command(CLI::App& app, int& exit_code);       ///< meet
+void add_meeting_command(CLI::App& app, int& exit_code);      ///< meet
 void add_teleop_command(CLI::App& app, int& exit_code);       ///< teleop
 void add_host_commands(CLI::App& app, int& exit_code);        ///< keys install doctor
 void add_calibrate_command(CLI::App& app, int& exit_code);    ///< calibrate

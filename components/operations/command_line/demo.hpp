@@ -29,8 +29,9 @@ class Demo {
   virtual const Text& text() const = 0;
   virtual std::chrono::seconds longest() const = 0;
   virtual std::vector<Override> overrides() const { return {}; }
-  /// Opens what the demo reads and writes beside the record.
-  virtual Status attach(runtime::Observer& observer, std::mutex& mutex) = 0;
+  /// Opens what the demo reads and writes beside the record; must end before the observer.
+  virtual Status attach(const Deployment& deployment, runtime::Observer& observer,
+                        std::mutex& mutex) = 0;
   /// Called all the time, about every 20 ms.
   virtual void step() {}
   /// A line once a second; empty when there is nothing to tell.

@@ -94,12 +94,12 @@ int demo(const DemoArguments& arguments) {
     return fail("--to is the guide's: the meeting assistant looks for the room itself");
   const std::string out =
       !arguments.out.empty() ? arguments.out : (meets ? "build/demo-meeting" : "build/demo");
-  const auto demo = meets ? meeting_demo() : guide_demo(arguments.destination);
+  auto made = meets ? meeting_demo() : guide_demo(arguments.destination);
   const auto installation = Installation::of_this_program();
   const std::string manifest =
-      std::filesystem::weakly_canonical(installation.share + "/deploy/" + demo->text().manifest)
+      std::filesystem::weakly_canonical(installation.share + "/deploy/" + made->text().manifest)
           .string();
-  std::vector<Override> overrides = demo->overrides();
+  std::vector<Override> overrides = made->overrides();
   overrides.push_back(
       {"tablet", "pictures", std::filesystem::absolute(out + "/screens").lexically_normal()});
   // What an earlier run left would pass for this one's.
@@ -127,6 +127,7 @@ int demo(const DemoArguments& arguments) {
   Watch watch;
   auto observer = Observer::create({.name = "judge", .domain = deployment->manifest.domain});
   if (!observer) return fail(observer.error());
+  const auto demo = std::move(made);  // ends before the observer
   const auto take = [&](const auto& message, const auto&) { watch.take(message); };
   const auto truth = (*observer)->reader(topics::kSimGroundTruth, take);
   const auto pose = (*observer)->reader(topics::kAmclPose, take);
@@ -146,7 +147,7 @@ int demo(const DemoArguments& arguments) {
     }
   });
 
-  if (const Status attached = demo->attach(**observer, watch.mutex); !attached)
+  if (const Status attached = demo->attach(*deployment, **observer, watch.mutex); !attached)
     return fail(attached.error());
 
   std::cout << demo->text().title << ": " << deployment->manifest.components.size()

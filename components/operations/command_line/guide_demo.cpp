@@ -25,7 +25,10 @@ class GuideDemo final : public Demo {
     if (destination_.empty()) return {};
     return {{kVisitor, "destination", destination_}};
   }
-  Status attach(runtime::Observer& /*observer*/, std::mutex& /*mutex*/) override { return {}; }
+  Status attach(const Deployment& /*deployment*/, runtime::Observer& /*observer*/,
+                std::mutex& /*mutex*/) override {
+    return {};
+  }
 
   /// Where the dialogue is.
   std::string progress(const RunRecord& record) override {

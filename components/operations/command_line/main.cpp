@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   usher::operations::add_deployment_commands(app, exit_code);
   usher::operations::add_inspection_commands(app, exit_code);
   usher::operations::add_operator_commands(app, exit_code);
+  usher::operations::add_meeting_command(app, exit_code);
   usher::operations::add_teleop_command(app, exit_code);
   usher::operations::add_host_commands(app, exit_code);
   usher::operations::add_calibrate_command(app, exit_code);

@@ -1,9 +1,10 @@
+#include <cstdlib>
 #include <map>
 #include <optional>
 
 #include "operations/command_line/demo.hpp"
 #include "operations/command_line/meeting_client.hpp"
-#include "operations/command_line/table.hpp"
+#include "operations/manifest/tree.hpp"
 
 namespace usher::operations {
 
@@ -12,9 +13,16 @@ namespace {
 namespace state = usher_msgs::msg::MeetingStatus_Constants;
 
 constexpr std::uint32_t kPersons = 2;
-constexpr double kInTheRoom = 4.0;  // [m] of a person from the room's place
-constexpr double kSeed = 559.0;     // [s] R IV-G: two persons from medium distances
-constexpr int kTellEvery = 5;       // [s]
+constexpr double kSeed = 559.0;  // [s] R IV-G: two persons from medium distances
+constexpr int kTellEvery = 5;    // [s]
+
+/// Between its walls, in map [m].
+struct Room {
+  geometry::Point2 low{0, 0}, high{0, 0};
+  bool contains(const geometry::Point2& point) const {
+    return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
+  }
+};
 
 class MeetingDemo final : public Demo {
  public:
@@ -27,7 +35,8 @@ class MeetingDemo final : public Demo {
   }
   std::chrono::seconds longest() const override { return std::chrono::minutes(16); }
 
-  Status attach(runtime::Observer& observer, std::mutex& mutex) override {
+  Status attach(const Deployment& deployment, runtime::Observer& observer,
+                std::mutex& mutex) override {
     auto writer = observer.writer(topics::kMeetingRequest);
     if (!writer) return Error{writer.error()};
     requests_.emplace(std::move(writer).value());
@@ -37,18 +46,12 @@ class MeetingDemo final : public Demo {
     });
     if (!reader) return Error{reader.error()};
     statuses_.emplace(std::move(reader).value());
-    auto locations = observer.reader(topics::kLocations, [&](const auto& message, const auto&) {
-      const std::lock_guard lock(mutex);
-      for (const auto& location : message.locations())
-        places_[location.name()] = {location.pose().position().x(), location.pose().position().y()};
-    });
-    if (!locations) return Error{locations.error()};
-    locations_.emplace(std::move(locations).value());
-    return {};
+    return read_rooms(deployment);
   }
 
   void step() override {
-    if (!call_.refusal().empty())
+    const bool idle = status_ && status_->state() == state::STATE_IDLE;
+    if (!call_.refusal().empty() && idle)
       call_ = MeetingCall(kPersons, 0.0);  // the robot was not ready yet
     if (const auto request = call_.due()) requests_->write(*request);
   }
@@ -68,11 +71,10 @@ class MeetingDemo final : public Demo {
 
   void judge(const RunRecord& record, ResultSheet& sheet) const override {
     double there = 0.0;
-    if (status_ && places_.contains(status_->mission().room())) {
-      for (const char* const name : {"ada", "boole"}) {
-        const auto at = record.person(name);
-        if (at && (*at - places_.at(status_->mission().room())).norm() < kInTheRoom) ++there;
-      }
+    const auto room = status_ ? rooms_.find(status_->mission().room()) : rooms_.end();
+    for (const char* const name : {"ada", "boole"}) {
+      const auto at = record.person(name);
+      if (at && room != rooms_.end() && room->second.contains(*at)) ++there;
     }
     sheet.flags["reached"] =
         status_ && there >= kPersons && status_->mission().outcome() == state::OUTCOME_COMPLETE;
@@ -90,15 +92,35 @@ class MeetingDemo final : public Demo {
     status_ = status;
   }
 
+  /// What the site's file says of its meeting rooms.
+  Status read_rooms(const Deployment& deployment) {
+    for (const auto& file : deployment.files) {
+      for (const auto& value : file.values) {
+        if (value.name != "site.meeting_rooms") continue;
+        const auto list = parse_tree(value.yaml, value.origin);
+        if (!list) return Error{list.error()};
+        for (const Tree& room : list->items) {
+          const auto wall = [&](const char* side) {
+            const Tree* at = room.find(side);
+            return at == nullptr ? 0.0 : std::strtod(at->scalar.c_str(), nullptr);
+          };
+          if (const Tree* name = room.find("name"))
+            rooms_[name->scalar] = {{wall("west"), wall("south")}, {wall("east"), wall("north")}};
+        }
+        return {};
+      }
+    }
+    return Error{"nobody in " + text().manifest + " asks for the site's meeting rooms"};
+  }
+
   MeetingCall call_{kPersons, 0.0};
   std::optional<usher_msgs::msg::MeetingStatus> status_;
-  std::map<std::string, geometry::Point2> places_;
+  std::map<std::string, Room> rooms_;
   std::optional<std::uint8_t> told_;
   int silent_ = 0;
   // Last: they end before what they fill.
   std::optional<runtime::Observer::Writer<usher_msgs::msg::MeetingRequest>> requests_;
   std::optional<runtime::Observer::Reader<usher_msgs::msg::MeetingStatus>> statuses_;
-  std::optional<runtime::Observer::Reader<usher_msgs::msg::Locations>> locations_;
 };
 
 }  // namespace

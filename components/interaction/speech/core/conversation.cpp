@@ -27,7 +27,14 @@ bool Conversation::offers(std::string_view option_id) const {
 void Conversation::take(const Screen& screen, Time /*now*/) {
   const bool another = screen.id != screen_.id;
   const bool more = screen.spoken_id > said_ && !screen.spoken.empty();
+  const bool answered =
+      screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client;
   screen_ = screen;
+  // Whoever answers, by touch or voice, wants it to go on.
+  if (another && answered && alive_ && holds_) {
+    holds_ = false;
+    wishes_.go_on = true;
+  }
   if (another) {
     question_.reset();
     greeted_ear_ = false;
@@ -77,15 +84,29 @@ void Conversation::stop() {
     answer(std::string(kStop));
   } else if (offers(kCancel)) {
     answer(kCancel);
+  } else {  // the dialogue has nothing to stop; the robot may turn all the same
+    wishes_.halt = true;
+    holds_ = true;
   }
   listen();
+}
+
+/// What was understood for sure: answers the screen, lifts its own stop.
+void Conversation::obey(const std::string& option_id) {
+  if (holds_ && (option_id == kStart || option_id == kContinue)) {
+    holds_ = false;
+    wishes_.go_on = true;
+  }
+  if (offers(option_id)) answer(option_id);
 }
 
 void Conversation::reply(const Phrase& phrase, Time now) {
   if (phrase.option_id == kYes) {
     ++counts_.confirmed;
     const Phrase confirmed = question_->candidates[question_->at];
-    answer(confirmed.option_id);
+    question_.reset();
+    wishes_.break_off = true;
+    obey(confirmed.option_id);
   } else if (phrase.option_id == kNo) {
     ++counts_.denied;
     if (++question_->at < question_->candidates.size()) {
@@ -126,18 +147,9 @@ void Conversation::heard(const Hearing& hearing, std::uint64_t phrases_id, Time 
     stop();
   } else if (question_) {
     reply(first, now);
-  } else if (holds_ && !alive_ && (first.option_id == kStart || first.option_id == kContinue)) {
-    ++counts_.acted;
-    holds_ = false;
-    wishes_.go_on = true;
-    listen();
   } else if (verdict == Verdict::kAct) {
     ++counts_.acted;
-    if (holds_ && (first.option_id == kStart || first.option_id == kContinue)) {
-      holds_ = false;
-      wishes_.go_on = true;
-    }
-    if (offers(first.option_id)) answer(first.option_id);
+    obey(first.option_id);
     listen();
   } else {
     Question question;

@@ -22,6 +22,8 @@ struct Screen {
   std::uint64_t spoken_id = 0;
   Tone tone = Tone::kNone;
   bool listens = false;
+  std::string answer_client;    ///< whose answer the dialogue took last, ...
+  std::uint64_t answer_id = 0;  ///< ... and which
   std::vector<Option> options;
 };
 
@@ -102,6 +104,7 @@ class Conversation {
   void ask(Time now);
   void answer(const std::string& option_id);
   void stop();
+  void obey(const std::string& option_id);
   void reply(const Phrase& phrase, Time now);
 
   DecisionRule rule_;

@@ -60,6 +60,7 @@ class Alsa {
     while (!samples.empty()) {
       snd_pcm_sframes_t done = snd_pcm_writei(pcm_, samples.data(), samples.size());
       if (done == -EAGAIN) return {};  // it has less room than it said: these are lost
+      if (done == -ESTRPIPE) return gone(-ESTRPIPE);  // suspended: recovery would wait for it
       if (done < 0) done = snd_pcm_recover(pcm_, static_cast<int>(done), 1);
       if (done < 0) return gone(static_cast<int>(done));
       samples = samples.subspan(static_cast<std::size_t>(done));
@@ -72,6 +73,7 @@ class Alsa {
     for (int i = 0; i < 16; ++i) {
       snd_pcm_sframes_t got = snd_pcm_readi(pcm_, part.data(), part.size());
       if (got == -EAGAIN || got == 0) return {};
+      if (got == -ESTRPIPE) return gone(-ESTRPIPE);
       if (got < 0) {
         got = snd_pcm_recover(pcm_, static_cast<int>(got), 1);
         if (got >= 0) got = snd_pcm_start(pcm_);

@@ -99,8 +99,12 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
       requests_(host, topics::kSupervisorRequest) {
   screen_ = host.input(topics::kDialogueScreen, {},
                        [this](const auto& screen, const auto&) { take_screen(screen); });
-  guide_ = host.input(topics::kGuideStatus,
-                      {.max_age = kDialogueAge, .on_loss = "a spoken stop goes to the supervisor"});
+  guide_ = host.input(topics::kGuideStatus, {.max_age = kDialogueAge,
+                                             .on_loss = "a spoken stop goes to the supervisor",
+                                             .optional = true});
+  meeting_ = host.input(topics::kMeetingStatus, {.max_age = kDialogueAge,
+                                                 .on_loss = "a spoken stop goes to the supervisor",
+                                                 .optional = true});
   supervisor_ = host.input(
       topics::kSupervisorStatus, {.optional = true},
       [this](const auto& status, const auto&) { requests_.answered(status.last_request()); });
@@ -145,6 +149,8 @@ void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   else
     ++rejected_;
   taken.listens = screen.listens();
+  taken.answer_client = screen.answer_client();
+  taken.answer_id = screen.answer_id();
   for (const auto& option : screen.options())
     taken.options.push_back({option.id(), option.label(), option.takes_text()});
   const std::size_t language = texts_.find(taken.language);
@@ -244,7 +250,10 @@ void SpeechComponent::hear() {
     activity_.restart();
     return;
   }
-  auto utterance = activity_.hear(in_, player_.loudness(card_->unheard()));
+  // What nobody hears comes back to no microphone.
+  constexpr double kSilence = -100.0;  // [dB]
+  const double echo = loudspeaker_trouble_.empty() ? player_.loudness(card_->unheard()) : kSilence;
+  auto utterance = activity_.hear(in_, echo);
   if (!utterance) return;
   if (to_recognize_.size() == kMostJobs) to_recognize_.pop_front();
   to_recognize_.push_back(
@@ -276,7 +285,7 @@ void SpeechComponent::tick() {
   if (++ticks_ == 1) load();
   if (ticks_ % kRetryEvery == 1) open_devices();
   conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
-  conversation_.hear_dialogue(guide_.fresh() != nullptr);
+  conversation_.hear_dialogue(guide_.fresh() != nullptr || meeting_.fresh() != nullptr);
   play();
   hear();
   const bool sounds = player_.sounds(card_->unheard()) || synthesizing_ || !to_say_.empty();

@@ -80,6 +80,7 @@ class SpeechComponent final : public runtime::Component {
   std::uint64_t& rejected_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
   runtime::Input<usher_msgs::msg::GuideStatus> guide_;
+  runtime::Input<usher_msgs::msg::MeetingStatus> meeting_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Output<usher_msgs::msg::SpeechStatus> status_output_;
   runtime::Output<usher_msgs::msg::SpeechLevel> level_output_;

@@ -231,7 +231,21 @@ TEST_F(Talk, StopsAtOnceHoweverUnsure) {
   show(screen(9, {"yes"}));
   talk_.take_wishes();
   hear("stop", kUnsure);
-  EXPECT_EQ(answer(), "");
+  EXPECT_TRUE(talk_.take_wishes().halt) << "the robot may turn although nothing can be stopped";
+}
+
+TEST_F(Talk, LiftsItsStopWhenSomebodyAnswers) {
+  show(screen(7, {"yes"}));
+  hear("stop", kUnsure);
+  show(screen(8, {"yes"}));
+  EXPECT_TRUE(talk_.holds()) << "another screen alone is nobody's will";
+  talk_.take_wishes();
+  auto answered = screen(9, {"yes"});
+  answered.answer_client = "tablet";
+  answered.answer_id = 4;
+  show(answered);
+  EXPECT_FALSE(talk_.holds());
+  EXPECT_TRUE(talk_.take_wishes().go_on);
 }
 
 TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueIsGoneAndGoesOnWhenAsked) {
@@ -241,6 +255,14 @@ TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueIsGoneAndGoesOnWhenAsked) {
   hear("stop", kUnsure);
   EXPECT_TRUE(talk_.take_wishes().halt);
   EXPECT_TRUE(talk_.holds());
+  hear("start", kUnsure);
+  EXPECT_FALSE(talk_.take_wishes().go_on) << "somebody chats nearby";
+  EXPECT_TRUE(talk_.asks());
+  hear("yes", kSure);
+  EXPECT_TRUE(talk_.take_wishes().go_on);
+  EXPECT_FALSE(talk_.holds());
+  hear("stop", kUnsure);
+  talk_.take_wishes();
   hear("start", kSure);
   EXPECT_TRUE(talk_.take_wishes().go_on);
   EXPECT_FALSE(talk_.holds());

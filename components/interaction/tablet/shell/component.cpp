@@ -60,7 +60,11 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
                        [this](const auto& screen, const auto&) { take_screen(screen); });
   guide_ = host.input(
       topics::kGuideStatus,
-      {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works"},
+      {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works", .optional = true},
+      [this](const auto&, const auto&) { show(); }, [this] { show(); });
+  meeting_ = host.input(
+      topics::kMeetingStatus,
+      {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works", .optional = true},
       [this](const auto&, const auto&) { show(); }, [this] { show(); });
   speech_ = host.input(
       topics::kSpeechStatus,
@@ -180,15 +184,15 @@ void TabletComponent::tick() {
   if (++ticks_ % kShowEvery != 0) return;
   show();
   using runtime::HealthState;
-  const bool robot = supervisor_.fresh() != nullptr, guide = guide_.fresh() != nullptr;
-  host_.health().set(robot && guide ? HealthState::kOk : HealthState::kDegraded,
-                     !robot   ? "the robot is out of reach"
-                     : !guide ? "no guide"
-                              : "");
+  const bool robot = supervisor_.fresh() != nullptr;
+  host_.health().set(robot && dialogue() ? HealthState::kOk : HealthState::kDegraded,
+                     !robot        ? "the robot is out of reach"
+                     : !dialogue() ? "nobody leads the dialogue"
+                                   : "");
 }
 
 void TabletComponent::show() {
-  core_.hear(supervisor_.fresh() != nullptr, guide_.fresh() != nullptr);
+  core_.hear(supervisor_.fresh() != nullptr, dialogue());
   const auto* speech = speech_.fresh();
   core_.hear_speech(speech != nullptr ? speech->hint() : "",
                     speech != nullptr && speech->state() == speech_state::STATE_ASKING);

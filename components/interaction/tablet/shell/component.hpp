@@ -40,7 +40,10 @@ class TabletComponent final : public runtime::Component {
   std::uint64_t ticks_ = 0;
   std::uint64_t& rejected_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
+  /// Whoever leads a dialogue on this robot is heard.
+  bool dialogue() const { return guide_.fresh() != nullptr || meeting_.fresh() != nullptr; }
   runtime::Input<usher_msgs::msg::GuideStatus> guide_;
+  runtime::Input<usher_msgs::msg::MeetingStatus> meeting_;
   runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;

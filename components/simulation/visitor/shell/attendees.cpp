@@ -11,6 +11,7 @@ namespace {
 using std::chrono::milliseconds;
 constexpr auto kStep = milliseconds(200);
 constexpr auto kTruthAge = milliseconds(500);
+constexpr auto kDialogueAge = milliseconds(3000);
 constexpr double kBefore = 0.8;  // [rad] beside the robot's heading its screen can be read
 namespace input = usher_msgs::msg::DialogueAnswer_Constants;
 }  // namespace
@@ -40,6 +41,8 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
   screen_ = host.input(topics::kDialogueScreen, {},
                        [this](const auto& screen, const auto&) { take(screen); });
   truth_ = host.input(topics::kSimGroundTruth, {.max_age = kTruthAge, .on_loss = "nobody answers"});
+  meeting_ =
+      host.input(topics::kMeetingStatus, {.max_age = kDialogueAge, .on_loss = "nobody answers"});
   walk_ = host.output(topics::kSimPersonGoal);
   timer_ = host.timer("step", kStep, [this](auto) { step(); });
   host.health().set(runtime::HealthState::kOk);
@@ -86,7 +89,7 @@ void AttendeesComponent::choose_seat(Somebody& somebody) {
 
 void AttendeesComponent::step() {
   const double now = runtime::seconds(host_.now().time_since_epoch());
-  const Somebody* before = asked();
+  const Somebody* before = meeting_.fresh() != nullptr ? asked() : nullptr;
   for (Somebody& somebody : people_) {
     somebody.mind.see(shown_, &somebody == before, now);
     const std::uint64_t question = somebody.mind.screen_id();

@@ -41,6 +41,7 @@ class AttendeesComponent final : public runtime::Component {
   Screen shown_;
   std::string room_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
+  runtime::Input<usher_msgs::msg::MeetingStatus> meeting_;
   runtime::Input<usher_sim_msgs::msg::GroundTruth> truth_;
   wire::Repeater<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_sim_msgs::msg::PersonGoal> walk_;

@@ -52,7 +52,7 @@ bool Meeting::in_a_room(const Point2& point) const {
 
 void Meeting::set_places(std::vector<Place> places) {
   for (Room& room : rooms_) {
-    room.place.reset();
+    if (!active(state_)) room.place.reset();  // a mission goes on with what it knew
     for (const Place& place : places) {
       if (place.name != room.area.name || !place.at.allFinite()) continue;
       room.place = place.at;
@@ -80,7 +80,9 @@ Status Meeting::request(const MissionRequest& request, Time now) {
     reason_ = "request " + std::to_string(request.id) + " refused: " + why;
     return Error{reason_};
   };
-  if (request.id == 0 || request.client.empty()) return refuse("it names no id or no client");
+  // The client's name is one line of what is kept for a restart.
+  if (request.id == 0 || request.client.empty() || request.client.find('\n') != std::string::npos)
+    return refuse("it names no id or no client");
   last_request_ = request.id;
   last_client_ = request.client;
   if (request.persons < 1 || request.persons > kMostPersons)
@@ -146,7 +148,11 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
     enter(State::kGuide, Cause::kYes, now);
   } else {
     ++report_.declined;
-    people_.leave_alone(person_, parameters_.same_person, kForever);
+    // Who leaves on the way is where the robot is by then.
+    const bool on_the_way = departed_ && robot_.pose && state_ == State::kGuide;
+    people_.leave_alone(on_the_way ? robot_.pose->position() : person_,
+                        on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
+                        now);
     look_for_people(Cause::kNo, now);
   }
   return finish(now);
@@ -189,6 +195,7 @@ void Meeting::enter(State state, Cause cause, Time now) {
   ++edges_taken_[static_cast<std::size_t>(edge - kEdges.begin())];
   state_ = state;
   since_ = now;
+  reason_.clear();
   ++next_screen_;
   actions_.status_changed = true;
   arrive_in(state, now);
@@ -333,7 +340,7 @@ void Meeting::drive_failed(Time now) {
       look_for_people(Cause::kNoWay, now);
       break;
     case State::kApproach:
-      people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again);
+      people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again, now);
       look_for_people(Cause::kNoWay, now);
       break;
     case State::kGuide:
@@ -371,7 +378,7 @@ void Meeting::pass_time(Time now) {
     case State::kInvite:
       if (passed >= parameters_.answer) {
         ++report_.unanswered;
-        people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again);
+        people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again, now);
         look_for_people(Cause::kTimeout, now);
       }
       break;
@@ -514,7 +521,7 @@ void Meeting::confirm(Time now) {
 
 void Meeting::refuse_face(Time now) {
   ++report_.faces_refused;
-  people_.leave_alone(face_to_, kRefusedRadius, now + parameters_.refused);
+  people_.leave_alone(face_to_, kRefusedRadius, now + parameters_.refused, now);
   if (state_ == State::kCheckRoom)
     enter(State::kScanRoom, Cause::kLost, now);
   else

@@ -124,9 +124,11 @@ class Meeting {
   State state() const { return state_; }
   /// Where the robot shall turn now, while it stands; the bearing [rad] of kFace, the sign of
   /// kSearch.
-  Turn turn() const { return turn_; }
+  Turn turn() const { return turn_ == Turn::kFace && !robot_.pose ? Turn::kStand : turn_; }
   double bearing() const;
   const service::Screen& screen() const { return screen_; }
+  /// Of the drive that goes on, or was the last.
+  std::uint64_t goal_id() const { return motion_.goal_id(); }
   const Report& report() const { return report_; }
   const People& people() const { return people_; }
   /// What it waits for, or why the newest request was refused.

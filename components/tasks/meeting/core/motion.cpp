@@ -12,6 +12,7 @@ void Motion::begin(Time now) {
   rest();
   phase_ = Phase::kAsking;
   began_ = now;
+  asked_ = false;
   acknowledged_ = false;
   reason_.clear();
 }
@@ -36,7 +37,7 @@ void Motion::rest() {
     else
       actions_.cancel = last_id_;
   }
-  if (phase_ != Phase::kAsking) {
+  if (asked_) {
     actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
     given_back_ = false;
     given_back_at_ = {};
@@ -84,7 +85,12 @@ Motion::Outcome Motion::step(const Surroundings& robot, Time now) {
       return Outcome::kBusy;
     case Phase::kAsking:
       if (now - began_ >= limits_.depart) return fail("the supervisor does not let me drive");
+      if (asked_ && navigates) {  // it let go late
+        go(now);
+        return Outcome::kBusy;
+      }
       if (robot.supervisor != Supervisor::kAvailable) return Outcome::kBusy;
+      asked_ = true;
       actions_.requests.push_back({RequestKind::kNavigationStart, name()});
       actions_.requests.push_back({RequestKind::kNavigationGo, {}});
       phase_ = Phase::kWaiting;

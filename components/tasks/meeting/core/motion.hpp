@@ -103,6 +103,7 @@ class Motion {
   bool exploring_ = false;
   bool anew_ = false;
   Goal goal_;
+  bool asked_ = false;  ///< the supervisor, for this journey
   bool acknowledged_ = false;
   Time began_{}, phase_since_{}, heard_{}, held_since_{};
   bool given_back_ = true;  // the supervisor was told that the journey is over

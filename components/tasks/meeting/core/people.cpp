@@ -9,7 +9,8 @@ void People::forget() {
   remembered_.clear();
 }
 
-void People::leave_alone(const Point2& at, double radius, Time until) {
+void People::leave_alone(const Point2& at, double radius, Time until, Time now) {
+  std::erase_if(alone_, [&](const Spot& spot) { return spot.until <= now; });
   if (alone_.size() == kMost) alone_.erase(alone_.begin());
   alone_.push_back({at, radius, until});
 }

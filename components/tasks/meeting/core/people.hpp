@@ -17,7 +17,7 @@ class People {
   void forget();
 
   /// Faces within `radius` [m] of this point are left alone until then.
-  void leave_alone(const Point2& at, double radius, Time until);
+  void leave_alone(const Point2& at, double radius, Time until, Time now);
   bool left_alone(const Point2& at, Time now) const;
 
   /// Somebody was seen there. Nothing new within `radius` of one who is remembered.

@@ -35,7 +35,8 @@ service::NavigationState goal_state(std::uint8_t state) {
 }
 
 /// The rooms that the site's file lists.
-std::vector<RoomArea> read_rooms(runtime::Parameters& p) {
+std::vector<RoomArea> read_rooms(runtime::Host& host) {
+  auto& p = host.parameters();
   const auto wall = [](const char* name, const char* text) {
     return runtime::RecordField{name, runtime::ParameterKind::kNumber, "m", {-1e4, 1e4}, text};
   };
@@ -50,6 +51,10 @@ std::vector<RoomArea> read_rooms(runtime::Parameters& p) {
   std::vector<RoomArea> rooms;
   rooms.reserve(records.size());
   for (const auto& record : records) {
+    if (!(record.number("west") < record.number("east") &&
+          record.number("south") < record.number("north")))
+      host.fault("site.meeting_rooms: '" + record.text("name") +
+                 "' must have west < east and south < north");
     rooms.push_back({record.text("name"),
                      {record.number("west"), record.number("south")},
                      {record.number("east"), record.number("north")}});
@@ -137,7 +142,7 @@ Meeting MeetingComponent::make(runtime::Host& host) {
   // Ids above all that were used before a restart.
   const auto first_id =
       static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000) + kIdsApart;
-  return Meeting(parameters, read_rooms(p), std::move(phrases).value(), 0, first_id);
+  return Meeting(parameters, read_rooms(host), std::move(phrases).value(), 0, first_id);
 }
 
 MeetingComponent::MeetingComponent(runtime::Host& host)
@@ -269,6 +274,7 @@ void MeetingComponent::see(const usher_msgs::msg::Faces& message, const Pose2& p
 }
 
 void MeetingComponent::take_request(const usher_msgs::msg::MeetingRequest& request) {
+  if (left_) return;  // the request is repeated; what a restart left is ended first
   step();
   if (!core_.request({request.id(), request.client(), request.persons(),
                       static_cast<double>(request.time_limit())},
@@ -324,7 +330,10 @@ void MeetingComponent::tick() {
   step();
   turn();
   if (left_ && ticks_ >= kFoundAfter) end_what_was_left();
-  if (++ticks_ % kStatusEvery == 0) publish_status();
+  if (++ticks_ % kStatusEvery == 0) {
+    publish_status();
+    if (core_.state() == State::kGuide) publish_screen();  // the remaining way
+  }
   const std::string lacking = lacks();
   host_.health().set(lacking.empty() ? HealthState::kOk : HealthState::kDegraded, lacking);
 }
@@ -416,7 +425,8 @@ void MeetingComponent::publish_screen() {
   if (const auto* supervisor = supervisor_.fresh()) message.robot_state(supervisor->state());
   if (const auto* navigation = navigation_.fresh()) {
     message.navigation_status(navigation->state());
-    if (core_.state() == State::kGuide) {
+    const bool ours = navigation->client() == host_.name() && navigation->id() == core_.goal_id();
+    if (core_.state() == State::kGuide && ours) {
       message.progress(navigation->progress());
       message.eta(navigation->eta());
       message.remaining(navigation->remaining());
