@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "interaction/phrases/core/phrase_file.hpp"
+
 namespace usher::speech {
 
 namespace {
@@ -10,12 +12,6 @@ namespace {
 constexpr const char* kCancel = "cancel";
 constexpr const char* kStart = "start";
 constexpr const char* kContinue = "continue";
-
-std::string with_answer(std::string text, const std::string& answer) {
-  const std::string mark = "{answer}";
-  const auto at = text.find(mark);
-  return at == std::string::npos ? text : text.replace(at, mark.size(), answer);
-}
 
 }  // namespace
 
@@ -64,7 +60,8 @@ void Conversation::ask(Time now) {
   const Phrase& candidate = question_->candidates[question_->at];
   question_->since = now;
   wishes_.break_off = true;
-  wishes_.say = Wishes::Say{0, with_answer(sentences_.did_you_say, candidate.label), "en"};
+  wishes_.say =
+      Wishes::Say{0, phrases::filled(sentences_.did_you_say, {{"answer", candidate.label}}), "en"};
   listen();
 }
 
@@ -188,7 +185,8 @@ Wishes Conversation::take_wishes() { return std::exchange(wishes_, {}); }
 
 std::string Conversation::hint() const {
   if (question_) {
-    return with_answer(sentences_.did_you_say, question_->candidates[question_->at].label);
+    return phrases::filled(sentences_.did_you_say,
+                           {{"answer", question_->candidates[question_->at].label}});
   }
   return screen_.listens && !english() ? sentences_.by_touch : std::string();
 }

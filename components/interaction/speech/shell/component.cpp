@@ -142,7 +142,7 @@ void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   Screen taken;
   taken.id = screen.id();
   taken.language = screen.language();
-  taken.spoken = screen.spoken().substr(0, kMostWords);
+  taken.spoken = phrases::shortened(screen.spoken(), kMostWords);
   taken.spoken_id = screen.spoken_id();
   if (screen.tone() <= static_cast<std::uint8_t>(Tone::kCall))
     taken.tone = static_cast<Tone>(screen.tone());

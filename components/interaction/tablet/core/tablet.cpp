@@ -11,14 +11,6 @@ constexpr const char* kDialogueStop = "stop";
 constexpr const char* kDialogueContinue = "continue";
 constexpr const char* kStay = "stay";
 
-/// Cuts at a letter's beginning.
-std::string shortened(std::string text, std::size_t most) {
-  if (text.size() <= most) return text;
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
-  text.resize(most);
-  return text;
-}
-
 }  // namespace
 
 std::string way_text(double remaining, double eta) {
@@ -94,7 +86,7 @@ Touched Tablet::type(const std::string& text, Time /*now*/) {
   const auto line = std::find_if(screen_.options.begin(), screen_.options.end(),
                                  [](const Screen::Option& option) { return option.takes_text; });
   if (!shows_dialogue() || line == screen_.options.end()) return {};
-  typed_ = shortened(text, kMostTyped);
+  typed_ = phrases::shortened(text, kMostTyped);
   return {.answer = Answer{screen_.id, line->id, typed_}};
 }
 
