@@ -1,15 +1,13 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <mutex>
-#include <thread>
 
 #include "foundation/grid/map_file.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/building_map.hpp"
 #include "operations/experiments/commanded_robot.hpp"
 #include "operations/experiments/experiment.hpp"
+#include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
 
@@ -291,31 +289,16 @@ Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options) {
   if (!buildings) return Error{buildings.error()};
   const auto seeds = static_cast<std::size_t>(std::max(1, options.seeds));
   std::vector<std::optional<Tour>> tours(buildings->size() * seeds);
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::string error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < tours.size(); i = next++) {
-      const std::uint64_t seed = i % seeds + 1;
-      auto result = tour(options, (*buildings)[i / seeds], seed, [&](const Deployment& deployment) {
-        return lockstep_robot(deployment, seed);
-      });
-      const std::lock_guard lock(mutex);
-      if (!result) {
-        error = result.error();
-        next = tours.size();
-        return;
-      }
-      tours[i] = std::move(result).value();
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back(work);
-  }
-  show_progress("");
-  if (!error.empty()) return Error{error};
+  const Status toured = run_jobs(tours.size(), "tours", [&](std::size_t i) -> Result<std::string> {
+    const std::uint64_t seed = i % seeds + 1;
+    auto result = tour(options, (*buildings)[i / seeds], seed, [&](const Deployment& deployment) {
+      return lockstep_robot(deployment, seed);
+    });
+    if (!result) return Error{result.error()};
+    tours[i] = std::move(result).value();
+    return std::string();
+  });
+  if (!toured) return Error{toured.error()};
   std::vector<Tour> done;
   for (auto& tour : tours) done.push_back(std::move(*tour));
   auto sheet = report(options, done, true);

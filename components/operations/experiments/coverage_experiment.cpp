@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <string_view>
-#include <thread>
 
 #include "foundation/grid/map_file.hpp"
 #include "navigation/explorer/core/ground.hpp"
@@ -16,6 +13,7 @@
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/run_jobs.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::operations {
@@ -272,40 +270,25 @@ Result<ResultSheet> run_coverage_experiment(const ExperimentOptions& options) {
   const auto site = site_of(deployments.front());
   if (!site) return Error{site.error()};
 
-  std::atomic<std::size_t> next{0}, done{0};
-  std::mutex mutex;
-  std::string error;
   const std::size_t jobs = rows.size() * static_cast<std::size_t>(seeds);
-  const auto work = [&] {
-    for (std::size_t i = next++; i < jobs; i = next++) {
-      const std::size_t row = i % rows.size(), seed = i / rows.size();
-      auto result = explore(deployments[row], *site, seed + 1, minutes);
-      const std::lock_guard lock(mutex);
-      if (!result) {
-        error = rows[row].variant->key() + ": " + result.error();
-        next = jobs;
-        return;
-      }
-      const bool explores =
-          result->status.state() <= usher_msgs::msg::GoalStatus_Constants::STATE_WAITING;
-      if (result->summary.contacts > 0 || !result->status.reason().empty() || !explores) {
-        show_progress("");
-        std::printf("%s, seed %zu: %u contacts %s, %s%s\n%s", rows[row].variant->key().c_str(),
-                    seed + 1, result->summary.contacts, result->summary.contact_with.c_str(),
-                    explores ? "" : "ended: ", result->status.reason().c_str(),
-                    result->complaints.c_str());
-      }
-      rows[row].runs[seed] = std::move(result).value();
-      show_progress(std::to_string(++done) + " of " + std::to_string(jobs) + " explorations");
+  const Status done = run_jobs(jobs, "explorations", [&](std::size_t i) -> Result<std::string> {
+    const std::size_t row = i % rows.size(), seed = i / rows.size();
+    const std::string key = rows[row].variant->key();
+    auto result = explore(deployments[row], *site, seed + 1, minutes);
+    if (!result) return Error{key + ": " + result.error()};
+    const bool explores =
+        result->status.state() <= usher_msgs::msg::GoalStatus_Constants::STATE_WAITING;
+    std::string said;
+    if (result->summary.contacts > 0 || !result->status.reason().empty() || !explores) {
+      said = key + ", seed " + std::to_string(seed + 1) + ": " +
+             std::to_string(result->summary.contacts) + " contacts " +
+             result->summary.contact_with + ", " + (explores ? "" : "ended: ") +
+             result->status.reason() + "\n" + result->complaints;
     }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back(work);
-  }
-  show_progress("");
-  if (!error.empty()) return Error{error};
+    rows[row].runs[seed] = std::move(result).value();
+    return said;
+  });
+  if (!done) return Error{done.error()};
 
   ResultSheet sheet;
   sheet.name = "coverage";

@@ -43,6 +43,7 @@ Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& optio
 Result<ResultSheet> run_human_detection_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_haar_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_tracking_error_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);

@@ -6,6 +6,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/meeting_run.hpp"
+#include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
 
@@ -90,15 +91,16 @@ Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options) {
     }
   }
   if (trials.empty()) return Error{"no such world state: " + options.only};
-  const Status done = run_jobs(trials.size(), "searches", [&](std::size_t i) -> Status {
-    Trial& trial = trials[i];
-    const std::string title = trial.seed == 1 ? name_of(trial) : "";
-    auto run =
-        run_meeting(*deployment, case_of(trial), trial.seed, options.out, name_of(trial), title);
-    if (!run) return Error{name_of(trial) + ": " + run.error()};
-    trial.run = std::move(run).value();
-    return {};
-  });
+  const Status done =
+      run_jobs(trials.size(), "searches", [&](std::size_t i) -> Result<std::string> {
+        Trial& trial = trials[i];
+        const std::string title = trial.seed == 1 ? name_of(trial) : "";
+        auto run = run_meeting(*deployment, case_of(trial), trial.seed, options.out, name_of(trial),
+                               title);
+        if (!run) return Error{name_of(trial) + ": " + run.error()};
+        trial.run = std::move(run).value();
+        return std::string();
+      });
   if (!done) return Error{done.error()};
 
   ResultSheet sheet;

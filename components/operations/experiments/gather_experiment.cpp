@@ -7,6 +7,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/meeting_run.hpp"
+#include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
 
@@ -83,13 +84,14 @@ Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options) {
   const auto run_one = [&](const Trial& trial, const std::string& name, const std::string& title) {
     return run_meeting(*deployment, case_of(trial, limit), trial.seed, options.out, name, title);
   };
-  const Status done = run_jobs(trials.size(), "meetings", [&](std::size_t i) -> Status {
-    Trial& trial = trials[i];
-    auto run = run_one(trial, name_of(trial), trial.seed == 1 ? name_of(trial) : "");
-    if (!run) return Error{name_of(trial) + ": " + run.error()};
-    trial.run = std::move(run).value();
-    return {};
-  });
+  const Status done =
+      run_jobs(trials.size(), "meetings", [&](std::size_t i) -> Result<std::string> {
+        Trial& trial = trials[i];
+        auto run = run_one(trial, name_of(trial), trial.seed == 1 ? name_of(trial) : "");
+        if (!run) return Error{name_of(trial) + ": " + run.error()};
+        trial.run = std::move(run).value();
+        return std::string();
+      });
   if (!done) return Error{done.error()};
 
   ResultSheet sheet;

@@ -1,14 +1,13 @@
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <thread>
 
 #include "foundation/grid/map_file.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
 
@@ -121,45 +120,27 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   const int seeds = std::max(only, options.seeds > 0 ? options.seeds : kSeeds);
 
   std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));
-  std::atomic<int> next{0}, done{0};
-  std::mutex mutex;
-  std::string error;
-  const int end = only > 0 ? only : seeds;
-  const auto work = [&] {
-    for (int i = next++; i < end; i = next++) {
-      const auto seed = static_cast<std::uint64_t>(i + 1);
-      // Every place gets its turn; the first one is where the robot stands.
-      const auto& place = names[1 + static_cast<std::size_t>(i) % (names.size() - 1)];
-      auto result = visit(*deployment, place, seed, "", nullptr);
-      const std::lock_guard lock(mutex);
-      if (!result) {
-        error = result.error();
-        next = end;
-        return;
-      }
-      if (!result->arrived || result->summary.contacts > 0) {
-        show_progress("");
-        std::printf(
-            "seed %d to %s: %s, %u contacts %s (replay: usher experiment guide --only %d)\n%s",
-            i + 1, place.c_str(), result->arrived ? "arrived" : result->outcome.c_str(),
-            result->summary.contacts, result->summary.contact_with.c_str(), i + 1,
-            result->complaints.c_str());
-        std::fflush(stdout);
-      }
-      visits[static_cast<std::size_t>(i)] = std::move(result).value();
-      show_progress(std::to_string(++done) + " of " + std::to_string(seeds) + " visits");
+  const auto run_seed = [&](std::size_t i) -> Result<std::string> {
+    // Every place gets its turn; the first one is where the robot stands.
+    const auto& place = names[1 + i % (names.size() - 1)];
+    auto result = visit(*deployment, place, i + 1, "", nullptr);
+    if (!result) return Error{result.error()};
+    std::string said;
+    if (!result->arrived || result->summary.contacts > 0) {
+      const std::string seed = std::to_string(i + 1);
+      said = "seed " + seed + " to " + place + ": " +
+             (result->arrived ? "arrived" : result->outcome) + ", " +
+             std::to_string(result->summary.contacts) + " contacts " +
+             result->summary.contact_with + " (replay: usher experiment guide --only " + seed +
+             ")\n" + result->complaints;
     }
+    visits[i] = std::move(result).value();
+    return said;
   };
-  if (only > 0) {
-    next = only - 1;
-    work();
-  } else {
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back(work);
-  }
-  show_progress("");
-  if (!error.empty()) return Error{error};
+  const std::size_t first = only > 0 ? static_cast<std::size_t>(only - 1) : 0;
+  const Status done = run_jobs(only > 0 ? 1 : visits.size(), "visits",
+                               [&](std::size_t i) { return run_seed(first + i); });
+  if (!done) return Error{done.error()};
 
   ResultSheet sheet;
   sheet.name = "guide";

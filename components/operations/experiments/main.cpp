@@ -71,6 +71,10 @@ const std::vector<Experiment>& experiments() {
        "Experiment D of the meeting report, simulated: faces and what cascades take for faces, "
        "without and with depth models",
        run_depth_model_experiment},
+      {"tracking-error",
+       "How far the Pioneer's localization is from the truth on a round through the arena, "
+       "lock-step, beside figure 6 of the meeting report; --only amcl | amcl_plain | mcl",
+       run_tracking_error_experiment},
       {"find-room",
        "The meeting assistant finds an empty room, lock-step: three world states, two starts, "
        "times "

@@ -1,12 +1,9 @@
 #include "operations/experiments/meeting_run.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <mutex>
-#include <thread>
 
 #include "foundation/grid/map_file.hpp"
 #include "navigation/explorer/core/seen_area.hpp"
@@ -202,33 +199,6 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
   if (saved) saved = draw_run(run.record(), *map, title, folder + "/" + name + ".png");
   if (!saved) return Error{saved.error()};
   return result;
-}
-
-Status run_jobs(std::size_t count, const std::string& what,
-                const std::function<Status(std::size_t)>& job) {
-  std::atomic<std::size_t> next{0}, done{0};
-  std::mutex mutex;
-  std::string error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      const Status status = job(i);
-      const std::lock_guard lock(mutex);
-      if (!status) {
-        error = status.error();
-        next = count;
-        return;
-      }
-      show_progress(std::to_string(++done) + " of " + std::to_string(count) + " " + what);
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back(work);
-  }
-  show_progress("");
-  if (!error.empty()) return Error{error};
-  return {};
 }
 
 }  // namespace usher::operations

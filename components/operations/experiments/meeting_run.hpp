@@ -50,10 +50,6 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
                                const std::string& folder, const std::string& name,
                                const std::string& title = {});
 
-/// Runs `count` jobs on all processors; the first error ends it. `job` is called beside others.
-Status run_jobs(std::size_t count, const std::string& what,
-                const std::function<Status(std::size_t)>& job);
-
 /// "1:05" of seconds.
 std::string minutes(double seconds);
 

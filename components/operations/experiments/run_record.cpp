@@ -112,6 +112,17 @@ std::optional<geometry::Pose2> RunRecord::truth_at(runtime::Time stamp) const {
       runtime::seconds(stamp - before->stamp) / runtime::seconds(after->stamp - before->stamp));
 }
 
+std::vector<RunRecord::Error> RunRecord::localization_errors() const {
+  std::vector<Error> errors;
+  for (const auto& [stamp, estimate] : estimates_) {
+    const auto truth = truth_at(stamp);
+    if (!truth) continue;
+    errors.push_back({stamp, geometry::distance(*truth, estimate),
+                      std::abs(geometry::shortest_turn(truth->yaw, estimate.yaw))});
+  }
+  return errors;
+}
+
 RunRecord::Summary RunRecord::summary() const {
   Summary s;
   s.contacts = contacts_;
@@ -128,13 +139,10 @@ RunRecord::Summary RunRecord::summary() const {
   }
   if (active_from_) s.seconds = runtime::seconds(*active_until_ - *active_from_);
   s.mean_speed = s.seconds > 0.0 ? s.path / s.seconds : 0.0;
-  for (const auto& [stamp, estimate] : estimates_) {
-    const auto truth = truth_at(stamp);
-    if (!truth) continue;
-    const double error = geometry::distance(*truth, estimate);
-    s.localization_mean += error;
-    s.localization_yaw_mean += std::abs(geometry::shortest_turn(truth->yaw, estimate.yaw));
-    s.localization_max = std::max(s.localization_max, error);
+  for (const Error& error : localization_errors()) {
+    s.localization_mean += error.distance;
+    s.localization_yaw_mean += error.yaw;
+    s.localization_max = std::max(s.localization_max, error.distance);
     ++s.estimates;
   }
   if (s.estimates > 0) {

@@ -44,6 +44,13 @@ class RunRecord {
     double worst_lag = 0.0;  ///< [s]
   };
 
+  /// How far an estimate was from the truth.
+  struct Error {
+    runtime::Time stamp{};
+    double distance = 0.0;  ///< [m]
+    double yaw = 0.0;       ///< [rad]
+  };
+
   void take(const usher_sim_msgs::msg::GroundTruth& truth);
   void take(const geometry_msgs::msg::PoseWithCovarianceStamped& estimate);
   void take(const nav_msgs::msg::Path& plan);
@@ -59,10 +66,11 @@ class RunRecord {
   /// The newest position of a person by name.
   std::optional<geometry::Point2> person(const std::string& name) const;
   const std::optional<usher_msgs::msg::NavigateStatus>& navigation() const { return navigation_; }
-  bool reached_a_goal() const { return reached_; }  ///< the navigator says so
+  bool reached_a_goal() const { return reached_; }                        ///< the navigator says so
   const std::vector<std::string>& dialogue() const { return dialogue_; }  ///< states, in order
   const std::optional<usher_msgs::msg::DialogueScreen>& screen() const { return screen_; }
   std::optional<geometry::Pose2> truth() const;
+  std::vector<Error> localization_errors() const;
   Summary summary() const;
 
  private:

@@ -1,0 +1,48 @@
+#include "operations/experiments/run_jobs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "operations/experiments/experiment.hpp"
+
+namespace usher::operations {
+
+Status run_jobs(std::size_t count, const std::string& what,
+                const std::function<Result<std::string>(std::size_t)>& job) {
+  std::mutex mutex;
+  std::size_t next = 0, done = 0;
+  std::string error;
+  const auto work = [&] {
+    std::unique_lock lock(mutex);
+    while (next < count) {
+      const std::size_t i = next++;
+      lock.unlock();
+      const auto said = job(i);
+      lock.lock();
+      if (!said) {
+        if (error.empty()) error = said.error();
+        next = count;
+        return;
+      }
+      if (!said->empty()) {
+        show_progress("");
+        std::fputs(said->c_str(), stdout);
+        std::fflush(stdout);
+      }
+      show_progress(std::to_string(++done) + " of " + std::to_string(count) + " " + what);
+    }
+  };
+  {
+    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < std::min(count, processors); ++i) threads.emplace_back(work);
+  }
+  show_progress("");
+  if (!error.empty()) return Error{error};
+  return {};
+}
+
+}  // namespace usher::operations
