@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/goal/goal_state.hpp"
 #include "navigation/explorer/core/ground.hpp"
 #include "navigation/explorer/core/seen_area.hpp"
 #include "navigation/explorer/core/strategy.hpp"
@@ -21,17 +22,6 @@ struct ExplorerConfig {
   double standing_room = 0.35;       ///< [m] to turn at a viewpoint; [passing_room, 2]
   int most_recoveries = 2;           ///< of the navigator, for one viewpoint; [0, 100]
   int most_failures = 5;             ///< viewpoints in a row that cannot be reached; [1, 100]
-};
-
-/// Of a goal; the values of GoalStatus in usher_msgs.
-enum class GoalState : std::uint8_t {
-  kIdle,
-  kActive,
-  kWaiting,
-  kSucceeded,
-  kFailed,
-  kCancelled,
-  kReplaced
 };
 
 struct ExploreRequest {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/goal/goal_state.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/navigator/core/locations.hpp"
 #include "navigation/navigator/core/route.hpp"
@@ -76,17 +77,6 @@ enum class Phase : std::uint8_t {
   kClearing,    ///< recovery: forgets observed obstacles
   kBackingOff,  ///< recovery
   kLooking,     ///< recovery: turns in place
-};
-
-/// Of a goal; the values of GoalStatus in usher_msgs.
-enum class GoalState : std::uint8_t {
-  kIdle,
-  kActive,
-  kWaiting,
-  kSucceeded,
-  kFailed,
-  kCancelled,
-  kReplaced
 };
 
 enum class Failure : std::uint8_t {

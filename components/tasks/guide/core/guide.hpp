@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/goal/goal_state.hpp"
 #include "foundation/result/result.hpp"
 #include "interaction/phrases/core/phrase_file.hpp"
 #include "tasks/guide/core/dialogue.hpp"
@@ -45,14 +46,13 @@ struct Parameters {
   FollowLimits follow;
 };
 
-using service::NavigationState;
 using service::Request;
 using service::RequestKind;
 using service::Supervisor;
 
 struct Navigation {
   std::uint64_t goal_id = 0;
-  NavigationState state = NavigationState::kIdle;
+  GoalState state = GoalState::kIdle;
   double progress = 0.0;        ///< {0..1}
   double eta = kNothing;        ///< [s]
   double remaining = kNothing;  ///< [m]

@@ -121,8 +121,8 @@ void Guide::watch_navigation(Time now) {
       return;
     }
     // One that was refused leaves ours alone; it is in the status for a moment only.
-    const bool taken = navigation && (navigation->state == NavigationState::kActive ||
-                                      navigation->state == NavigationState::kWaiting);
+    const bool taken = navigation && (navigation->state == GoalState::kActive ||
+                                      navigation->state == GoalState::kWaiting);
     if (acknowledged_ && taken) return fail(Text::kOtherGoal, Cause::kFailure, now);
     if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
     if (now - *unheard_since_ >= parameters_.acknowledge) {
@@ -133,7 +133,7 @@ void Guide::watch_navigation(Time now) {
   acknowledged_ = true;
   unheard_since_.reset();
   switch (navigation->state) {
-    case NavigationState::kSucceeded:
+    case GoalState::kSucceeded:
       goal_id_ = 0;
       leave_journey();
       visit_.travel_time += now - departed_;
@@ -147,16 +147,16 @@ void Guide::watch_navigation(Time now) {
       if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
       enter(State::kGuideSuccess, Cause::kArrived, now);
       break;
-    case NavigationState::kFailed:
-    case NavigationState::kCancelled:
+    case GoalState::kFailed:
+    case GoalState::kCancelled:
       fail(Text::kNoWay, Cause::kFailure, now);
       break;
-    case NavigationState::kReplaced:
+    case GoalState::kReplaced:
       fail(Text::kOtherGoal, Cause::kFailure, now);
       break;
-    case NavigationState::kIdle:
-    case NavigationState::kActive:
-    case NavigationState::kWaiting:
+    case GoalState::kIdle:
+    case GoalState::kActive:
+    case GoalState::kWaiting:
       break;
   }
 }

@@ -152,14 +152,11 @@ Surroundings GuideComponent::surroundings() const {
     const bool blocked = follow != nullptr &&
                          follow->state() == usher_msgs::msg::GoalStatus_Constants::STATE_WAITING &&
                          follow->blocked_for() > 0.0F;
-    s.navigation =
-        Navigation{status->id(),
-                   static_cast<NavigationState>(std::min<std::uint8_t>(status->state(), 6)),
-                   status->progress(),
-                   status->eta(),
-                   status->remaining(),
-                   blocked,
-                   status->replans()};
+    s.navigation = Navigation{
+        status->id(),        static_cast<GoalState>(std::min<std::uint8_t>(status->state(), 6)),
+        status->progress(),  status->eta(),
+        status->remaining(), blocked,
+        status->replans()};
   }
   namespace seen = usher_msgs::msg::Visitor_Constants;
   const auto* visitor = visitor_.fresh();

@@ -20,8 +20,7 @@ struct Case {
 
 const Step kActive{[](Rig& r) { r.to_active(); }, State::kGuideActive, ""};
 const Step kStart{[](Rig& r) { r.to_start(); }, State::kGuideStart, "start:am218"};
-const Step kArrive{[](Rig& r) { r.navigate(NavigationState::kSucceeded); }, State::kGuideSuccess,
-                   "end"};
+const Step kArrive{[](Rig& r) { r.navigate(GoalState::kSucceeded); }, State::kGuideSuccess, "end"};
 const Step kAnythingElse{[](Rig& r) { r.wait(4000); }, State::kEndAsk, ""};
 const Step kBye{[](Rig& r) { r.press("no"); }, State::kEnd, ""};
 const Step kIdle{[](Rig& r) { r.wait(4000); }, State::kInactive, ""};
@@ -58,7 +57,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) {
            r.around.visitor.reset();
            r.around.supervisor = Supervisor::kNavigation;
-           r.navigate(NavigationState::kActive);
+           r.navigate(GoalState::kActive);
          },
          State::kGuideActive, ""},
         kArrive,
@@ -104,7 +103,7 @@ const std::vector<Case>& cases() {
       {"stops where the place is",
        {kActive,
         PRESS("stop", kGuidePaused, "stop"),
-        {[](Rig& r) { r.navigate(NavigationState::kSucceeded); }, State::kGuideSuccess, "end on"}}},
+        {[](Rig& r) { r.navigate(GoalState::kSucceeded); }, State::kGuideSuccess, "end on"}}},
       {"stops, then the robot fails",
        {kActive,
         PRESS("stop", kGuidePaused, "stop"),
@@ -112,7 +111,7 @@ const std::vector<Case>& cases() {
          "end on cancel"}}},
       {"fails, tries again, fails, gives up",
        {kActive,
-        {[](Rig& r) { r.navigate(NavigationState::kFailed); }, State::kGuideError, "end cancel"},
+        {[](Rig& r) { r.navigate(GoalState::kFailed); }, State::kGuideError, "end cancel"},
         PRESS("yes", kGuideOptions),
         PRESS("foyer", kGuideStart, "start:foyer"),
         {[](Rig& r) { r.around.supervisor = Supervisor::kManual, r.wait(100); }, State::kGuideError,
@@ -134,7 +133,7 @@ const std::vector<Case>& cases() {
       {"no answer: ready", {kStart, WAIT(60000, kEnd, "end")}},
       {"no answer: try again",
        {kActive,
-        {[](Rig& r) { r.navigate(NavigationState::kFailed); }, State::kGuideError, "end cancel"},
+        {[](Rig& r) { r.navigate(GoalState::kFailed); }, State::kGuideError, "end cancel"},
         WAIT(60000, kEnd)}},
       {"no answer: anything else", {kToOptions, PRESS("cancel", kEndAsk), WAIT(60000, kEnd)}},
       {"leaves: greeting",
@@ -156,7 +155,7 @@ const std::vector<Case>& cases() {
       {"leaves: ready", {kStart, kGoneFromStart}},
       {"leaves: try again",
        {kActive,
-        {[](Rig& r) { r.navigate(NavigationState::kFailed); }, State::kGuideError, "end cancel"},
+        {[](Rig& r) { r.navigate(GoalState::kFailed); }, State::kGuideError, "end cancel"},
         kGone}},
       {"leaves: anything else", {kToOptions, PRESS("cancel", kEndAsk), kGone}},
   };

@@ -32,7 +32,7 @@ TEST(Guide, SpeaksTheSentencesOfTheThesis) {
   EXPECT_EQ(rig.guide.screen().text, "All right, let's go. Tell me if we need to stop.");
   EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
   rig.wait(1000);
-  rig.navigate(NavigationState::kFailed);
+  rig.navigate(GoalState::kFailed);
   EXPECT_EQ(rig.guide.screen().title, "Sorry, I was unable to guide you.");
   rig.press("no");
   EXPECT_EQ(rig.guide.screen().title, "Can I do anything else for you?");
@@ -58,7 +58,7 @@ TEST(Guide, SaysOnlyWhatIsOnTheScreen) {
     rig.press("guide_me"), check("start");
     rig.press("start"), check("active");
     rig.wait(1000);
-    rig.navigate(NavigationState::kSucceeded), check("arrived");
+    rig.navigate(GoalState::kSucceeded), check("arrived");
     rig.wait(4000), check("anything else");
     rig.wait(41000), check("still there");
   }
@@ -161,7 +161,7 @@ TEST(Guide, TellsTimeAndWayAtTheStartAndAtTheEnd) {
   EXPECT_NE(all.find("It is 40 metres, about one minute."), std::string::npos) << all;
   EXPECT_NE(all.find("We are almost there."), std::string::npos) << all;
   EXPECT_EQ(all.find("It is"), all.rfind("It is")) << "said once: " << all;
-  rig.navigate(NavigationState::kSucceeded);
+  rig.navigate(GoalState::kSucceeded);
   EXPECT_NEAR(rig.guide.visit().eta_error, 41.0 / 60.0 - 1.0, 0.05);
 }
 
@@ -319,7 +319,7 @@ TEST(Guide, GivesTheGoalAgainToANavigatorThatForgotIt) {
     rig.wait(100);
     EXPECT_EQ(rig.taken(), "goal:am218");
     EXPECT_EQ(rig.goal, goal) << "the same goal";
-    rig.navigate(NavigationState::kActive);
+    rig.navigate(GoalState::kActive);
   }
   rig.around.navigation = Navigation{};
   rig.wait(100);
@@ -329,18 +329,18 @@ TEST(Guide, GivesTheGoalAgainToANavigatorThatForgotIt) {
 TEST(Guide, ARefusedForeignGoalDoesNotEndTheVisit) {
   Rig rig;
   rig.to_active();
-  const auto foreign = [&](NavigationState state) {
+  const auto foreign = [&](GoalState state) {
     rig.around.navigation->goal_id = 99;
     rig.around.navigation->state = state;
     rig.wait(200);
   };
-  for (const auto refused : {NavigationState::kFailed, NavigationState::kReplaced}) {
+  for (const auto refused : {GoalState::kFailed, GoalState::kReplaced}) {
     foreign(refused);
     EXPECT_EQ(rig.state(), "guide_active");
-    rig.navigate(NavigationState::kActive);
+    rig.navigate(GoalState::kActive);
   }
   EXPECT_EQ(rig.taken(), "");
-  foreign(NavigationState::kActive);
+  foreign(GoalState::kActive);
   EXPECT_EQ(rig.state(), "guide_error") << "one that runs has taken its place";
 }
 
@@ -389,13 +389,13 @@ TEST(Guide, GoesOnAfterItsOwnRestart) {
   before.press("am218"), before.press("start");
   before.around.supervisor = Supervisor::kNavigation;
   before.wait(1000);
-  before.navigate(NavigationState::kActive);
+  before.navigate(GoalState::kActive);
   Rig after({}, before.guide.memory(), 1000000);
   EXPECT_EQ(after.state(), "guide_active");
   EXPECT_EQ(after.guide.screen().title, "Wir gehen hierhin – AM218.");
   after.goal = before.goal;
   after.around.supervisor = Supervisor::kNavigation;
-  after.navigate(NavigationState::kSucceeded);
+  after.navigate(GoalState::kSucceeded);
   EXPECT_EQ(after.state(), "guide_success");
   EXPECT_EQ(after.guide.funnel().arrived, 1U);
   EXPECT_EQ(after.guide.visit().touches, 4U) << "the visit is the same one";
@@ -407,7 +407,7 @@ TEST(Guide, PutsRecentPlacesFirst) {
   rig.press("foyer"), rig.press("start");
   rig.around.supervisor = Supervisor::kNavigation;
   rig.wait(1000);
-  rig.navigate(NavigationState::kSucceeded);
+  rig.navigate(GoalState::kSucceeded);
   rig.around.supervisor = Supervisor::kAvailable;
   rig.wait(4000);
   rig.press("yes"), rig.press("guide_me");
@@ -482,13 +482,9 @@ TEST(Guide, HasNoDeadEnd) {
       if (random.below(4) == 0) rig.see_nobody();
       if (random.below(9) == 0) rig.around.visitor.reset();
       if (random.below(4) == 0) {
-        rig.around.navigation = Navigation{rig.goal - random.below(2),
-                                           static_cast<NavigationState>(random.below(7)),
-                                           0.3,
-                                           4.0,
-                                           8.0,
-                                           random.below(2) == 0,
-                                           static_cast<std::uint32_t>(random.below(3))};
+        rig.around.navigation = Navigation{
+            rig.goal - random.below(2), static_cast<GoalState>(random.below(7)),    0.3, 4.0, 8.0,
+            random.below(2) == 0,       static_cast<std::uint32_t>(random.below(3))};
       }
       if (random.below(30) == 0) rig.around.navigation.reset();
       if (random.below(40) == 0) {  // a restart

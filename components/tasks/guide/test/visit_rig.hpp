@@ -61,7 +61,7 @@ class Rig {
     note(guide.answer({guide.screen().id, "query", text, Input::kTouch}, now()));
   }
   /// The navigator says this of the guide's goal.
-  void navigate(NavigationState state) {
+  void navigate(GoalState state) {
     if (!around.navigation) around.navigation = Navigation{};
     around.navigation->goal_id = goal;
     around.navigation->state = state;
@@ -79,7 +79,7 @@ class Rig {
     to_start(), press("start");
     around.supervisor = Supervisor::kNavigation;
     wait(1000);
-    navigate(NavigationState::kActive);
+    navigate(GoalState::kActive);
     done.clear();
   }
 

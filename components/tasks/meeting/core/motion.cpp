@@ -4,7 +4,6 @@
 
 namespace usher::meeting {
 
-using service::NavigationState;
 using service::RequestKind;
 using service::Supervisor;
 
@@ -117,13 +116,13 @@ Motion::Outcome Motion::follow(const Surroundings& robot, Time now) {
   if (report && report->id == last_id_) {
     acknowledged_ = true;
     switch (report->state) {
-      case NavigationState::kSucceeded:
+      case GoalState::kSucceeded:
         rest();
         return Outcome::kArrived;
-      case NavigationState::kFailed:
+      case GoalState::kFailed:
         return fail(report->reason);
-      case NavigationState::kCancelled:
-      case NavigationState::kReplaced:
+      case GoalState::kCancelled:
+      case GoalState::kReplaced:
         return fail("somebody else ended the drive");
       default:
         break;

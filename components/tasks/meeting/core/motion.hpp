@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/goal/goal_state.hpp"
 #include "tasks/meeting/core/faces.hpp"
 #include "tasks/service/core/robot.hpp"
 
@@ -13,7 +14,7 @@ namespace usher::meeting {
 /// What navigator or explorer say of a goal.
 struct GoalReport {
   std::uint64_t id = 0;  ///< 0: none
-  service::NavigationState state = service::NavigationState::kIdle;
+  GoalState state = GoalState::kIdle;
   std::string reason;
 };
 

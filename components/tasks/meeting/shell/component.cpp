@@ -30,8 +30,8 @@ constexpr const char* kMemory = "mission";
 /// Ids of goals must not be those of another client that counts from the same clock.
 constexpr std::uint64_t kIdsApart = 500'000;
 
-service::NavigationState goal_state(std::uint8_t state) {
-  return static_cast<service::NavigationState>(std::min<std::uint8_t>(state, 6));
+GoalState goal_state(std::uint8_t state) {
+  return static_cast<GoalState>(std::min<std::uint8_t>(state, 6));
 }
 
 /// The rooms that the site's file lists.

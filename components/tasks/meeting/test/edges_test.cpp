@@ -47,7 +47,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.see(1.2, 0.0, 3); }, State::kInvite}}},
       {"the exploration fails",
        {{[](Rig& r) { r.to_explore(); }, State::kExplore},
-        {[](Rig& r) { r.explorer(NavigationState::kFailed); }, State::kExplore}}},
+        {[](Rig& r) { r.explorer(GoalState::kFailed); }, State::kExplore}}},
       {"the person cannot be reached",
        {{[](Rig& r) { r.to_approach(); }, State::kApproach},
         {[](Rig& r) { r.no_way(); }, State::kExplore}}},

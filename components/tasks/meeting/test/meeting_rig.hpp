@@ -11,7 +11,6 @@
 
 namespace usher::meeting {
 
-using service::NavigationState;
 using service::RequestKind;
 using service::Supervisor;
 using std::chrono::milliseconds;
@@ -80,14 +79,14 @@ class Rig {
     return status;
   }
   /// What navigator and explorer say of the goal that runs.
-  void navigator(NavigationState state, const std::string& reason = {}) {
+  void navigator(GoalState state, const std::string& reason = {}) {
     robot.navigation = GoalReport{goal, state, reason};
-    if (state >= NavigationState::kSucceeded) robot.supervisor = Supervisor::kAvailable;
+    if (state >= GoalState::kSucceeded) robot.supervisor = Supervisor::kAvailable;
     wait(100);
   }
-  void explorer(NavigationState state, const std::string& reason = {}) {
+  void explorer(GoalState state, const std::string& reason = {}) {
     robot.exploration = GoalReport{exploration, state, reason};
-    if (state >= NavigationState::kSucceeded) robot.supervisor = Supervisor::kAvailable;
+    if (state >= GoalState::kSucceeded) robot.supervisor = Supervisor::kAvailable;
     wait(100);
   }
   /// Until the journey that was begun is under way.
@@ -98,9 +97,9 @@ class Rig {
       if (place.name == goal_location) goal_pose = {place.at.x(), place.at.y(), 0.0};
     }
     robot.pose = goal_pose;
-    navigator(NavigationState::kSucceeded);
+    navigator(GoalState::kSucceeded);
   }
-  void no_way() { depart(), navigator(NavigationState::kFailed, "blocked"); }
+  void no_way() { depart(), navigator(GoalState::kFailed, "blocked"); }
   /// Turns round once, to the left.
   void turn_round() {
     for (int i = 0; i < 70 && state() == State::kScanRoom; ++i) turn(0.1);
@@ -216,12 +215,12 @@ class Rig {
       goal_pose = actions.motion.goal->pose;
       goal_location = actions.motion.goal->location;
       add("goal:" + actions.motion.goal->location);
-      if (obeys) robot.navigation = GoalReport{goal, NavigationState::kActive, {}};
+      if (obeys) robot.navigation = GoalReport{goal, GoalState::kActive, {}};
     }
     if (actions.motion.explore) {
       exploration = actions.motion.explore->id;
       add(actions.motion.explore->anew ? "explore anew" : "explore");
-      if (obeys) robot.exploration = GoalReport{exploration, NavigationState::kActive, {}};
+      if (obeys) robot.exploration = GoalReport{exploration, GoalState::kActive, {}};
     }
     if (actions.report) reports.push_back(*actions.report);
     const auto& screen = meeting.screen();

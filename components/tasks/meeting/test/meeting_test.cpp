@@ -342,11 +342,11 @@ TEST(Meeting, EndsAfterExplorationsThatFailInARow) {
   Rig rig;
   rig.to_explore();
   for (int i = 0; i < 4; ++i) {
-    rig.explorer(NavigationState::kFailed, "nothing to see");
+    rig.explorer(GoalState::kFailed, "nothing to see");
     ASSERT_EQ(rig.state(), State::kExplore) << i;
     rig.depart();
   }
-  rig.explorer(NavigationState::kFailed, "nothing to see");
+  rig.explorer(GoalState::kFailed, "nothing to see");
   EXPECT_EQ(rig.state(), State::kEnded);
   EXPECT_EQ(rig.meeting.report().reason, "exploration: nothing to see");
 }
@@ -395,8 +395,8 @@ TEST(Meeting, HasNoDeadEnd) {
       }
       const auto any_state = [&] {
         return random.uniform() < mischief
-                   ? static_cast<NavigationState>(static_cast<int>(random.uniform() * 7))
-                   : NavigationState::kSucceeded;
+                   ? static_cast<GoalState>(static_cast<int>(random.uniform() * 7))
+                   : GoalState::kSucceeded;
       };
       if (random.uniform() < 0.02)
         rig.robot.navigation = GoalReport{rig.goal, any_state(), "chance"};
@@ -404,7 +404,7 @@ TEST(Meeting, HasNoDeadEnd) {
         rig.robot.exploration = GoalReport{rig.exploration, any_state(), "chance"};
       if (random.uniform() < 0.05 && !rig.robot.navigation) rig.robot.navigation = GoalReport{};
       if (random.uniform() < 0.05 && !rig.robot.exploration)
-        rig.robot.exploration = GoalReport{rig.exploration, NavigationState::kActive, {}};
+        rig.robot.exploration = GoalReport{rig.exploration, GoalState::kActive, {}};
       if (rig.robot.pose) rig.robot.pose->yaw = geometry::normalized(rig.robot.pose->yaw + 0.1);
       if (random.uniform() < 0.1) {
         rig.see(0.5 + 3.0 * random.uniform(), 0.8 * random.uniform() - 0.4,

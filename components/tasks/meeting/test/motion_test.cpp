@@ -44,7 +44,7 @@ struct Bench {
     wait(100);
     robot.supervisor = Supervisor::kNavigation;
     wait(100);
-    robot.navigation = GoalReport{motion.goal_id(), NavigationState::kActive, {}};
+    robot.navigation = GoalReport{motion.goal_id(), GoalState::kActive, {}};
     wait(100);
     taken();
   }
@@ -60,7 +60,7 @@ TEST(Motion, AsksForTheNavigationThenGivesTheGoal) {
   bench.robot.supervisor = Supervisor::kNavigation;
   bench.wait(100);
   EXPECT_EQ(bench.taken(), " goal");
-  bench.robot.navigation = GoalReport{bench.motion.goal_id(), NavigationState::kSucceeded, {}};
+  bench.robot.navigation = GoalReport{bench.motion.goal_id(), GoalState::kSucceeded, {}};
   EXPECT_EQ(bench.wait(100), Outcome::kArrived);
   EXPECT_TRUE(bench.motion.resting());
   EXPECT_FALSE(bench.motion.may_turn(bench.robot)) << "not before the supervisor is back";
@@ -130,7 +130,7 @@ TEST(Motion, FailsWithAReason) {
   };
   EXPECT_EQ(reason(
                 [](Bench& b) {
-                  b.robot.navigation->state = NavigationState::kFailed,
+                  b.robot.navigation->state = GoalState::kFailed,
                   b.robot.navigation->reason = "no path";
                 },
                 100),
@@ -138,7 +138,7 @@ TEST(Motion, FailsWithAReason) {
   EXPECT_EQ(reason([](Bench& b) { b.robot.navigation.reset(); }, 5100), "the navigator is silent");
   EXPECT_EQ(reason([](Bench& b) { b.robot.navigation->id = 7; }, 100),
             "the navigator follows another goal");
-  EXPECT_EQ(reason([](Bench& b) { b.robot.navigation->state = NavigationState::kReplaced; }, 100),
+  EXPECT_EQ(reason([](Bench& b) { b.robot.navigation->state = GoalState::kReplaced; }, 100),
             "somebody else ended the drive");
   Bench bench;
   bench.drive();

@@ -16,17 +16,6 @@ enum class Supervisor : std::uint8_t {
   kFault,
 };
 
-/// Of a goal: GoalStatus on the wire.
-enum class NavigationState : std::uint8_t {
-  kIdle = 0,
-  kActive = 1,
-  kWaiting = 2,
-  kSucceeded = 3,
-  kFailed = 4,
-  kCancelled = 5,
-  kReplaced = 6,
-};
-
 enum class RequestKind : std::uint8_t {
   kNavigationStart,  ///< a goal is chosen; carries its name
   kNavigationGo,     ///< the visitor is ready
