@@ -69,6 +69,15 @@ void bodies_of(std::span<const Person> people, std::vector<rendering::Body>& bod
   }
 }
 
+bool in_rows(const rendering::Lens& lens, double forward, double rise, double down,
+             double nearest) {
+  const double depth = forward * std::cos(down) - rise * std::sin(down);
+  const double below = -forward * std::sin(down) - rise * std::cos(down);
+  if (depth < nearest) return false;
+  const double row = lens.cy + lens.fy * below / depth;
+  return row >= 0.0 && row <= lens.height - 1.0;
+}
+
 DepthCamera::DepthCamera(const DepthCameraConfig& config, std::uint64_t seed)
     : config_(config), sensor_(config.sensor, seed) {}
 

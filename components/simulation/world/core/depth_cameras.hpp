@@ -15,6 +15,13 @@ rendering::Model model_of(const Scene& scene, const grid::OccupancyGrid* map);
 /// The people as bodies, in the same order.
 void bodies_of(std::span<const Person> people, std::vector<rendering::Body>& bodies);
 
+/// Whether a point straight ahead is in the rows of an image.
+/// @param forward [m] horizontally from the camera
+/// @param rise [m] above it
+/// @param down [rad] that the optical axis looks down
+/// @param nearest [m] least depth
+bool in_rows(const rendering::Lens& lens, double forward, double rise, double down, double nearest);
+
 /// A depth camera on the body; the defaults are MARVIN's Kinect v2.
 struct DepthCameraConfig {
   rendering::DepthSensorConfig sensor = rendering::kinect_v2();

@@ -55,12 +55,7 @@ void DepthScanModel::choose_heights(const Scene& scene) {
 
 /// Whether a point straight ahead is in the image, by its height.
 bool DepthScanModel::in_view(double forward, double height) const {
-  const double rise = height - camera_height_;
-  const double depth = forward * std::cos(down_) - rise * std::sin(down_);
-  const double below = -forward * std::sin(down_) - rise * std::cos(down_);
-  if (depth < config_.least_depth) return false;
-  const double row = config_.lens.cy + config_.lens.fy * below / depth;
-  return row >= 0.0 && row <= config_.lens.height - 1.0;
+  return in_rows(config_.lens, forward, height - camera_height_, down_, config_.least_depth);
 }
 
 void DepthScanModel::cast(const World& world, const Pose2& camera, double height) {

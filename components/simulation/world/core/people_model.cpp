@@ -35,12 +35,7 @@ PeopleModel::PeopleModel(const PeopleModelConfig& config, std::uint64_t seed)
 }
 
 bool PeopleModel::in_view(double forward, double height) const {
-  const double rise = height - camera_height_;
-  const double depth = forward * std::cos(down_) - rise * std::sin(down_);
-  const double below = -forward * std::sin(down_) - rise * std::cos(down_);
-  if (depth < config_.nearest) return false;
-  const double row = config_.lens.cy + config_.lens.fy * below / depth;
-  return row >= 0.0 && row <= config_.lens.height - 1.0;
+  return in_rows(config_.lens, forward, height - camera_height_, down_, config_.nearest);
 }
 
 bool PeopleModel::may_be_seen(const Person& person, const Pose2& origin) const {
