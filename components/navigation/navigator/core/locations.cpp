@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <set>
+
+#include "foundation/text/edits.hpp"
 
 namespace usher::navigator {
 namespace {
@@ -19,22 +20,6 @@ std::string simplified(std::string_view name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0)
       result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
-}
-
-/// Levenshtein's distance: the number of letters to insert, delete or change.
-std::size_t edits(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0u);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({change, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 std::string joined(const std::vector<std::string>& names) {
