@@ -82,12 +82,12 @@ std::set<std::string> shared_memory_of(const std::map<std::string, pid_t>& proce
   return files;
 }
 
-RunningRobot::RunningRobot(bool secure) : domain_(test_domain()) {
+RunningRobot::RunningRobot(bool secure, const std::string& base) : domain_(test_domain()) {
   ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
-  manifest_ = folder_.file("deploy/robot.yaml",
-                           "extends: " + std::string(USHER_SOURCE_DIR) +
-                               "/deploy/marvin-sim.yaml\ndomain: " + std::to_string(domain_) +
-                               "\n" + (secure ? "security: keys\n" : ""));
+  manifest_ =
+      folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) + "/deploy/" +
+                                            base + "\ndomain: " + std::to_string(domain_) + "\n" +
+                                            (secure ? "security: keys\n" : ""));
   if (secure) {
     Process make({usher_program(), "keys", keys(), "--manifest", manifest_});
     const int code = make.wait();

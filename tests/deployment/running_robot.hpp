@@ -36,9 +36,10 @@ std::map<std::string, pid_t> components_from(const std::string& folder);
 /// Files in /dev/shm that these processes have mapped or opened.
 std::set<std::string> shared_memory_of(const std::map<std::string, pid_t>& processes);
 
-/// MARVIN in simulation, launched by `usher launch` from a manifest in a folder of its own, in a
-/// DDS domain that no other test of this machine uses; and somebody who listens. The default run
-/// directory lies in the folder too, for this and all programs that the test starts.
+/// MARVIN in simulation, or what another manifest of deploy/ has, launched by `usher launch` from a
+/// manifest in a folder of its own, in a DDS domain that no other test of this machine uses; and
+/// somebody who listens. The default run directory lies in the folder too, for this and all
+/// programs that the test starts.
 class RunningRobot {
  public:
   /// What was last heard of a component.
@@ -50,7 +51,7 @@ class RunningRobot {
   };
 
   /// A secure robot has keys of its own, in folder()/deploy/keys; its observer is the operator.
-  explicit RunningRobot(bool secure = false);
+  explicit RunningRobot(bool secure = false, const std::string& base = "marvin-sim.yaml");
   ~RunningRobot();
 
   /// Launches; the former launcher must have ended. `before` is a program that becomes the
