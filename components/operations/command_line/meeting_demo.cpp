@@ -1,10 +1,9 @@
-#include <cstdlib>
-#include <map>
+#include <algorithm>
 #include <optional>
 
 #include "operations/command_line/demo.hpp"
 #include "operations/command_line/meeting_client.hpp"
-#include "operations/manifest/tree.hpp"
+#include "operations/experiments/site_facts.hpp"
 
 namespace usher::operations {
 
@@ -15,14 +14,6 @@ namespace state = usher_msgs::msg::MeetingStatus_Constants;
 constexpr std::uint32_t kPersons = 2;
 constexpr double kSeed = 559.0;  // [s] R IV-G: two persons from medium distances
 constexpr int kTellEvery = 5;    // [s]
-
-/// Between its walls, in map [m].
-struct Room {
-  geometry::Point2 low{0, 0}, high{0, 0};
-  bool contains(const geometry::Point2& point) const {
-    return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
-  }
-};
 
 class MeetingDemo final : public Demo {
  public:
@@ -46,7 +37,10 @@ class MeetingDemo final : public Demo {
     });
     if (!reader) return Error{reader.error()};
     statuses_.emplace(std::move(reader).value());
-    return read_rooms(deployment);
+    auto rooms = site_meeting_rooms(deployment);
+    if (!rooms) return Error{rooms.error()};
+    rooms_ = std::move(rooms).value();
+    return {};
   }
 
   void step() override {
@@ -71,10 +65,12 @@ class MeetingDemo final : public Demo {
 
   void judge(const RunRecord& record, ResultSheet& sheet) const override {
     double there = 0.0;
-    const auto room = status_ ? rooms_.find(status_->mission().room()) : rooms_.end();
+    const auto room = std::find_if(rooms_.begin(), rooms_.end(), [&](const SiteRoom& each) {
+      return status_ && each.name == status_->mission().room();
+    });
     for (const char* const name : {"ada", "boole"}) {
       const auto at = record.person(name);
-      if (at && room != rooms_.end() && room->second.contains(*at)) ++there;
+      if (at && room != rooms_.end() && room->contains(*at)) ++there;
     }
     sheet.flags["reached"] =
         status_ && there >= kPersons && status_->mission().outcome() == state::OUTCOME_COMPLETE;
@@ -92,30 +88,9 @@ class MeetingDemo final : public Demo {
     status_ = status;
   }
 
-  /// What the site's file says of its meeting rooms.
-  Status read_rooms(const Deployment& deployment) {
-    for (const auto& file : deployment.files) {
-      for (const auto& value : file.values) {
-        if (value.name != "site.meeting_rooms") continue;
-        const auto list = parse_tree(value.yaml, value.origin);
-        if (!list) return Error{list.error()};
-        for (const Tree& room : list->items) {
-          const auto wall = [&](const char* side) {
-            const Tree* at = room.find(side);
-            return at == nullptr ? 0.0 : std::strtod(at->scalar.c_str(), nullptr);
-          };
-          if (const Tree* name = room.find("name"))
-            rooms_[name->scalar] = {{wall("west"), wall("south")}, {wall("east"), wall("north")}};
-        }
-        return {};
-      }
-    }
-    return Error{"nobody in " + text().manifest + " asks for the site's meeting rooms"};
-  }
-
   MeetingCall call_{kPersons, 0.0};
   std::optional<usher_msgs::msg::MeetingStatus> status_;
-  std::map<std::string, Room> rooms_;
+  std::vector<SiteRoom> rooms_;
   std::optional<std::uint8_t> told_;
   int silent_ = 0;
   // Last: they end before what they fill.

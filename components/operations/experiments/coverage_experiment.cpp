@@ -1,12 +1,9 @@
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
-#include "foundation/grid/map_file.hpp"
 #include "navigation/explorer/core/ground.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/errand.hpp"
@@ -14,6 +11,7 @@
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/run_jobs.hpp"
+#include "operations/experiments/site_facts.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::operations {
@@ -62,23 +60,12 @@ struct Site {
 
 /// What the robot was given.
 Result<Site> site_of(const Deployment& deployment) {
-  Site site;
-  for (const auto& file : deployment.files) {
-    for (const auto& value : file.values) {
-      if (value.name == "site.map" && site.map.empty()) {
-        auto map = grid::load_map(value.yaml);
-        if (!map) return Error{map.error()};
-        site.map = std::move(map).value();
-      }
-      if (value.name != "site.meeting_rooms" || !site.rooms.empty()) continue;
-      for (const auto& room : YAML::Load(value.yaml)) {
-        site.rooms.push_back({{room["west"].as<double>(), room["south"].as<double>()},
-                              {room["east"].as<double>(), room["north"].as<double>()}});
-      }
-    }
-  }
-  if (site.map.empty()) return Error{"the site has no map"};
-  if (site.rooms.empty()) return Error{"the site has no meeting rooms"};
+  auto map = site_map(deployment);
+  if (!map) return Error{map.error()};
+  const auto rooms = site_meeting_rooms(deployment);
+  if (!rooms) return Error{rooms.error()};
+  Site site{std::move(map).value(), {}};
+  for (const SiteRoom& room : *rooms) site.rooms.push_back({room.low, room.high});
   return site;
 }
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <thread>
 
-#include "foundation/grid/map_file.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/run_jobs.hpp"
+#include "operations/experiments/site_facts.hpp"
 
 namespace usher::operations {
 
@@ -29,34 +29,9 @@ struct Visit {
   std::uint64_t digest = 0;
 };
 
-/// The places of the site, as the navigator was given them.
-std::vector<std::string> places(const Deployment& deployment) {
-  std::vector<std::string> names;
-  for (const auto& file : deployment.files) {
-    for (const auto& value : file.values) {
-      if (value.name != "site.locations") continue;
-      const auto tree = parse_tree(value.yaml, value.origin);
-      if (!tree) continue;
-      for (const auto& item : tree->items) {
-        if (const auto* name = item.find("name")) names.push_back(name->scalar);
-      }
-      return names;
-    }
-  }
-  return names;
-}
-
-void set_destination(Deployment& deployment, const std::string& place) {
-  for (auto& file : deployment.files) {
-    if (file.component != "visitor") continue;
-    std::erase_if(file.values, [](const auto& value) { return value.name == "destination"; });
-    file.values.push_back({"destination", place, "experiment guide"});
-  }
-}
-
 Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64_t seed,
                     const std::string& trace, const grid::OccupancyGrid* map) {
-  set_destination(deployment, place);
+  set_value(deployment, "visitor", "destination", place);
   auto run = LockstepRun::create(deployment, seed);
   if (!run) return Error{run.error()};
   Visit visit;
@@ -95,25 +70,14 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
   return visit;
 }
 
-/// The map that the robot was given.
-std::optional<grid::OccupancyGrid> site_map(const Deployment& deployment) {
-  for (const auto& file : deployment.files) {
-    for (const auto& value : file.values) {
-      if (value.name != "site.map") continue;
-      if (auto map = grid::load_map(value.yaml)) return std::move(map).value();
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   const auto deployment =
       load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
-  const auto names = places(*deployment);
-  if (names.empty()) return Error{"the site has no locations"};
+  const auto names = site_locations(*deployment);
+  if (!names) return Error{names.error()};
   const int only = options.only.empty() ? 0 : std::atoi(options.only.c_str());
   if (!options.only.empty() && only < 1)
     return Error{"--only takes a seed from 1 on, not " + options.only};
@@ -122,7 +86,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));
   const auto run_seed = [&](std::size_t i) -> Result<std::string> {
     // Every place gets its turn; the first one is where the robot stands.
-    const auto& place = names[1 + i % (names.size() - 1)];
+    const auto& place = (*names)[1 + i % (names->size() - 1)];
     auto result = visit(*deployment, place, i + 1, "", nullptr);
     if (!result) return Error{result.error()};
     std::string said;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "foundation/grid/map_file.hpp"
 #include "navigation/explorer/core/seen_area.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/site_facts.hpp"
 #include "operations/results/result_sheet.hpp"
 #include "tasks/meeting/core/mission.hpp"
 
@@ -25,33 +25,6 @@ constexpr double kOutOfView = 1.0;  // [s] and is no more
 constexpr double kPatience = 60.0;  // [s] until the mission has begun
 constexpr const char* kOperator = "operator";
 constexpr const char* kTurnRate = "0.4";  // [rad/s] R IV-E
-
-/// In every component's file that has it.
-void set_value(Deployment& deployment, const std::string& name, const std::string& yaml) {
-  for (auto& file : deployment.files) {
-    for (auto& value : file.values) {
-      if (value.name == name) value.yaml = yaml;
-    }
-  }
-}
-
-void set_own_value(Deployment& deployment, const std::string& component, const std::string& name,
-                   const std::string& yaml) {
-  for (auto& file : deployment.files) {
-    if (file.component != component) continue;
-    std::erase_if(file.values, [&](const auto& value) { return value.name == name; });
-    file.values.push_back({name, yaml, "experiment"});
-  }
-}
-
-Result<grid::OccupancyGrid> site_map(const Deployment& deployment) {
-  for (const auto& file : deployment.files) {
-    for (const auto& value : file.values) {
-      if (value.name == "site.map") return grid::load_map(value.yaml);
-    }
-  }
-  return Error{"the site has no map"};
-}
 
 /// Who was in view of the exploring robot, and whom it passed by.
 class MissJudge {
@@ -107,11 +80,11 @@ Status put_people(Deployment& deployment, const MeetingCase& one, const std::str
   }
   if (one.people.empty()) file = "people: []\n";
   if (Status saved = write_file(path, file); !saved) return saved;
-  set_value(deployment, "site.people", path);
-  set_own_value(deployment, "attendees", "come", come.empty() ? "\"\"" : come);
-  set_value(deployment, "site.initial_pose",
-            format("[%.3f, ", one.start.x) + format("%.3f, ", one.start.y) +
-                format("%.4f]", one.start.yaw));
+  set_site_value(deployment, "site.people", path);
+  set_value(deployment, "attendees", "come", come.empty() ? "\"\"" : come);
+  set_site_value(deployment, "site.initial_pose",
+                 format("[%.3f, ", one.start.x) + format("%.3f, ", one.start.y) +
+                     format("%.4f]", one.start.yaw));
   return {};
 }
 

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <limits>
 
-#include "foundation/grid/map_file.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/commanded_robot.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/run_jobs.hpp"
+#include "operations/experiments/site_facts.hpp"
 
 namespace usher::operations {
 
@@ -119,16 +119,9 @@ Curve curve_of(const Filter& filter, const std::vector<std::optional<Run>>& runs
 }
 
 Status draw_way(const Deployment& deployment, const Run& run, const std::string& path) {
-  for (const auto& file : deployment.files) {
-    for (const auto& value : file.values) {
-      if (value.name != "site.map") continue;
-      const auto map = grid::load_map(value.yaml);
-      if (!map) return Error{map.error()};
-      return draw_ways({{"driven", 60, 140, 60, 2, run.way}}, *map, "the way of the first run",
-                       path);
-    }
-  }
-  return Error{"the site has no map"};
+  const auto map = site_map(deployment);
+  if (!map) return Error{map.error()};
+  return draw_ways({{"driven", 60, 140, 60, 2, run.way}}, *map, "the way of the first run", path);
 }
 
 }  // namespace
