@@ -156,12 +156,11 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
                    {"contacts", {Bound::kAtMost, 0.0}},
                    {"localization_error_mean_m", {Bound::kAtMost, 0.019}}};
   // The first seed once more, with picture and trace: the same bytes.
-  const std::size_t shown = only > 0 ? static_cast<std::size_t>(only - 1) : 0;
   const auto map = site_map(*deployment);
-  const auto again = visit(*deployment, visits[shown]->destination, shown + 1, options.out + "/run",
+  const auto again = visit(*deployment, visits[first]->destination, first + 1, options.out + "/run",
                            map ? &*map : nullptr);
   if (!again) return Error{again.error()};
-  sheet.flags["digest_repeats"] = again->digest == visits[shown]->digest;
+  sheet.flags["digest_repeats"] = again->digest == visits[first]->digest;
   if (auto saved = write_file(options.out + "/visits.csv", csv); !saved)
     return Error{saved.error()};
   if (auto saved = write_file(options.out + "/visits.md", table.markdown()); !saved)
