@@ -92,8 +92,8 @@ class Visit {
     press("start"), show("");
     around_.supervisor = guide::Supervisor::kNavigation;
     wait(1000);
-    around_.navigation = guide::Navigation{guide_.memory().goal_id, guide::NavigationState::kActive,
-                                           0.4, 70.0, 43.0};
+    around_.navigation =
+        guide::Navigation{guide_.memory().goal_id, GoalState::kActive, 0.4, 70.0, 43.0};
     wait(6000), show("-way");
     around_.navigation->blocked = true;
     wait(3200), show("-excuse_me");
@@ -103,12 +103,11 @@ class Visit {
     around_.visitor = guide::VisitorSighting{true, -1.0, 0.0, 0.0};
     wait(1500);
     press("stop"), show("");
-    around_.navigation->state = guide::NavigationState::kFailed;
+    around_.navigation->state = GoalState::kFailed;
     wait(100), show("");
     press("yes"), press("foyer"), press("start");
     wait(1000);
-    around_.navigation =
-        guide::Navigation{guide_.memory().goal_id, guide::NavigationState::kSucceeded};
+    around_.navigation = guide::Navigation{guide_.memory().goal_id, GoalState::kSucceeded};
     wait(100), show("");
     around_.supervisor = guide::Supervisor::kAvailable;
     wait(4000), show("");
