@@ -19,6 +19,7 @@
 #include "interaction/tablet/window/floor_plan_item.hpp"
 #include "interaction/tablet/window/screen_model.hpp"
 #include "tasks/guide/core/guide.hpp"
+#include "tasks/meeting/test/meeting_rig.hpp"
 
 extern void qml_register_types_Usher_Tablet();
 
@@ -130,6 +131,39 @@ class Visit {
   guide::Surroundings around_;
   int now_ = 0;
 };
+
+/// The assistant in each of its states.
+void show_meeting(std::size_t language, const std::function<void(const service::Screen&)>& shown) {
+  using meeting::Rig;
+  void (*const ways[])(Rig&) = {
+      [](Rig& r) { r.robot.sees = false, r.wait(100); },
+      [](Rig& r) { r.wait(100); },
+      [](Rig& r) { r.to_room(12); },
+      [](Rig& r) { r.to_scan(12); },
+      [](Rig& r) { r.to_check_room(); },
+      [](Rig& r) { r.to_explore(12); },
+      [](Rig& r) { r.to_check_face(); },
+      [](Rig& r) { r.to_revisit(); },
+      [](Rig& r) { r.to_approach(12); },
+      [](Rig& r) { r.to_invite(12); },
+      [](Rig& r) { r.to_guide(12); },
+      [](Rig& r) { r.to_arrived(12); },
+      [](Rig& r) { r.to_arrived(), r.wait(3000); },
+      [](Rig& r) { r.to_guide(12), r.note(r.meeting.cancel(0, r.now())); }};
+  for (const auto& way : ways) {
+    Rig rig({}, meeting::rooms(), language);
+    rig.meeting.set_places({{"west", "Large meeting room 1", {2.0, 2.0}},
+                            {"east", "Large meeting room 2", {18.0, 8.0}}});
+    way(rig);
+    auto screen = rig.meeting.screen();
+    if (rig.state() == meeting::State::kGuide) {  // what the shell adds
+      screen.progress = 0.4;
+      screen.remaining = 28.0;
+      screen.eta = 43.0;
+    }
+    shown(screen);
+  }
+}
 
 class Screens : public testing::Test {
  protected:
@@ -280,6 +314,30 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-91-held.png"));
   }
   EXPECT_EQ(states.size(), 15U) << "every state of fig. 7.1";
+}
+
+TEST_F(Screens, OfTheMeetingAssistantHaveRoomInEveryLanguage) {
+  const QString folder = USHER_BINARY_DIR "/tablet_screens";
+  QDir().mkpath(folder);
+  for (std::size_t language = 0; language < kLanguages.size(); ++language) {
+    tablet::Tablet tablet(
+        *phrases::PhraseBook::load(kTexts, kLanguages, "tablet", tablet::kTextKeys));
+    tablet.hear(true, true);
+    tablet.locate(geometry::Pose2{10.0, 5.0, 0.5});
+    std::set<std::string> states;
+    show_meeting(language, [&](const service::Screen& screen) {
+      static_cast<void>(tablet.take(to_tablet(screen), {}));
+      EXPECT_TRUE(states.insert(screen.state).second) << screen.state;
+      const std::string name = kLanguages[language] + "-meeting-" + screen.state;
+      for (const auto& [width, height] : {std::pair{1280, 800}, std::pair{1080, 720}}) {
+        resize(width, height);
+        draw(tablet.view({}));
+        judge(name + " at " + std::to_string(width));
+      }
+      EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(name) + ".png"));
+    });
+    EXPECT_EQ(states.size(), meeting::kStates);
+  }
 }
 
 TEST_F(Screens, ReactToATouchWithinATenthOfASecond) {

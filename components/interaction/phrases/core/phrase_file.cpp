@@ -74,13 +74,6 @@ std::string filled(std::string text,
   return text;
 }
 
-std::string shortened(std::string text, std::size_t most) {
-  if (text.size() <= most) return text;
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
-  text.resize(most);
-  return text;
-}
-
 Result<PhraseBook> PhraseBook::load(const std::string& folder, const std::vector<std::string>& tags,
                                     const std::string& section,
                                     std::span<const std::string_view> keys) {

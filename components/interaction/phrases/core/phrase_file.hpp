@@ -15,9 +15,6 @@ struct Language {
   std::string name;  ///< in the language itself, "Deutsch"
 };
 
-/// The first `most` bytes of a UTF-8 text, or fewer: cut at a letter's beginning.
-std::string shortened(std::string text, std::size_t most);
-
 /// The same phrases in several languages. A phrase is named by its place in the list of keys.
 class PhraseBook {
  public:

@@ -63,19 +63,5 @@ TEST(Phrases, FillsPlaceholders) {
   EXPECT_EQ(placeholders("{b} {a} {b} {"), (std::vector<std::string>{"a", "b"}));
 }
 
-TEST(Shortened, CutsBetweenLetters) {
-  EXPECT_EQ(shortened("kitchen", 7), "kitchen");
-  EXPECT_EQ(shortened("kitchen", 3), "kit");
-  EXPECT_EQ(shortened("K\xC3\xBC"
-                      "che",
-                      3),
-            "K\xC3\xBC");
-  EXPECT_EQ(shortened("K\xC3\xBC"
-                      "che",
-                      2),
-            "K");
-  EXPECT_EQ(shortened("\xC3\xBC", 1), "");
-}
-
 }  // namespace
 }  // namespace usher::phrases

@@ -74,14 +74,11 @@ void Conversation::answer(const std::string& option_id) {
 void Conversation::stop() {
   question_.reset();
   wishes_.break_off = true;
-  if (!alive_) {
-    wishes_.halt = true;
-    holds_ = true;
-  } else if (offers(kStop)) {
+  if (alive_ && offers(kStop)) {
     answer(std::string(kStop));
-  } else if (offers(kCancel)) {
+  } else if (alive_ && offers(kCancel)) {
     answer(kCancel);
-  } else {  // the dialogue has nothing to stop; the robot may turn all the same
+  } else {  // the dialogue is gone or has nothing to stop; the robot may turn all the same
     wishes_.halt = true;
     holds_ = true;
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "foundation/text/shortened.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "wire/conversions.hpp"
 
@@ -142,7 +143,7 @@ void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   Screen taken;
   taken.id = screen.id();
   taken.language = screen.language();
-  taken.spoken = phrases::shortened(screen.spoken(), kMostWords);
+  taken.spoken = shortened(screen.spoken(), kMostWords);
   taken.spoken_id = screen.spoken_id();
   if (screen.tone() <= static_cast<std::uint8_t>(Tone::kCall))
     taken.tone = static_cast<Tone>(screen.tone());

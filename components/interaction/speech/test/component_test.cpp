@@ -86,7 +86,7 @@ class Speech : public testing::Test {
     pass(2.0);
   }
   void pass(double time) {
-    for (int i = 0; i < static_cast<int>(time * 10.0 + 0.5); ++i) {
+    for (int i = 0; i < static_cast<int>(std::lround(time * 10.0)); ++i) {
       if (guide_) {
         usher_msgs::msg::GuideStatus guide;
         guide.header(wire::header(host_->now(), ""));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/text/shortened.hpp"
+
 namespace usher::tablet {
 
 namespace {
@@ -86,7 +88,7 @@ Touched Tablet::type(const std::string& text, Time /*now*/) {
   const auto line = std::find_if(screen_.options.begin(), screen_.options.end(),
                                  [](const Screen::Option& option) { return option.takes_text; });
   if (!shows_dialogue() || line == screen_.options.end()) return {};
-  typed_ = phrases::shortened(text, kMostTyped);
+  typed_ = shortened(text, kMostTyped);
   return {.answer = Answer{screen_.id, line->id, typed_}};
 }
 

@@ -425,7 +425,10 @@ void MeetingComponent::publish_screen() {
   if (const auto* supervisor = supervisor_.fresh()) message.robot_state(supervisor->state());
   if (const auto* navigation = navigation_.fresh()) {
     message.navigation_status(navigation->state());
-    const bool ours = navigation->client() == host_.name() && navigation->id() == core_.goal_id();
+    namespace goal = usher_msgs::msg::GoalStatus_Constants;
+    const bool ours =
+        navigation->client() == host_.name() && navigation->id() == core_.goal_id() &&
+        (navigation->state() == goal::STATE_ACTIVE || navigation->state() == goal::STATE_WAITING);
     if (core_.state() == State::kGuide && ours) {
       message.progress(navigation->progress());
       message.eta(navigation->eta());

@@ -38,8 +38,9 @@ inline std::vector<Place> places() {
 /// The assistant in a robot that does what it is told at once; every action is written down.
 class Rig {
  public:
-  explicit Rig(const Parameters& parameters = {}, std::vector<RoomArea> areas = rooms())
-      : meeting(parameters, std::move(areas), book(), 0, 100) {
+  explicit Rig(const Parameters& parameters = {}, std::vector<RoomArea> areas = rooms(),
+               std::size_t language = 0)
+      : meeting(parameters, std::move(areas), book(), language, 100) {
     EXPECT_TRUE(meeting.set_map(hall()).ok());
     meeting.set_places(places());
     robot.supervisor = Supervisor::kAvailable;
