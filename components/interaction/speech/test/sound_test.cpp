@@ -137,7 +137,7 @@ Utterance utterance(std::uint64_t id, double seconds) {
 
 void run(Player& player, double seconds) {
   std::vector<std::int16_t> part(80);
-  for (int i = 0; i < static_cast<int>(seconds * 100.0 + 0.5); ++i) player.take(part);
+  for (int i = 0; i < static_cast<int>(std::lround(seconds * 100.0)); ++i) player.take(part);
 }
 
 TEST(Player, SaysOneAfterTheOtherAndTellsTheWordAndTheEnd) {
@@ -195,7 +195,7 @@ class Room {
                            double robot_db, double coupling_db) {
     std::optional<Sound> ended;
     std::vector<std::int16_t> part(320);
-    for (int i = 0; i < static_cast<int>(seconds * 50.0 + 0.5); ++i) {
+    for (int i = 0; i < static_cast<int>(std::lround(seconds * 50.0)); ++i) {
       const double robot =
           robot_db > -60.0 ? 32768.0 * std::pow(10.0, (robot_db + coupling_db) / 20.0) * 1.41 : 0.0;
       for (auto& sample : part) {

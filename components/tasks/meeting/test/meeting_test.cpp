@@ -322,6 +322,28 @@ TEST(Meeting, IsNotReadyAndSaysWhy) {
   EXPECT_EQ(bare.meeting.screen().status, "the site has no meeting rooms");
 }
 
+TEST(Meeting, TurnsToNobodyWithoutAPose) {
+  Rig rig;
+  rig.to_check_face();
+  EXPECT_EQ(rig.meeting.turn(), Turn::kFace);
+  rig.robot.pose.reset();
+  rig.wait(100);
+  EXPECT_EQ(rig.meeting.turn(), Turn::kStand);
+}
+
+TEST(Meeting, AsksNobodyAgainWhoLeftOnTheWay) {
+  Rig rig;
+  rig.to_guide(2);
+  rig.wait(1500);
+  rig.robot.pose = Pose2{6.0, 5.0, 3.0};
+  rig.wait(100);
+  rig.press("leave");
+  EXPECT_EQ(rig.state(), State::kExplore);
+  rig.depart();
+  rig.see({rig.face_at({5.2, 5.1})}, 6);
+  EXPECT_EQ(rig.state(), State::kExplore) << "he stands beside the robot";
+}
+
 TEST(Meeting, WaitsForARobotThatMayNotMoveAndFailsAfterAWhile) {
   Rig rig;
   rig.to_explore();

@@ -50,6 +50,25 @@ struct Bench {
   }
 };
 
+TEST(Motion, GoesWithASupervisorThatLetsItGoLateAndGivesItBackInAnyCase) {
+  Bench late;
+  late.drive();
+  late.wait(100);
+  late.robot.supervisor = Supervisor::kInactive;  // something died; the request is remembered
+  late.wait(5000);
+  late.robot.supervisor = Supervisor::kNavigation;
+  late.taken();
+  late.wait(200);
+  EXPECT_EQ(late.taken(), " goal");
+  Bench never;
+  never.drive();
+  never.wait(100);
+  never.robot.supervisor = Supervisor::kInactive;
+  never.taken();
+  EXPECT_EQ(never.wait(100000), Outcome::kFailed);
+  EXPECT_EQ(never.taken(), " end");
+}
+
 TEST(Motion, AsksForTheNavigationThenGivesTheGoal) {
   Bench bench;
   bench.drive();
