@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "navigation/explorer/core/seen_area.hpp"
@@ -80,7 +81,7 @@ Status put_people(Deployment& deployment, const MeetingCase& one, const std::str
   }
   if (one.people.empty()) file = "people: []\n";
   if (Status saved = write_file(path, file); !saved) return saved;
-  set_site_value(deployment, "site.people", path);
+  set_site_value(deployment, "site.people", std::filesystem::absolute(path).string());
   set_value(deployment, "attendees", "come", come.empty() ? "\"\"" : come);
   set_site_value(deployment, "site.initial_pose",
                  format("[%.3f, ", one.start.x) + format("%.3f, ", one.start.y) +

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <set>
 
+#include "foundation/text/suggestion.hpp"
 #include "idl/topics.hpp"
-#include "operations/manifest/suggestion.hpp"
 #include "operations/manifest/wiring.hpp"
 #include "runtime/parameters/interpret.hpp"
 

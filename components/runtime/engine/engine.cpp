@@ -384,8 +384,9 @@ Status Engine::construct(const ComponentFactory& factory) {
     } catch (...) {
       if (!state.fault) state.fault = "the constructor threw something";
     }
-    // Wrong parameters explain most faults of a constructor: they are told instead.
-    Status parameters = state.parameters.finish();
+    // Wrong parameters explain most faults of a constructor: they are told instead. One that did
+    // not come to its end has not asked for all of them.
+    Status parameters = state.parameters.finish(!state.fault);
     if (!parameters.ok()) return parameters;
     if (!state.wrong_declarations.empty()) return Status(Error{state.wrong_declarations});
     return Status();

@@ -2,41 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "foundation/text/suggestion.hpp"
 #include "runtime/parameters/interpret.hpp"
 #include "runtime/parameters/units.hpp"
 
 namespace usher::runtime {
 namespace {
-
-/// Levenshtein distance: how many letters to change.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = std::exchange(row[j + 1], std::min({row[j + 1] + 1, row[j] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
-
-std::string suggestion(const std::string& unknown, const std::vector<Contract::Parameter>& known) {
-  std::size_t best = unknown.size() / 3 + 1;
-  std::string found;
-  for (const auto& parameter : known) {
-    const std::size_t distance = edit_distance(unknown, parameter.name);
-    if (distance <= best && (found.empty() || distance < best)) {
-      best = distance;
-      found = parameter.name;
-    }
-  }
-  return found.empty() ? "" : "; did you mean " + found + "?";
-}
 
 /// Zero where the range allows it, else the end of the range that is nearer to it.
 double harmless(const Range& range) { return std::clamp(0.0, range.low, range.high); }
@@ -117,15 +90,15 @@ Parameters::Value ParameterSet::declare(const Declaration& declaration) {
   return {value.number, std::move(value.text), std::move(value.numbers), std::move(value.records)};
 }
 
-Status ParameterSet::finish() const {
+Status ParameterSet::finish(bool all_declared) const {
   std::vector<std::string> errors = errors_;
+  std::vector<std::string> known;
+  known.reserve(declared_.size());
+  for (const auto& parameter : declared_) known.push_back(parameter.name);
   for (const ParameterValue& value : values_) {
-    const bool known = std::any_of(declared_.begin(), declared_.end(),
-                                   [&](const auto& each) { return each.name == value.name; });
-    if (!known) {
-      errors.push_back("unknown parameter " + value.name + " (" + value.origin + ")" +
-                       suggestion(value.name, declared_));
-    }
+    if (!all_declared || std::find(known.begin(), known.end(), value.name) != known.end()) continue;
+    errors.push_back("unknown parameter " + value.name + " (" + value.origin + ")" +
+                     suggestion(value.name, known));
   }
   if (errors.empty()) return {};
   std::string text = std::move(errors.front());

@@ -23,8 +23,8 @@ class ParameterSet final : public Parameters {
                         Missing missing = Missing::kIsError);
 
   /// After the component is constructed: all errors so far and the values that nobody declared, one
-  /// a line.
-  Status finish() const;
+  /// a line; without those where the constructor did not come to declare all of its own.
+  Status finish(bool all_declared = true) const;
   /// What the component declared, in its order.
   const std::vector<Contract::Parameter>& declared() const { return declared_; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <tuple>
 
 #include "foundation/text/edits.hpp"
 
@@ -56,9 +57,12 @@ Result<Location> Locations::find(std::string_view name) const {
   struct Candidate {
     std::size_t distance;
     std::string name;
-    auto operator<=>(const Candidate&) const = default;
+    bool operator<(const Candidate& other) const {
+      return std::tie(distance, name) < std::tie(other.distance, other.name);
+    }
   };
   std::vector<Candidate> close;
+  close.reserve(locations_.size());
   for (const Location& location : locations_) {
     const std::string known = simplified(location.name);
     const bool part = !wanted.empty() && (known.find(wanted) != std::string::npos ||
@@ -67,8 +71,9 @@ Result<Location> Locations::find(std::string_view name) const {
     if (part || distance <= std::max<std::size_t>(1, known.size() / 3))
       close.push_back({distance, location.name});
   }
-  std::ranges::sort(close);
+  std::sort(close.begin(), close.end());
   std::vector<std::string> names;
+  names.reserve(locations_.size());
   for (const Candidate& candidate : close) names.push_back(candidate.name);
   const bool similar = !names.empty();
   if (!similar)

@@ -171,9 +171,9 @@ TEST_F(Resolving, FindsUnknownTypesKeysAndComponents) {
   EXPECT_THAT(
       findings("  legs:\n    host: nuc\n    parameters: {gian: 3}\n"),
       ElementsAre("deploy/m.yaml:7: unknown key: component 'legs' has no parameter 'gian'; did you "
-                  "mean 'gain'?"));
+                  "mean gain?"));
   EXPECT_THAT(findings("  legs: {host: nuc}\n  left:\n    host: nuc\n    type: lges\n"),
-              ElementsAre(EndsWith("has the unknown type 'lges'; did you mean 'legs'?")));
+              ElementsAre(EndsWith("has the unknown type 'lges'; did you mean legs?")));
   EXPECT_THAT(findings("  legs: {host: nuc}\n", {{"arms", "gain", "1"}, {"legs", "x", "1"}}),
               ElementsAre("command line: unknown key: component 'legs' has no parameter 'x'",
                           "command line: unknown key: no component 'arms' in the manifest"));

@@ -139,6 +139,10 @@ TEST(ParameterSet, TellsAllErrorsOneALine) {
             "width must be set to a number in [0.1, 1] m (amcl.yaml): How wide it is.\n"
             "unknown parameter max_beam (f:2); did you mean max_beams?\n"
             "unknown parameter zebra (f:3)");
+  EXPECT_EQ(set.finish(false).error(),
+            "speed must be in one of the units m/s, got 5 m (f:1)\n"
+            "width must be set to a number in [0.1, 1] m (amcl.yaml): How wide it is.")
+      << "not all was asked for";
 }
 
 TEST(ParameterSet, FindsBadDeclarations) {
