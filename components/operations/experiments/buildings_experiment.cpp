@@ -300,6 +300,7 @@ Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options) {
   });
   if (!toured) return Error{toured.error()};
   std::vector<Tour> done;
+  done.reserve(tours.size());
   for (auto& tour : tours) done.push_back(std::move(*tour));
   auto sheet = report(options, done, true);
   if (!sheet) return sheet;

@@ -90,6 +90,10 @@ Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options) {
         auto run = run_one(trial, name_of(trial), trial.seed == 1 ? name_of(trial) : "");
         if (!run) return Error{name_of(trial) + ": " + run.error()};
         trial.run = std::move(run).value();
+        if (!trial.failed() || trial.seed == 1) return std::string();
+        // Once more, for its picture and trace.
+        const auto traced = run_one(trial, name_of(trial), name_of(trial));
+        if (!traced) return Error{traced.error()};
         return std::string();
       });
   if (!done) return Error{done.error()};

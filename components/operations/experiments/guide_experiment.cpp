@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
 
 #include "operations/command_line/table.hpp"
@@ -78,7 +79,8 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   if (!deployment) return Error{deployment.error()};
   const auto names = site_locations(*deployment);
   if (!names) return Error{names.error()};
-  const int only = options.only.empty() ? 0 : std::atoi(options.only.c_str());
+  const int only =
+      options.only.empty() ? 0 : static_cast<int>(std::strtol(options.only.c_str(), nullptr, 10));
   if (!options.only.empty() && only < 1)
     return Error{"--only takes a seed from 1 on, not " + options.only};
   const int seeds = std::max(only, options.seeds > 0 ? options.seeds : kSeeds);

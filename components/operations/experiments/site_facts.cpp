@@ -1,14 +1,14 @@
 #include "operations/experiments/site_facts.hpp"
 
-#include <cstdlib>
+#include <yaml-cpp/yaml.h>
 
 #include "foundation/grid/map_file.hpp"
-#include "operations/manifest/tree.hpp"
 
 namespace usher::operations {
 
 namespace {
 
+/// As it was resolved: it has all fields of its contract.
 Result<runtime::ParameterValue> fact(const Deployment& deployment, const std::string& name) {
   for (const auto& file : deployment.files) {
     for (const auto& value : file.values) {
@@ -16,12 +16,6 @@ Result<runtime::ParameterValue> fact(const Deployment& deployment, const std::st
     }
   }
   return Error{"no component of " + deployment.manifest.path + " is given " + name};
-}
-
-Result<Tree> list(const Deployment& deployment, const std::string& name) {
-  const auto value = fact(deployment, name);
-  if (!value) return Error{value.error()};
-  return parse_tree(value->yaml, value->origin);
 }
 
 }  // namespace
@@ -33,29 +27,23 @@ Result<grid::OccupancyGrid> site_map(const Deployment& deployment) {
 }
 
 Result<std::vector<std::string>> site_locations(const Deployment& deployment) {
-  const auto locations = list(deployment, "site.locations");
+  const auto locations = fact(deployment, "site.locations");
   if (!locations) return Error{locations.error()};
   std::vector<std::string> names;
-  for (const Tree& location : locations->items) {
-    if (const Tree* name = location.find("name")) names.push_back(name->scalar);
-  }
+  for (const auto& location : YAML::Load(locations->yaml))
+    names.push_back(location["name"].as<std::string>());
   if (names.empty()) return Error{"the site has no locations"};
   return names;
 }
 
 Result<std::vector<SiteRoom>> site_meeting_rooms(const Deployment& deployment) {
-  const auto records = list(deployment, "site.meeting_rooms");
+  const auto records = fact(deployment, "site.meeting_rooms");
   if (!records) return Error{records.error()};
   std::vector<SiteRoom> rooms;
-  for (const Tree& record : records->items) {
-    const auto wall = [&](const char* side) {  // judged by the component that asks for it
-      const Tree* at = record.find(side);
-      return at == nullptr ? 0.0 : std::strtod(at->scalar.c_str(), nullptr);
-    };
-    const Tree* name = record.find("name");
-    rooms.push_back({name == nullptr ? "" : name->scalar,
-                     {wall("west"), wall("south")},
-                     {wall("east"), wall("north")}});
+  for (const auto& room : YAML::Load(records->yaml)) {
+    rooms.push_back({room["name"].as<std::string>(),
+                     {room["west"].as<double>(), room["south"].as<double>()},
+                     {room["east"].as<double>(), room["north"].as<double>()}});
   }
   if (rooms.empty()) return Error{"the site has no meeting rooms"};
   return rooms;

@@ -134,6 +134,7 @@ void judge_clip(Score& score, const Clip& clip, const Hearing& hearing,
 template <std::size_t N>
 std::vector<Phrase> phrases_of(const std::array<const char*, N>& words) {
   std::vector<Phrase> phrases;
+  phrases.reserve(words.size());
   for (const char* word : words) phrases.push_back({word, word, word});
   return phrases;
 }

@@ -98,7 +98,10 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
     : host_(host),
       transforms_(host),
       core_(make(host)),
-      rejected_(host.health().counter("inputs: rejected")) {
+      rejected_(host.health().counter("inputs: rejected")),
+      unfelt_trail_(host.parameters().number(
+          "unfelt_trail", "m", {0, 1}, 0.0,
+          "Way behind the robot that is taken for free where no rear whisker feels.")) {
   goal_ = host.input(topics::kNavigateGoal, {.optional = true},
                      [this](const auto& goal, const auto&) { take_goal(goal); });
   goal_pose_ = host.input(topics::kGoalPose, {.optional = true},
@@ -237,6 +240,7 @@ Situation NavigatorComponent::situation() {
   }
   // Nobody sees behind, but the robot has just come from there, and its rear whiskers feel. From
   // what one of them touches the local planner turns away; what touches all four stands beside it.
+  s.rear_clearance = unfelt_trail_;
   const auto* t = whiskers_.fresh();
   if (t != nullptr &&
       (!(t->back_left() && t->back_right()) || (t->front_left() && t->front_right())))

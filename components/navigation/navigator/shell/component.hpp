@@ -48,6 +48,7 @@ class NavigatorComponent final : public runtime::Component {
   bool turn_of_words_ = true;                ///< it was said since the last word
   int status_share_ = 0;
   std::uint64_t& rejected_;
+  double unfelt_trail_;  ///< [m]
 
   runtime::Input<usher_msgs::msg::NavigateGoal> goal_;
   runtime::Input<geometry_msgs::msg::PoseStamped> goal_pose_;

@@ -26,6 +26,8 @@ site.locations:
 /// of its words can be left out.
 class Component : public testing::Test {
  protected:
+  explicit Component(const std::string& parameters = {})
+      : host{runtime::component_factory<NavigatorComponent>("navigator"), kSite + parameters} {}
   bool says(const std::string& topic) const { return !silent.contains(topic); }
   void say_where_it_is() {
     tf2_msgs::msg::TFMessage moving;
@@ -132,7 +134,7 @@ class Component : public testing::Test {
     return -1.0;
   }
 
-  runtime::TestHost host{runtime::component_factory<NavigatorComponent>("navigator"), kSite};
+  runtime::TestHost host;
   std::set<std::string> silent;
   std::vector<geometry::Point2> persons;
   bool granted = true, blocked = false;
@@ -248,6 +250,20 @@ TEST_F(Component, BacksOffOnlyWhileItsWhiskersFeel) {
     host.clear();
     host.world().start(host.name());
   }
+}
+
+class WithoutWhiskers : public Component {
+ protected:
+  WithoutWhiskers() : Component("unfelt_trail: 0.5 m\n") {}
+};
+
+TEST_F(WithoutWhiskers, BacksOffAsFarAsItsTrailIsTakenForFree) {
+  silent.insert("whiskers");
+  drive();
+  host.clear();
+  blocked = true;
+  run(60000);
+  EXPECT_TRUE(motions().contains(follow::MODE_BACK_OFF));
 }
 
 TEST_F(Component, WaitsLongerForSomebodyThanForAThing) {

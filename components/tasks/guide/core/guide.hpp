@@ -97,7 +97,7 @@ struct Actions {
 /// Every accepted answer that changes the question leads to a screen with a new id, so that a
 /// repeated or late answer has no effect. Nothing blocks: whatever the rest of the robot does, each
 /// state has a way and a time out; the last seconds of a question are shown and can be extended.
-class Guide {
+class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
  public:
   /// `first_id` must be above all ids of goals, screens and visits that this guide used before a
   /// restart; `memory` is what it kept.

@@ -436,6 +436,7 @@ TEST(Guide, FindsPlacesWhileTheirNamesAreTyped) {
 TEST(Guide, PutsManyPlacesOnPages) {
   Rig rig;
   std::vector<Location> many;
+  many.reserve(20);
   for (int i = 0; i < 20; ++i) many.push_back({"room" + std::to_string(i), "", {0, 0}});
   ASSERT_TRUE(rig.guide.set_locations(many, rig.now()).ok());
   rig.to_options();

@@ -50,7 +50,7 @@ bool Meeting::in_a_room(const Point2& point) const {
   });
 }
 
-void Meeting::set_places(std::vector<Place> places) {
+void Meeting::set_places(const std::vector<Place>& places) {
   for (Room& room : rooms_) {
     if (!active(state_)) room.place.reset();  // a mission goes on with what it knew
     for (const Place& place : places) {

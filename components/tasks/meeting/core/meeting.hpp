@@ -96,7 +96,7 @@ struct Actions {
 ///
 /// Nothing blocks: whatever the rest of the robot does, each state has a way and a time-out, and
 /// the mission a limit.
-class Meeting {
+class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
  public:
   /// `first_id` must be above all ids of goals and screens used before a restart. The phrases are
   /// those of kTextKeys; `language` is one of theirs.
@@ -109,7 +109,7 @@ class Meeting {
   }
   /// Places that the navigator knows, the rooms' among them. Those that are not finite are left
   /// out.
-  void set_places(std::vector<Place> places);
+  void set_places(const std::vector<Place>& places);
 
   /// A repeated request changes nothing. The error says why it is refused: one mission at a time.
   Status request(const MissionRequest& request, Time now);

@@ -249,7 +249,7 @@ void MeetingComponent::take_locations(const usher_msgs::msg::Locations& message)
     const auto& at = location.pose().position();
     places.push_back({location.name(), location.title(), {at.x(), at.y()}});
   }
-  core_.set_places(std::move(places));
+  core_.set_places(places);
 }
 
 /// With the pose of the image's time.

@@ -75,7 +75,7 @@ class Rig {
   }
   Status request(std::uint32_t persons, double time_limit = 0.0) {
     wait(100);
-    const Status status = meeting.request({++last_request_, "test", persons, time_limit}, now());
+    Status status = meeting.request({++last_request_, "test", persons, time_limit}, now());
     wait(100);
     return status;
   }
@@ -127,7 +127,7 @@ class Rig {
     const Point2 way = inverse(*robot.pose) * point;
     return face(way.norm(), std::atan2(way.y(), way.x()));
   }
-  void see(std::vector<Face> faces, int times = 1) {
+  void see(const std::vector<Face>& faces, int times = 1) {
     for (int i = 0; i < times; ++i) {
       note(meeting.see({640.0, robot.pose, faces}, now()));
       wait(100);
