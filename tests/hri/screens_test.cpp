@@ -173,8 +173,8 @@ class Screens : public testing::Test {
     static int argc = 1;
     static char name[] = "screens_test";
     static char* argv[] = {name, nullptr};
-    // Lives as long as the process. NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks)
-    static_cast<void>(new QGuiApplication(argc, argv));
+    static const auto* const application = new QGuiApplication(argc, argv);  // as the process
+    static_cast<void>(application);
     qml_register_types_Usher_Tablet();
   }
 
