@@ -65,7 +65,7 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
     const bool up = from.layer == "core" && !test && !starts_with_any(name, {from.room + "/core/"});
     return up ? "a core does not know its shell" : "";
   }
-  // Libraries are no components; those of drivers and tasks have what shells share, too.
+  // Libraries are no components; those of drivers, tasks and texts have what shells share, too.
   if (starts_with_any(name, {"drivers/base_obedience/core/", "drivers/laser_scanner/core/",
                              "interaction/phrases/core/", "simulation/rendering/core/",
                              "tasks/service/core/"})) {
@@ -75,6 +75,7 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
       name.starts_with("tasks/service/shell/")) {
     return {};
   }
+  if (from.layer == "shell" && name.starts_with("interaction/phrases/shell/")) return {};
   if (from.room.starts_with("drivers/") && from.layer != "core" &&
       starts_with_any(name, {"drivers/base_obedience/shell/", "drivers/laser_scanner/shell/"})) {
     return {};

@@ -14,9 +14,9 @@ constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
 constexpr std::uint64_t kUnsavedEpochs = 1024;
 constexpr const char* kOthers = "others";  // more clients than are remembered
 
-bool over(NavigationState state) {
-  return state == NavigationState::kSucceeded || state == NavigationState::kFailed ||
-         state == NavigationState::kCancelled;
+bool over(GoalState state) {
+  return state == GoalState::kSucceeded || state == GoalState::kFailed ||
+         state == GoalState::kCancelled;
 }
 
 }  // namespace
@@ -99,11 +99,11 @@ void Supervisor::base(const BaseReport& report, Time now) {
   }
 }
 
-void Supervisor::navigation(std::uint64_t id, NavigationState state) {
+void Supervisor::navigation(std::uint64_t id, GoalState state) {
   navigation_id_ = id;
   navigation_ = state;
   if (!behavior_.navigation_wanted()) return;
-  const bool active = state == NavigationState::kActive || state == NavigationState::kWaiting;
+  const bool active = state == GoalState::kActive || state == GoalState::kWaiting;
   if (active && behavior_.navigation_going()) active_goal_ = id;
   // The navigator also says the last words of goals that it refused while another one runs.
   const bool ours = active_goal_ ? id == *active_goal_ : id != id_before_goal_;

@@ -15,6 +15,7 @@
 #include "drivers/base_obedience/core/response_watch.hpp"
 #include "drivers/base_obedience/core/writer_right.hpp"
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/goal/goal_state.hpp"
 
 namespace usher::supervisor {
 
@@ -87,17 +88,6 @@ struct Answer {
   std::string reason;  ///< why it was refused; empty when done
 };
 
-/// As in GoalStatus on the wire.
-enum class NavigationState : std::uint8_t {
-  kIdle = 0,
-  kActive = 1,
-  kWaiting = 2,
-  kSucceeded = 3,
-  kFailed = 4,
-  kCancelled = 5,
-  kReplaced = 6,
-};
-
 struct BaseReport {
   bool emergency = false;     ///< its motors are off after an emergency stop
   bool ready = true;          ///< its motors are on and it takes commands
@@ -138,7 +128,7 @@ struct SupervisorStatus {
   double camera_angle_navigation = 0.0;
   State state = State::kInitialise;
   std::string current_goal;
-  NavigationState navigation = NavigationState::kIdle;
+  GoalState navigation = GoalState::kIdle;
   bool ok_movement = false;
   bool ok_interaction = false;
   bool ok_power = false;
@@ -186,7 +176,7 @@ class Supervisor {
   void drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now);
   void base(const BaseReport& report, Time now);
   /// The navigator's status; `id` names the goal that it speaks of.
-  void navigation(std::uint64_t id, NavigationState state);
+  void navigation(std::uint64_t id, GoalState state);
   /// The explorer's status: whether an exploration lasts that this client asked for. One that the
   /// client of the present navigation asked for is a journey of many goals: none of them ends the
   /// navigation, its own end does.
@@ -254,7 +244,7 @@ class Supervisor {
 
   std::string goal_;
   std::uint64_t navigation_id_ = 0;
-  NavigationState navigation_ = NavigationState::kIdle;
+  GoalState navigation_ = GoalState::kIdle;
   std::uint64_t id_before_goal_ = 0;  ///< the navigator's goal when the present one was chosen
   std::optional<std::uint64_t> active_goal_;  ///< the last that was active while it drove
   std::string navigation_client_;             ///< who had it started

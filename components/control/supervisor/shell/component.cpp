@@ -150,7 +150,7 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
   navigation_ = host.input(
       topics::kNavigateStatus, {.optional = true}, [this](const auto& message, const auto&) {
         core_.navigation(message.id(),
-                         static_cast<NavigationState>(std::min<std::uint8_t>(message.state(), 6)));
+                         static_cast<GoalState>(std::min<std::uint8_t>(message.state(), 6)));
       });
   exploration_ = host.input(
       topics::kExploreStatus,

@@ -100,7 +100,7 @@ inline Robot guiding() {
   robot.run(300);
   EXPECT_EQ(robot.state(), State::kNavigationStart);
   EXPECT_TRUE(robot.ask(Command::kNavigationGo).done);
-  robot.supervisor.navigation(41, NavigationState::kActive);
+  robot.supervisor.navigation(41, GoalState::kActive);
   robot.run(100);
   EXPECT_EQ(robot.state(), State::kNavigationActive);
   return robot;

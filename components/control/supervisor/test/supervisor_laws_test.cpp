@@ -119,7 +119,7 @@ struct World {
         base_emergency = false;
         break;
       case 9:
-        supervisor.navigation(random.below(4), static_cast<NavigationState>(random.below(7)));
+        supervisor.navigation(random.below(4), static_cast<GoalState>(random.below(7)));
         break;
       case 10:
         base_reports = !chance(4);

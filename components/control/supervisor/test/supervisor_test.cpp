@@ -117,10 +117,10 @@ TEST(Supervisor, LossIsLoggedWithCauseTimeAndComponent) {
 TEST(Supervisor, GuidesByRequestsAndNavigatorStatus) {
   Robot robot = guiding();
   EXPECT_EQ(robot.supervisor.status().current_goal, "am218");
-  robot.supervisor.navigation(41, NavigationState::kWaiting);
+  robot.supervisor.navigation(41, GoalState::kWaiting);
   robot.run(1000);
   EXPECT_EQ(robot.state(), State::kNavigationActive);
-  robot.supervisor.navigation(41, NavigationState::kSucceeded);
+  robot.supervisor.navigation(41, GoalState::kSucceeded);
   robot.run(20);
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
   EXPECT_FALSE(robot.supervisor.decision().enables.movement);
@@ -131,40 +131,40 @@ TEST(Supervisor, GuidesByRequestsAndNavigatorStatus) {
 
 TEST(Supervisor, AnOldNavigatorStatusEndsNothing) {
   Robot robot = ready();
-  robot.supervisor.navigation(40, NavigationState::kSucceeded);  // the goal of before, latched
+  robot.supervisor.navigation(40, GoalState::kSucceeded);  // the goal of before, latched
   robot.ask(Command::kNavigationStart, "am218");
   robot.run(300);
   robot.ask(Command::kNavigationGo);
-  robot.supervisor.navigation(40, NavigationState::kSucceeded);
+  robot.supervisor.navigation(40, GoalState::kSucceeded);
   robot.run(300);
   EXPECT_EQ(robot.state(), State::kNavigationActive);
-  robot.supervisor.navigation(41, NavigationState::kFailed);  // refused before it was ever active
+  robot.supervisor.navigation(41, GoalState::kFailed);  // refused before it was ever active
   robot.run(20);
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
 }
 
 TEST(Supervisor, AReplacedGoalIsNoEnd) {
   Robot robot = guiding();
-  robot.supervisor.navigation(41, NavigationState::kReplaced);
-  robot.supervisor.navigation(42, NavigationState::kActive);
+  robot.supervisor.navigation(41, GoalState::kReplaced);
+  robot.supervisor.navigation(42, GoalState::kActive);
   robot.run(100);
   EXPECT_EQ(robot.state(), State::kNavigationActive);
-  robot.supervisor.navigation(42, NavigationState::kCancelled);
+  robot.supervisor.navigation(42, GoalState::kCancelled);
   robot.run(20);
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
 }
 
 TEST(Supervisor, ARefusedForeignGoalDoesNotEndTheOneThatRuns) {
   Robot robot = guiding();
-  for (const auto state : {NavigationState::kFailed, NavigationState::kCancelled}) {
+  for (const auto state : {GoalState::kFailed, GoalState::kCancelled}) {
     robot.supervisor.navigation(99, state);
     robot.run(1000);
     EXPECT_EQ(robot.state(), State::kNavigationActive);
   }
-  robot.supervisor.navigation(41, NavigationState::kWaiting);
+  robot.supervisor.navigation(41, GoalState::kWaiting);
   robot.run(100);
   EXPECT_EQ(robot.state(), State::kNavigationActive);
-  robot.supervisor.navigation(41, NavigationState::kSucceeded);
+  robot.supervisor.navigation(41, GoalState::kSucceeded);
   robot.run(20);
   EXPECT_EQ(robot.state(), State::kNavigationEnd);
 }
@@ -174,9 +174,9 @@ TEST(Supervisor, AnExplorationIsAJourneyOfManyGoals) {
   const std::string client = "operator";
   robot.supervisor.exploration("somebody else", true);
   robot.supervisor.exploration(client, true);
-  for (const auto state : {NavigationState::kSucceeded, NavigationState::kFailed}) {
+  for (const auto state : {GoalState::kSucceeded, GoalState::kFailed}) {
     robot.supervisor.navigation(41, state);
-    robot.supervisor.navigation(42, NavigationState::kActive);
+    robot.supervisor.navigation(42, GoalState::kActive);
     robot.run(300);
     EXPECT_EQ(robot.state(), State::kNavigationActive);
   }
@@ -200,8 +200,8 @@ TEST(Supervisor, AGoalEndsTheNavigationWhenTheExplorerIsLostOrAnotherJourneyBegi
       robot.ask(Command::kNavigationGo);
       robot.run(600);
     }
-    robot.supervisor.navigation(43, NavigationState::kActive);
-    robot.supervisor.navigation(43, NavigationState::kSucceeded);
+    robot.supervisor.navigation(43, GoalState::kActive);
+    robot.supervisor.navigation(43, GoalState::kSucceeded);
     robot.run(20);
     EXPECT_EQ(robot.state(), State::kNavigationEnd) << lost;
   }
@@ -505,7 +505,7 @@ TEST(Supervisor, ReportsAppendixA3) {
   EXPECT_NEAR(robot.supervisor.decision().camera_angle, -0.0873, 1e-4);
   EXPECT_EQ(status.state, State::kNavigationActive);
   EXPECT_EQ(status.current_goal, "am218");
-  EXPECT_EQ(status.navigation, NavigationState::kActive);
+  EXPECT_EQ(status.navigation, GoalState::kActive);
   EXPECT_TRUE(status.ok_movement && status.connected_movement);
   EXPECT_TRUE(status.ok_interaction && status.connected_interaction);
   EXPECT_FALSE(status.ok_power || status.connected_power);

@@ -1,10 +1,9 @@
 #include "interaction/speech/shell/component.hpp"
 
 #include <cmath>
-#include <filesystem>
-#include <sstream>
 
 #include "foundation/text/shortened.hpp"
+#include "interaction/phrases/shell/read_phrases.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "wire/conversions.hpp"
 
@@ -63,20 +62,6 @@ SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
   return settings;
 }
 
-phrases::PhraseBook SpeechComponent::read_phrases(runtime::Host& host) {
-  auto& parameters = host.parameters();
-  const std::filesystem::path file = parameters.file(
-      "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
-  std::istringstream list(
-      parameters.text("languages", "en mi de fr", "Languages that the dialogue may speak."));
-  std::vector<std::string> tags;
-  for (std::string tag; list >> tag;) tags.push_back(tag);
-  if (file.empty()) return phrases::PhraseBook::of_keys(kTextKeys);
-  auto book = phrases::PhraseBook::load(file.parent_path(), tags, "speech", kTextKeys);
-  if (!book) host.fault("texts: " + book.error());
-  return std::move(book).value();
-}
-
 SpeechComponent::SpeechComponent(runtime::Host& host)
     : SpeechComponent(host, Equipment{std::make_unique<NullSoundCard>(),
                                       std::make_unique<NullSynthesizer>(), nullptr}) {}
@@ -84,7 +69,7 @@ SpeechComponent::SpeechComponent(runtime::Host& host)
 SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
     : host_(host),
       settings_(read_settings(host)),
-      texts_(read_phrases(host)),
+      texts_(phrases::read_phrases(host, "speech", kTextKeys)),
       conversation_(settings_.rule),
       activity_(settings_.activity),
       card_(std::move(equipment.card)),

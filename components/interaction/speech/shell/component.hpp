@@ -31,7 +31,6 @@ class SpeechComponent final : public runtime::Component {
     VoiceActivity::Settings activity;
   };
   static Settings read_settings(runtime::Host& host);
-  static phrases::PhraseBook read_phrases(runtime::Host& host);
 
   Time now() const { return host_.now().time_since_epoch(); }
   void load();

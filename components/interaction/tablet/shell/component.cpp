@@ -1,8 +1,6 @@
 #include "interaction/tablet/shell/component.hpp"
 
-#include <filesystem>
-#include <sstream>
-
+#include "interaction/phrases/shell/read_phrases.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::tablet {
@@ -24,20 +22,6 @@ constexpr double kRouteDetail = 0.05;  ///< [m]
 
 }  // namespace
 
-phrases::PhraseBook TabletComponent::read_phrases(runtime::Host& host) {
-  auto& parameters = host.parameters();
-  const std::filesystem::path file = parameters.file(
-      "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
-  std::istringstream list(
-      parameters.text("languages", "en mi de fr", "Languages that the dialogue may speak."));
-  std::vector<std::string> tags;
-  for (std::string tag; list >> tag;) tags.push_back(tag);
-  if (file.empty()) return phrases::PhraseBook::of_keys(kTextKeys);
-  auto book = phrases::PhraseBook::load(file.parent_path(), tags, "tablet", kTextKeys);
-  if (!book) host.fault("texts: " + book.error());
-  return std::move(book).value();
-}
-
 TabletComponent::TabletComponent(runtime::Host& host)
     : TabletComponent(host, std::make_unique<NullWindow>(), nullptr) {}
 TabletComponent::TabletComponent(runtime::Host& host, Window& window)
@@ -47,7 +31,7 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
     : host_(host),
       own_window_(std::move(own)),
       window_(own_window_ ? *own_window_ : *window),
-      core_(read_phrases(host)),
+      core_(phrases::read_phrases(host, "tablet", kTextKeys)),
       rejected_(host.health().counter("inputs: rejected")),
       answers_(host, topics::kDialogueAnswer),
       requests_(host, topics::kSupervisorRequest) {

@@ -20,7 +20,6 @@ class TabletComponent final : public runtime::Component {
 
  private:
   TabletComponent(runtime::Host& host, std::unique_ptr<Window> own, Window* window);
-  static phrases::PhraseBook read_phrases(runtime::Host& host);
   Time now() const { return host_.now().time_since_epoch(); }
   void take_screen(const usher_msgs::msg::DialogueScreen& screen);
   void take_map(const nav_msgs::msg::OccupancyGrid& map);

@@ -1,8 +1,6 @@
 #include "tasks/guide/shell/component.hpp"
 
-#include <filesystem>
-#include <sstream>
-
+#include "interaction/phrases/shell/read_phrases.hpp"
 #include "tasks/service/shell/messages.hpp"
 #include "wire/conversions.hpp"
 
@@ -63,16 +61,7 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
 Guide GuideComponent::make(runtime::Host& host) {
   auto& parameters = host.parameters();
   const Parameters p = read_parameters(parameters);
-  const std::filesystem::path file = parameters.file(
-      "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
-  std::istringstream list(parameters.text("languages", "en mi de fr",
-                                          "Languages to choose from, the first is the default."));
-  std::vector<std::string> tags;
-  for (std::string tag; list >> tag;) tags.push_back(tag);
-  auto phrases = file.empty()
-                     ? Result<phrases::PhraseBook>(phrases::PhraseBook::of_keys(kTextKeys))
-                     : phrases::PhraseBook::load(file.parent_path(), tags, "guide", kTextKeys);
-  if (!phrases) host.fault("texts: " + phrases.error());
+  auto phrases = phrases::read_phrases(host, "guide", kTextKeys);
   if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
     host.fault("follow_near and follow_resume must be below follow_far");
   Memory memory;
@@ -82,7 +71,7 @@ Guide GuideComponent::make(runtime::Host& host) {
   }
   // Ids above all that were used before a restart.
   const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
-  return Guide(p, std::move(phrases).value(), first_id, memory, host.now().time_since_epoch());
+  return Guide(p, std::move(phrases), first_id, memory, host.now().time_since_epoch());
 }
 
 GuideComponent::GuideComponent(runtime::Host& host)
