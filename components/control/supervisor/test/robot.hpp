@@ -76,7 +76,7 @@ class Robot {
     return supervisor.decision();
   }
   Answer ask(Command what, const char* goal = "") {
-    const Answer answer = supervisor.request({++request_id, "operator", what, goal}, now());
+    Answer answer = supervisor.request({++request_id, "operator", what, goal}, now());
     supervisor.step(now());
     return answer;
   }
