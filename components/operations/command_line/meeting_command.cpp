@@ -72,7 +72,10 @@ int meet(const MeetingArguments& arguments) {
     const bool was_taken = call.taken();
     call.take(*status);
     if (!call.refusal().empty()) return fail(call.refusal());
-    if (was_taken && !call.taken()) return fail("the meeting assistant works for somebody else");
+    if (was_taken && !call.taken())
+      return fail(status->mission().id() == 0
+                      ? "the meeting assistant was restarted; the mission is over"
+                      : "the meeting assistant works for somebody else");
     if (!call.taken()) continue;
     if (arguments.no_wait) return 0;
     // Each line once: the seconds that are left change all the time.

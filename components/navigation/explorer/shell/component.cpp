@@ -6,6 +6,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/meeting_rooms.hpp"
 
 namespace usher::explorer {
 
@@ -20,28 +21,6 @@ constexpr int kCoverageEvery = 10;  // periods
 constexpr auto kNavigatorAge = milliseconds(2000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kPoseAge = milliseconds(500);
-
-/// The rooms that the site's file lists.
-std::vector<Rectangle> read_rooms(runtime::Parameters& p) {
-  const auto wall = [](const char* name, const char* text) {
-    return runtime::RecordField{name, runtime::ParameterKind::kNumber, "m", {-1e4, 1e4}, text};
-  };
-  const auto records = p.records(
-      "site.meeting_rooms",
-      {{"name", runtime::ParameterKind::kText, "-", {}, "Of the location where the robot turns."},
-       wall("west", "Of its walls, in map."),
-       wall("south", "The same."),
-       wall("east", "The same."),
-       wall("north", "The same.")},
-      "Rooms in which nobody is looked for: the robot brings people there.");
-  std::vector<Rectangle> rooms;
-  rooms.reserve(records.size());
-  for (const auto& record : records) {
-    rooms.push_back({{record.number("west"), record.number("south")},
-                     {record.number("east"), record.number("north")}});
-  }
-  return rooms;
-}
 
 }  // namespace
 
@@ -83,7 +62,8 @@ ExplorerConfig ExplorerComponent::read_parameters(runtime::Host& host) {
   const auto footprint = wire::read_footprint(host);
   c.passing_room = footprint.inscribed_radius() + clearance;
   c.standing_room = footprint.circumscribed_radius() + clearance;
-  c.leave_out = read_rooms(p);
+  for (const auto& room : wire::read_meeting_rooms(host))
+    c.leave_out.push_back({room.low, room.high});
   return c;
 }
 

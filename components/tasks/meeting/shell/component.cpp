@@ -10,6 +10,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/meeting_rooms.hpp"
 
 namespace usher::meeting {
 
@@ -32,34 +33,6 @@ constexpr std::uint64_t kIdsApart = 500'000;
 
 GoalState goal_state(std::uint8_t state) {
   return static_cast<GoalState>(std::min<std::uint8_t>(state, 6));
-}
-
-/// The rooms that the site's file lists.
-std::vector<RoomArea> read_rooms(runtime::Host& host) {
-  auto& p = host.parameters();
-  const auto wall = [](const char* name, const char* text) {
-    return runtime::RecordField{name, runtime::ParameterKind::kNumber, "m", {-1e4, 1e4}, text};
-  };
-  const auto records = p.records(
-      "site.meeting_rooms",
-      {{"name", runtime::ParameterKind::kText, "-", {}, "Of the location where the robot turns."},
-       wall("west", "Of its walls, in map."),
-       wall("south", "The same."),
-       wall("east", "The same."),
-       wall("north", "The same.")},
-      "Rooms in which nobody is looked for: the robot brings people there.");
-  std::vector<RoomArea> rooms;
-  rooms.reserve(records.size());
-  for (const auto& record : records) {
-    if (!(record.number("west") < record.number("east") &&
-          record.number("south") < record.number("north")))
-      host.fault("site.meeting_rooms: '" + record.text("name") +
-                 "' must have west < east and south < north");
-    rooms.push_back({record.text("name"),
-                     {record.number("west"), record.number("south")},
-                     {record.number("east"), record.number("north")}});
-  }
-  return rooms;
 }
 
 usher_msgs::msg::MeetingReport to_message(const Report& report, runtime::Time now) {
@@ -142,7 +115,10 @@ Meeting MeetingComponent::make(runtime::Host& host) {
   // Ids above all that were used before a restart.
   const auto first_id =
       static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000) + kIdsApart;
-  return Meeting(parameters, read_rooms(host), std::move(phrases).value(), 0, first_id);
+  std::vector<RoomArea> rooms;
+  for (auto& room : wire::read_meeting_rooms(host))
+    rooms.push_back({std::move(room.name), room.low, room.high});
+  return Meeting(parameters, std::move(rooms), std::move(phrases).value(), 0, first_id);
 }
 
 MeetingComponent::MeetingComponent(runtime::Host& host)
