@@ -147,6 +147,7 @@ void show_meeting(std::size_t language, const std::function<void(const service::
       [](Rig& r) { r.to_approach(12); },
       [](Rig& r) { r.to_invite(12); },
       [](Rig& r) { r.to_guide(12); },
+      [](Rig& r) { r.to_look_back(12); },
       [](Rig& r) { r.to_arrived(12); },
       [](Rig& r) { r.to_arrived(), r.wait(3000); },
       [](Rig& r) { r.to_guide(12), r.note(r.meeting.cancel(0, r.now())); }};

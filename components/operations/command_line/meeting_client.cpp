@@ -11,7 +11,7 @@ namespace usher::operations {
 namespace {
 
 constexpr auto kRepeat = std::chrono::milliseconds(200);
-constexpr std::array<const char*, 14> kDoes{"waits for the robot",
+constexpr std::array<const char*, 15> kDoes{"waits for the robot",
                                             "waits for a request",
                                             "drives to a meeting room",
                                             "looks round in the room",
@@ -22,6 +22,7 @@ constexpr std::array<const char*, 14> kDoes{"waits for the robot",
                                             "drives to a person",
                                             "invites",
                                             "brings a person to the room",
+                                            "looks back whether the person follows",
                                             "has brought a person",
                                             "has brought everybody",
                                             "has ended"};

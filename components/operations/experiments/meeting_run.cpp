@@ -73,16 +73,18 @@ class MissJudge {
 };
 
 Status put_people(Deployment& deployment, const MeetingCase& one, const std::string& path) {
-  std::string file = "people:\n", come;
+  std::string file = "people:\n", come, stray;
   for (const MeetingPerson& person : one.people) {
     file += "  - {name: " + person.name + format(", at: [%.3f, ", person.at.x()) +
             format("%.3f], yaw: 0.0, watches: true}\n", person.at.y());
-    if (person.comes) come += (come.empty() ? "" : " ") + person.name;
+    std::string& names = person.strays ? stray : come;
+    if (person.comes) names += (names.empty() ? "" : " ") + person.name;
   }
   if (one.people.empty()) file = "people: []\n";
   if (Status saved = write_file(path, file); !saved) return saved;
   set_site_value(deployment, "site.people", std::filesystem::absolute(path).string());
   set_value(deployment, "attendees", "come", come.empty() ? "\"\"" : come);
+  set_value(deployment, "attendees", "stray", stray.empty() ? "\"\"" : stray);
   set_site_value(deployment, "site.initial_pose",
                  format("[%.3f, ", one.start.x) + format("%.3f, ", one.start.y) +
                      format("%.4f]", one.start.yaw));

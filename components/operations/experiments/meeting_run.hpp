@@ -17,6 +17,7 @@ struct MeetingPerson {
   std::string name;
   geometry::Point2 at{0, 0};  ///< [m] in map
   bool comes = false;         ///< says yes when it is invited; else it is asked nothing
+  bool strays = false;        ///< stays behind on the way, the first time
 };
 
 struct MeetingCase {

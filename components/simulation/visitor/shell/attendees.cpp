@@ -23,10 +23,16 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
                                   "How long an invitation is read before it is answered.");
   reach_ = p.number("reach", "m", {0.5, 5}, 2.0, "From there the robot's screen can be read.");
   speed_ = p.number("speed", "m/s", {0.1, 2}, 1.2, "How fast they walk.");
-  invite(p.text("come", "", "Names of people in the world who come along."), Manner::kComes,
-         reading);
-  invite(p.text("decline", "", "Names of those who do not."), Manner::kDeclines, reading);
-  invite(p.text("silent", "", "Names of those who do not answer."), Manner::kSilent, reading);
+  const double stray = p.number("stray_time", "s", {0, 600}, 12.0, "How long who strays follows.");
+  const auto invite = [&](const char* name, const char* text, Manner manner) {
+    std::istringstream list(p.text(name, "", text));
+    for (std::string one; list >> one;)
+      people_.push_back({one, Attendee(manner, reading, stray)});
+  };
+  invite("come", "Names of people in the world who come along.", Manner::kComes);
+  invite("decline", "Names of those who do not.", Manner::kDeclines);
+  invite("silent", "Names of those who do not answer.", Manner::kSilent);
+  invite("stray", "Names of those who stay behind on the way, the first time.", Manner::kStrays);
   const auto place = [](const char* name) {
     return runtime::RecordField{name, runtime::ParameterKind::kNumber, "m", {-1e4, 1e4}, "In map."};
   };
@@ -46,11 +52,6 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
   walk_ = host.output(topics::kSimPersonGoal);
   timer_ = host.timer("step", kStep, [this](auto) { step(); });
   host.health().set(runtime::HealthState::kOk);
-}
-
-void AttendeesComponent::invite(const std::string& names, Manner manner, double reading_time) {
-  std::istringstream list(names);
-  for (std::string name; list >> name;) people_.push_back({name, Attendee(manner, reading_time)});
 }
 
 void AttendeesComponent::take(const usher_msgs::msg::DialogueScreen& screen) {

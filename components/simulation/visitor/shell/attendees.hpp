@@ -26,7 +26,6 @@ class AttendeesComponent final : public runtime::Component {
     bool has_seat = false;
     bool moved = false;
   };
-  void invite(const std::string& names, Manner manner, double reading_time);
   void take(const usher_msgs::msg::DialogueScreen& screen);
   void step();
   const Somebody* asked() const;

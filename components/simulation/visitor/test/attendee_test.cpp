@@ -52,6 +52,36 @@ TEST(Attendee, DeclinesOrIsSilent) {
   EXPECT_EQ(declines.walk(), Attendee::Walk::kStand);
 }
 
+TEST(Attendee, StandsWhileTheRobotLooksBackAtIt) {
+  Attendee person(Manner::kComes, 0.0);
+  person.see(screen(2, "invite"), true, 0.0);
+  EXPECT_EQ(person.answer(0.1), "yes");
+  person.see(screen(3, "guide"), false, 1.0);
+  person.see(screen(4, "look_back"), false, 20.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kFollow) << "it comes up";
+  person.see(screen(4, "look_back"), true, 22.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kStand);
+  person.see(screen(5, "guide"), true, 23.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kFollow);
+}
+
+TEST(Attendee, StraysOnce) {
+  Attendee person(Manner::kStrays, 0.0, 12.0);
+  person.see(screen(2, "invite"), true, 0.0);
+  EXPECT_EQ(person.answer(0.1), "yes");
+  person.see(screen(3, "guide"), false, 12.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kFollow);
+  person.see(screen(3, "guide"), false, 12.2);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kStand);
+  person.see(screen(4, "look_back"), false, 20.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kStand);
+  person.see(screen(5, "explore"), false, 40.0);
+  person.see(screen(6, "invite"), true, 60.0);
+  EXPECT_EQ(person.answer(60.1), "yes");
+  person.see(screen(7, "guide"), false, 90.0);
+  EXPECT_EQ(person.walk(), Attendee::Walk::kFollow);
+}
+
 TEST(Attendee, StandsWhereTheRobotGaveItUp) {
   Attendee person(Manner::kComes, 0.0);
   person.see(screen(2, "invite"), true, 0.0);

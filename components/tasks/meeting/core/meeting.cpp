@@ -15,6 +15,7 @@ namespace {
 constexpr std::uint32_t kMostPersons = 100;
 constexpr double kLongestMission = 3600.0;  // [s]
 constexpr double kRefusedRadius = 0.5;      // [m] around a face that was none
+constexpr double kFollowerNear = 2.5;       // [m] from where it should be
 constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
 constexpr Time kForever = Time::max();
@@ -145,11 +146,13 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
   if (answer.option_id == "yes") {
     ++report_.accepted;
     tries_ = 0;
+    follower_ = person_;
+    in_the_room_ = false;
     enter(State::kGuide, Cause::kYes, now);
   } else {
     ++report_.declined;
     // Who leaves on the way is where the robot is by then.
-    const bool on_the_way = departed_ && robot_.pose && state_ == State::kGuide;
+    const bool on_the_way = departed_ && robot_.pose && state_ != State::kInvite;
     people_.leave_alone(on_the_way ? robot_.pose->position() : person_,
                         on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
                         now);
@@ -169,6 +172,7 @@ const Actions& Meeting::step(const Surroundings& robot, Time now) {
   if (active(state_)) watch_robot(now);
   follow_motion(now);
   if (state_ == State::kScanRoom) scan(now);
+  if (state_ == State::kGuide) trail_follower();
   pass_time(now);
   return finish(now);
 }
@@ -236,6 +240,10 @@ void Meeting::arrive_in(State state, Time now) {
     case State::kGuide:
       passing_.forget();
       departed_ = false;
+      break;
+    case State::kLookBack:
+      turn_ = Turn::kFace;
+      face_to_ = follower_;
       break;
     case State::kArrived:
       ++report_.brought;
@@ -315,7 +323,8 @@ void Meeting::follow_motion(Time now) {
       enter(State::kInvite, Cause::kArrived, now);
       break;
     case State::kGuide:
-      enter(State::kArrived, Cause::kArrived, now);
+      in_the_room_ = true;
+      enter(State::kLookBack, Cause::kArrived, now);
       break;
     default:
       break;
@@ -384,6 +393,13 @@ void Meeting::pass_time(Time now) {
       break;
     case State::kGuide:
       if (!departed_ && passed >= parameters_.tone) depart(now);
+      if (passed >= parameters_.unseen) enter(State::kLookBack, Cause::kUnseen, now);
+      break;
+    case State::kLookBack:
+      if (!motion_.may_turn(robot_)) since_ = now;  // held meanwhile: it cannot look
+      if (now - since_ < parameters_.look_back) break;
+      ++report_.lost;
+      look_for_people(Cause::kLost, now);
       break;
     case State::kArrived:
       if (passed < parameters_.arrived) break;
@@ -471,6 +487,9 @@ const Actions& Meeting::see(Faces faces, Time now) {
     case State::kCheckRoom:
     case State::kCheckFace:
       check(faces, now);
+      break;
+    case State::kLookBack:
+      look_for_follower(faces, now);
       break;
     default:
       break;
@@ -589,5 +608,26 @@ void Meeting::depart(Time now) {
   });
   motion_.drive({0, room->area.name, {}}, now);
 }
+
+/// Nobody sees behind this robot: who follows is taken to walk where it drove.
+void Meeting::trail_follower() {
+  if (!robot_.pose) return;
+  const Point2 behind = follower_ - robot_.pose->position();
+  if (behind.norm() > parameters_.follows)
+    follower_ = robot_.pose->position() + parameters_.follows * behind.normalized();
+}
+
+/// Whoever comes along has come; somebody who stands far from there is somebody else.
+void Meeting::look_for_follower(const Faces& all, Time now) {
+  Faces some = all;
+  std::erase_if(some.faces,
+                [&](const Face& face) { return (face.at - follower_).norm() > kFollowerNear; });
+  if (track_.take(some)) face_to_ = track_.face().at;
+  if (track_.successive() < parameters_.notice) return;
+  follower_ = track_.face().at;
+  enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
+}
+
+bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }
 
 }  // namespace usher::meeting

@@ -29,6 +29,9 @@ struct Parameters {
   Time check = std::chrono::milliseconds(2500);  ///< without a face: it was none
   Time check_most = std::chrono::seconds(10);    ///< a face that is not confirmed by then is none
   Time nobody = std::chrono::seconds(2);         ///< nobody seen where somebody was: has gone
+  Time unseen = std::chrono::seconds(20);        ///< who is guided is looked for after that
+  Time look_back = std::chrono::seconds(20);     ///< and is lost when not seen for so long
+  Time call = std::chrono::seconds(9);           ///< after that it calls
   Time scan_most = std::chrono::seconds(60);     ///< a turn takes at most so long
   Time recovery = std::chrono::seconds(60);      ///< a robot that may not move is waited for
   Time ask_again = std::chrono::seconds(180);    ///< who did not answer, or could not be reached
@@ -37,6 +40,7 @@ struct Parameters {
   int notice = 2;                                ///< {>= 1} and so many stop an exploration
   double field_of_view = 0.9948;                 ///< [rad] of the camera's width
   double centered = 0.2;                         ///< [rad] a face is centered within that
+  double follows = 1.1;                          ///< [m] behind the robot walks who follows it
   double stand_off = 1.0;                        ///< [m] from the person, to talk
   double near = 1.4;                             ///< [m] nearer it asks from where it stands
   double same_person = 0.8;    ///< [m] faces nearer to each other are one person's
@@ -77,7 +81,7 @@ struct Report {
   std::uint32_t wanted = 0, brought = 0;
   std::uint32_t rooms_scanned = 0, rooms_occupied = 0;
   std::uint32_t faces_checked = 0, faces_refused = 0;
-  std::uint32_t invited = 0, accepted = 0, declined = 0, unanswered = 0;
+  std::uint32_t invited = 0, accepted = 0, declined = 0, unanswered = 0, lost = 0;
   std::optional<Time> room_time;  ///< until the room was found
   Time duration{};
 };
@@ -184,6 +188,9 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void visit_if_remembered(Time now);
   void approach(Time now);
   void depart(Time now);
+  void trail_follower();
+  void look_for_follower(const Faces& all, Time now);
+  bool calls(Time now) const;
 
   // Screens.
   service::Screen build(Time now) const;
@@ -224,6 +231,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   Point2 departure_{0, 0};  ///< [m] in map, of the guidance
   int tries_ = 0;
   bool departed_ = false;
+  Point2 follower_{0, 0};           ///< [m] in map, where it should be
+  bool in_the_room_ = false;        ///< the guidance is at its end
   std::optional<Time> arrived_at_;  ///< where somebody was seen
 
   std::optional<Time> held_since_, lost_since_;

@@ -5,13 +5,14 @@ namespace usher::meeting {
 namespace {
 
 constexpr std::array<std::string_view, kStates> kStateNames{
-    "initialise", "idle",     "to_room", "scan_room", "check_room", "explore", "check_face",
-    "revisit",    "approach", "invite",  "guide",     "arrived",    "done",    "ended"};
+    "initialise", "idle",       "to_room", "scan_room", "check_room",
+    "explore",    "check_face", "revisit", "approach",  "invite",
+    "guide",      "look_back",  "arrived", "done",      "ended"};
 
 constexpr std::array<std::string_view, kCauses> kCauseNames{
-    "ready",     "not ready", "request", "arrived",   "no way",    "face", "lost",
-    "confirmed", "near",      "scanned", "seen then", "yes",       "no",   "timeout",
-    "more",      "enough",    "limit",   "failure",   "cancelled", "delay"};
+    "ready",   "not ready", "request", "arrived", "no way",    "face",      "lost",
+    "unseen",  "confirmed", "near",    "scanned", "seen then", "yes",       "no",
+    "timeout", "more",      "enough",  "limit",   "failure",   "cancelled", "delay"};
 
 }  // namespace
 

@@ -7,8 +7,8 @@
 
 namespace usher::meeting {
 
-/// The states of fig. 4 of the meeting report; revisit, done and ended are ours. The numbers are
-/// those on the wire.
+/// The states of fig. 4 of the meeting report; revisit, look back, done and ended are ours. The
+/// numbers are those on the wire.
 enum class State : std::uint8_t {
   kInitialise = 0,  ///< waits for map, pose and the rest of the robot
   kIdle = 1,        ///< waits for a request
@@ -21,11 +21,12 @@ enum class State : std::uint8_t {
   kApproach = 8,    ///< drives to just in front of the person
   kInvite = 9,      ///< would you like to come?
   kGuide = 10,      ///< brings the person to the room
-  kArrived = 11,    ///< one more is there
-  kDone = 12,       ///< everybody is there
-  kEnded = 13,      ///< over before that
+  kLookBack = 11,   ///< turns round: does the person follow?
+  kArrived = 12,    ///< one more is there
+  kDone = 13,       ///< everybody is there
+  kEnded = 14,      ///< over before that
 };
-inline constexpr std::size_t kStates = 14;
+inline constexpr std::size_t kStates = 15;
 
 enum class Cause : std::uint8_t {
   kReady,      ///< the robot can serve
@@ -34,7 +35,8 @@ enum class Cause : std::uint8_t {
   kArrived,    ///< the navigator reached the place
   kNoWay,      ///< it did not
   kFace,       ///< a face is seen
-  kLost,       ///< it was none, or nobody is there
+  kLost,       ///< it was none, nobody is there, or nobody follows
+  kUnseen,     ///< the person was not seen for a while
   kConfirmed,  ///< three messages agree on it
   kNear,       ///< they do, and the robot stands before the person already
   kScanned,    ///< nobody in the whole round
@@ -49,7 +51,7 @@ enum class Cause : std::uint8_t {
   kCancelled,  ///< somebody gave the mission up
   kDelay,      ///< it was shown long enough
 };
-inline constexpr std::size_t kCauses = 20;
+inline constexpr std::size_t kCauses = 21;
 
 struct Edge {
   State from;
@@ -87,10 +89,15 @@ inline constexpr std::array kWay{
     Edge{State::kInvite, State::kGuide, Cause::kYes},
     Edge{State::kInvite, State::kExplore, Cause::kNo},
     Edge{State::kInvite, State::kExplore, Cause::kTimeout},
-    Edge{State::kGuide, State::kArrived, Cause::kArrived},
+    Edge{State::kGuide, State::kLookBack, Cause::kUnseen},
+    Edge{State::kGuide, State::kLookBack, Cause::kArrived},
     Edge{State::kGuide, State::kGuide, Cause::kNoWay},
     Edge{State::kGuide, State::kExplore, Cause::kNoWay},
     Edge{State::kGuide, State::kExplore, Cause::kNo},
+    Edge{State::kLookBack, State::kGuide, Cause::kConfirmed},
+    Edge{State::kLookBack, State::kArrived, Cause::kConfirmed},
+    Edge{State::kLookBack, State::kExplore, Cause::kLost},
+    Edge{State::kLookBack, State::kExplore, Cause::kNo},
     Edge{State::kArrived, State::kExplore, Cause::kMore},
     Edge{State::kArrived, State::kDone, Cause::kEnough},
     Edge{State::kDone, State::kIdle, Cause::kDelay},

@@ -82,6 +82,11 @@ service::Screen Meeting::build(Time now) const {
       screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
       says(screen.title, Tone::kMoving);
       break;
+    case State::kLookBack:
+      screen.title = say(calls(now) ? Text::kWhereAreYou : Text::kWithMe);
+      screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
+      if (calls(now)) says(screen.title, Tone::kCall);
+      break;
     case State::kArrived:
       screen.title = say(Text::kThere);
       screen.text = say(Text::kThankYou);

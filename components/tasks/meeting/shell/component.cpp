@@ -53,6 +53,7 @@ usher_msgs::msg::MeetingReport to_message(const Report& report, runtime::Time no
   message.accepted(report.accepted);
   message.declined(report.declined);
   message.unanswered(report.unanswered);
+  message.lost(report.lost);
   message.room_time(report.room_time ? static_cast<float>(runtime::seconds(*report.room_time))
                                      : std::numeric_limits<float>::quiet_NaN());
   message.duration(static_cast<float>(runtime::seconds(report.duration)));
@@ -80,6 +81,9 @@ Parameters MeetingComponent::read_parameters(runtime::Host& host) {
   time("check_time", c.check, "A face that is not seen for so long was none.");
   time("check_most", c.check_most, "A face that is not confirmed by then was none.");
   time("nobody_time", c.nobody, "Nobody seen for so long where somebody was: has gone.");
+  time("unseen_time", c.unseen, "Who is guided is looked for after so long.");
+  time("look_back_time", c.look_back, "Who is not seen then for so long is lost.");
+  time("call_time", c.call, "Who is not seen then for so long is called.");
   time("scan_most", c.scan_most, "A turn in a room takes at most so long, else the next room.");
   time("recovery_timeout", c.recovery, "How long a robot that may not move is waited for.");
   time("ask_again", c.ask_again, "Who did not answer, or could not be reached, is asked after it.");
@@ -88,6 +92,7 @@ Parameters MeetingComponent::read_parameters(runtime::Host& host) {
   count("notice", c.notice, "Messages in a row for which an exploration is interrupted.");
   number("field_of_view", "rad", {0.1, 3}, c.field_of_view, "Of the camera's width.");
   number("centered", "rad", {0.02, 0.7}, c.centered, "A face is centered within that.");
+  number("follows", "m", {0.5, 3}, c.follows, "Behind the robot walks who follows it.");
   number("stand_off", "m", {0.5, 3}, c.stand_off, "From a person, to talk.");
   number("near", "m", {0.5, 4}, c.near, "Nearer it asks from where it stands.");
   number("same_person", "m", {0.2, 3}, c.same_person,

@@ -65,6 +65,17 @@ const std::vector<Case>& cases() {
        {{[](Rig& r) { r.to_guide(); }, State::kGuide},
         {[](Rig& r) { r.wait(1000), r.no_way(); }, State::kGuide},
         {[](Rig& r) { r.wait(1000), r.no_way(); }, State::kExplore}}},
+      {"is looked for on the way, and follows",
+       {{[](Rig& r) { r.to_guide(); }, State::kGuide},
+        {[](Rig& r) { r.wait(20000); }, State::kLookBack},
+        {[](Rig& r) { r.see(1.1, 0.0, 2); }, State::kGuide}}},
+      {"does not follow",
+       {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},
+        {[](Rig& r) { r.wait(19900); }, State::kLookBack},
+        {[](Rig& r) { r.wait(200); }, State::kExplore}}},
+      {"leaves when it is looked for",
+       {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},
+        {[](Rig& r) { r.press("leave"); }, State::kExplore}}},
       {"was seen on the way and is still there",
        {{[](Rig& r) { r.to_revisit(); }, State::kRevisit},
         {[](Rig& r) {
@@ -96,6 +107,7 @@ const std::vector<Begin> kBegins{{State::kToRoom, [](Rig& r) { r.to_room(); }},
                                  {State::kApproach, [](Rig& r) { r.to_approach(); }},
                                  {State::kInvite, [](Rig& r) { r.to_invite(); }},
                                  {State::kGuide, [](Rig& r) { r.to_guide(); }},
+                                 {State::kLookBack, [](Rig& r) { r.to_look_back(2); }},
                                  {State::kArrived, [](Rig& r) { r.to_arrived(2); }}};
 
 TEST(Edges, AreAllTakenAndLeadWhereTheTableSays) {

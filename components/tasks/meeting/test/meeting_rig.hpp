@@ -182,10 +182,15 @@ class Rig {
     press("yes");
     EXPECT_EQ(state(), State::kGuide);
   }
-  void to_arrived(std::uint32_t persons = 1) {
+  void to_look_back(std::uint32_t persons = 1) {
     to_guide(persons);
     wait(1000);
     arrive();
+    EXPECT_EQ(state(), State::kLookBack);
+  }
+  void to_arrived(std::uint32_t persons = 1) {
+    to_look_back(persons);
+    see(1.1, 0.0, 2);
     EXPECT_EQ(state(), State::kArrived);
   }
   /// Somebody is seen while the robot guides.
@@ -196,6 +201,7 @@ class Rig {
     see({face_at({4.5, 6.5})}, 4);
     EXPECT_EQ(meeting.people().remembered().size(), 1U);
     arrive();
+    see(1.1, 0.0, 2);
     EXPECT_EQ(state(), State::kArrived);
     wait(3000);
     EXPECT_EQ(state(), State::kRevisit);

@@ -198,6 +198,58 @@ TEST(Meeting, TellsHowItStandsAndReports) {
   EXPECT_EQ(rig.said.back(), "Everybody is here. Have a good meeting.");
 }
 
+TEST(Meeting, LooksBackWhereItsFollowerShouldBeAndGoesOn) {
+  Rig rig;
+  rig.to_guide();
+  rig.wait(1500);
+  for (int i = 0; i < 20; ++i) {  // away from the person, to the left of where it met him
+    rig.robot.pose->y += 0.2;
+    rig.wait(100);
+  }
+  const Pose2 there = *rig.robot.pose;
+  rig.wait(20000);
+  ASSERT_EQ(rig.state(), State::kLookBack);
+  rig.wait(100);
+  EXPECT_EQ(rig.meeting.turn(), Turn::kFace);
+  EXPECT_NEAR(geometry::normalized(there.yaw + rig.meeting.bearing()), -geometry::kPi / 2, 0.3);
+  rig.see({rig.face_at(there.position() + Point2(3.5, 3.0))}, 4);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "somebody else";
+  rig.robot.pose->yaw = -geometry::kPi / 2;
+  rig.see(1.6, 0.1, 1);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "one message is not enough";
+  rig.taken();
+  rig.see(1.6, 0.1, 1);
+  ASSERT_EQ(rig.state(), State::kGuide);
+  rig.wait(2000);
+  EXPECT_NE(rig.taken().find("goal:west"), std::string::npos) << "on to the room";
+}
+
+TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
+  Rig rig;
+  rig.to_look_back(2);
+  EXPECT_EQ(rig.meeting.screen().title, "Are you with me?");
+  rig.said.clear();
+  rig.wait(9000);
+  EXPECT_EQ(rig.said, std::vector<std::string>{"Are you there? I am waiting for you."});
+  rig.wait(11100);
+  EXPECT_EQ(rig.state(), State::kExplore);
+  EXPECT_EQ(rig.meeting.report().lost, 1U);
+  EXPECT_EQ(rig.meeting.report().brought, 0U);
+}
+
+TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
+  Rig rig;
+  rig.to_look_back();
+  rig.robot.supervisor = Supervisor::kInactive;
+  rig.wait(40000);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  rig.robot.supervisor = Supervisor::kAvailable;
+  rig.wait(19000);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  rig.see(1.1, 0.0, 2);
+  EXPECT_EQ(rig.state(), State::kArrived);
+}
+
 TEST(Meeting, AsksNobodyTwiceWhoSaidNo) {
   Rig rig;
   rig.to_invite();
