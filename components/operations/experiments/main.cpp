@@ -84,6 +84,10 @@ const std::vector<Experiment>& experiments() {
        "The meeting assistant brings two persons from short, medium and long distances, lock-step: "
        "times, misses and failures beside figure 15 of the meeting report; --only DISTANCE",
        run_gather_experiment},
+      {"gather-pixels",
+       "The same with rendered images, photographed faces and the face detector itself; --only "
+       "DISTANCE",
+       run_gather_pixels_experiment},
       {"voice",
        "Recorded words and synthetic voices through the recognizer, without and with 52 dB of "
        "noise; "

@@ -43,7 +43,8 @@ struct MeetingRun {
 };
 
 /// The meeting assistant in the arena, at the pace of its report: 0.7 m/s and 0.4 rad/s.
-Result<Deployment> meeting_deployment(const ExperimentOptions& options);
+Result<Deployment> meeting_deployment(const ExperimentOptions& options,
+                                      const std::string& manifest = "meeting-demo.yaml");
 
 /// One mission in lock-step. People go through a file in `folder`, named by `name`; with a `title`
 /// the run's picture, trace and states lie beside it.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -28,7 +29,9 @@ Result<AnnotatedPicture> read_picture(const fs::path& path) {
   return picture;
 }
 
-Status read_dlib(const fs::path& file, std::vector<AnnotatedPicture>& pictures) {
+/// Calls `visit` with each <image> and its picture.
+template <class Visit>
+Status each_image(const fs::path& file, const Visit& visit) {
   tinyxml2::XMLDocument document;
   if (document.LoadFile(file.string().c_str()) != tinyxml2::XML_SUCCESS)
     return Error{file.string() + ": " + document.ErrorStr()};
@@ -43,14 +46,63 @@ Status read_dlib(const fs::path& file, std::vector<AnnotatedPicture>& pictures) 
     if (name == nullptr) return Error{file.string() + ": an image without a file"};
     auto picture = read_picture(file.parent_path() / name);
     if (!picture) return Error{picture.error()};
-    for (const auto* box = image->FirstChildElement("box"); box != nullptr;
-         box = box->NextSiblingElement("box")) {
-      picture->faces.emplace_back(box->DoubleAttribute("left"), box->DoubleAttribute("top"),
-                                  box->DoubleAttribute("width"), box->DoubleAttribute("height"));
-    }
-    pictures.push_back(std::move(picture).value());
+    visit(*image, std::move(picture).value());
   }
   return {};
+}
+
+template <class Visit>
+void each_box(const tinyxml2::XMLElement& image, const Visit& visit) {
+  for (const auto* box = image.FirstChildElement("box"); box != nullptr;
+       box = box->NextSiblingElement("box"))
+    visit(*box);
+}
+
+Status read_dlib(const fs::path& file, std::vector<AnnotatedPicture>& pictures) {
+  return each_image(file, [&](const tinyxml2::XMLElement& image, AnnotatedPicture picture) {
+    each_box(image, [&](const tinyxml2::XMLElement& box) {
+      picture.faces.emplace_back(box.DoubleAttribute("left"), box.DoubleAttribute("top"),
+                                 box.DoubleAttribute("width"), box.DoubleAttribute("height"));
+    });
+    pictures.push_back(std::move(picture));
+  });
+}
+
+/// Landmarks of the 68-point scheme: 36 to 47 lie around the eyes, 8 is the chin.
+struct Landmarks {
+  cv::Point2d eyes{0, 0}, chin{0, 0};
+  int found = 0;
+};
+constexpr int kLandmarks = 13;
+
+Landmarks landmarks_of(const tinyxml2::XMLElement& box) {
+  Landmarks marks;
+  for (const auto* part = box.FirstChildElement("part"); part != nullptr;
+       part = part->NextSiblingElement("part")) {
+    const int number = part->IntAttribute("name", -1);
+    const cv::Point2d at(part->DoubleAttribute("x"), part->DoubleAttribute("y"));
+    const bool eye = number >= 36 && number < 48;
+    if (eye) marks.eyes += at / 12.0;
+    if (number == 8) marks.chin = at;
+    marks.found += eye || number == 8;
+  }
+  return marks;
+}
+
+/// Eyes and chin where drawn_face() has them.
+cv::Mat portrait(const cv::Mat& rgb, const Landmarks& marks) {
+  constexpr double kSide = 128.0, kEyes = -0.12, kChin = 0.95;
+  const cv::Point2d down = marks.chin - marks.eyes;
+  const double scale = 0.5 * kSide * (kChin - kEyes) / cv::norm(down);
+  const double turn = std::atan2(-down.x, down.y);
+  const double c = scale * std::cos(turn), s = scale * std::sin(turn);
+  const cv::Point2d eyes(0.5 * kSide, 0.5 * kSide * (1.0 + kEyes));
+  const cv::Matx23d to_portrait(c, s, eyes.x - c * marks.eyes.x - s * marks.eyes.y,  //
+                                -s, c, eyes.y + s * marks.eyes.x - c * marks.eyes.y);
+  cv::Mat upright;
+  cv::warpAffine(rgb, upright, to_portrait, {static_cast<int>(kSide), static_cast<int>(kSide)},
+                 cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return upright;
 }
 
 /// Four numbers with commas between them; nothing when the line is something else.
@@ -102,6 +154,25 @@ Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder) 
   if (pictures.empty())
     return Error{folder + ": expected dlib/testing.xml or bristol/dart0.jpg, found neither"};
   return pictures;
+}
+
+Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double least) {
+  std::vector<cv::Mat> portraits;
+  for (const char* name : {"training", "testing"}) {
+    const fs::path file =
+        fs::path(folder) / "dlib" / (std::string(name) + "_with_face_landmarks.xml");
+    const Status read =
+        each_image(file, [&](const tinyxml2::XMLElement& image, const AnnotatedPicture& picture) {
+          each_box(image, [&](const tinyxml2::XMLElement& box) {
+            const Landmarks marks = landmarks_of(box);
+            if (box.DoubleAttribute("width") >= least && marks.found == kLandmarks)
+              portraits.push_back(portrait(picture.rgb, marks));
+          });
+        });
+    if (!read) return Error{read.error()};
+  }
+  if (portraits.empty()) return Error{folder + ": no face with landmarks is that large"};
+  return portraits;
 }
 
 FaceScore& FaceScore::operator+=(const FaceScore& other) {

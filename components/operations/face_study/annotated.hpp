@@ -24,6 +24,11 @@ struct AnnotatedPicture {
 /// name the file.
 Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder);
 
+/// Faces of photographs as the simulator's people wear them (rendering/core/texture.hpp): upright
+/// by eyes and chin, 128 x 128 pixels. Those of dlib/*_with_face_landmarks.xml below `folder` whose
+/// box is at least `least` pixels wide. Errors name the file.
+Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double least);
+
 /// How a detector did.
 struct FaceScore {
   int faces = 0, found = 0, false_positives = 0, pictures = 0;

@@ -14,8 +14,8 @@
 
 namespace usher::people_detector {
 
-enum class Source : std::uint8_t { kKinect = 0, kRearCamera = 1, kLaser = 2 };
-inline constexpr std::size_t kSources = 3;
+enum class Source : std::uint8_t { kKinect = 0, kRearCamera = 1, kLaser = 2, kFace = 3 };
+inline constexpr std::size_t kSources = 4;
 
 /// One person as one sensor saw it, in odom.
 struct Observation {

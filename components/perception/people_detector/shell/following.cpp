@@ -1,6 +1,7 @@
 #include "perception/people_detector/shell/following.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "wire/conversions.hpp"
@@ -14,10 +15,14 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(250);
+constexpr auto kFacesAge = milliseconds(1000);
 constexpr auto kPeriod = milliseconds(60);  // every third scan of a laser of 50 Hz
 constexpr double kShortest = 0.04;          // [s] in which a motion is measured
 constexpr double kLongest = 0.5;            // [s] after which nobody knows it
 constexpr double kRecently = 1.0;           // [s]
+constexpr double kNape = 0.10;              // [m] from a face to the body's middle
+constexpr double kFaceHeight = 0.93;        // of the person's
+constexpr double kFarthestFace = 20.0;      // [m]
 
 double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
 
@@ -85,6 +90,7 @@ usher_msgs::msg::Person to_message(const Track& track, double now) {
   person.by_kinect(by(Source::kKinect));
   person.by_rear(by(Source::kRearCamera));
   person.by_laser(by(Source::kLaser));
+  person.by_face(by(Source::kFace));
   return person;
 }
 
@@ -98,6 +104,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       ahead_(ahead_parameters(host.parameters())),
       rejected_(host.health().counter("scans: rejected")),
       late_(host.health().counter("images: late")),
+      rejected_faces_(host.health().counter("faces: rejected")),
       transforms_(host) {
   auto legs = LegFinder::make(leg_parameters(host.parameters()));
   if (!legs) host.fault(legs.error());
@@ -110,6 +117,10 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       topics::kScanFiltered,
       {.max_age = kScanAge, .on_loss = "follows whom the cameras see; without them falls silent"},
       [this](const auto&, const auto&) { take_scan(scan_.share()); }, [this] { report(); });
+  faces_ = host.input(
+      topics::kFaces,
+      {.max_age = kFacesAge, .on_loss = "goes on with the other sensors", .optional = true},
+      [this](const auto& message, const auto&) { take_faces(message); });
   people_ = host.output(topics::kPeople);
   person_ahead_ = host.output(topics::kPersonAhead);
 }
@@ -158,6 +169,32 @@ void Following::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time st
   }
   note(stamp, odom_T_base);
   publish();
+}
+
+void Following::take_faces(const usher_msgs::msg::Faces& message) {
+  const runtime::Time stamp = wire::from_message(message.header().stamp());
+  transforms_.when_known(frames::kOdom, frames::kBaseFootprint, stamp,
+                         [this, message, stamp](const auto& pose) {
+                           see_faces(message, stamp, geometry::to_plane(pose));
+                         });
+}
+
+void Following::see_faces(const usher_msgs::msg::Faces& message, runtime::Time stamp,
+                          const geometry::Pose2& odom_T_base) {
+  faced_.clear();
+  for (const auto& face : message.faces()) {
+    const bool sane = face.range() >= 0.0F && face.range() < kFarthestFace &&
+                      std::isfinite(face.bearing()) && face.elevation() > 0.0F &&
+                      face.elevation() < 3.0F;
+    if (!sane) {
+      ++rejected_faces_;
+      continue;
+    }
+    const double range = face.range() + kNape, bearing = face.bearing();
+    faced_.push_back({range * std::cos(bearing), range * std::sin(bearing),
+                      face.elevation() / kFaceHeight, 0.0});
+  }
+  see(Source::kFace, stamp, faced_, odom_T_base, {});
 }
 
 /// map_T_odom, the newest.

@@ -16,8 +16,8 @@
 
 namespace usher::people_detector {
 
-/// What the detector and its stand-in without pixels share: legs in the laser's scan, the tracker,
-/// and what is told of it.
+/// What the detector and its stand-in without pixels share: legs in the laser's scan, faces, the
+/// tracker, and what is told of it.
 class Following {
  public:
   /// `trouble` says what is wrong with the cameras; empty: nothing.
@@ -32,6 +32,9 @@ class Following {
   wire::TransformInput& transforms() { return transforms_; }
 
  private:
+  void take_faces(const usher_msgs::msg::Faces& message);
+  void see_faces(const usher_msgs::msg::Faces& message, runtime::Time stamp,
+                 const geometry::Pose2& odom_T_base);
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
   void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
@@ -57,15 +60,18 @@ class Following {
   std::optional<Tracker> tracker_;
   std::optional<Motion> motion_;
   std::vector<Observation> observations_;
+  std::vector<Sighting> faced_;
   const char* legs_trouble_ = "";
   runtime::Time last_scan_{}, newest_{}, published_{};
   usher_msgs::msg::People message_;
   std::uint64_t& rejected_;
   std::uint64_t& late_;
+  std::uint64_t& rejected_faces_;
 
   wire::TransformInput transforms_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
+  runtime::Input<usher_msgs::msg::Faces> faces_;
   runtime::Output<usher_msgs::msg::People> people_;
   runtime::Output<usher_msgs::msg::PersonAhead> person_ahead_;
 };

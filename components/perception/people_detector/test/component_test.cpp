@@ -117,6 +117,37 @@ TEST_F(Component, FallsSilentWithTheScanAndRefusesABadOne) {
   EXPECT_EQ(host.heartbeat().reason(), "no scan");
 }
 
+/// With a face a person who stands is one, whom the laser alone takes for a chair.
+TEST_F(Component, AFaceMakesSomebodyOfAChair) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  const Point2 person = inverse(map_T_odom * odom_T_base) * standing(0.0);
+  usher_msgs::msg::Faces message;
+  usher_msgs::msg::Face face;
+  face.range(static_cast<float>(person.norm() - 0.1));
+  face.bearing(static_cast<float>(std::atan2(person.y(), person.x())));
+  face.elevation(1.6F);
+  for (int i = 0; i < 10; ++i) {
+    run(0.1, standing);
+    message.header(wire::header(host.now(), frames::kBaseFootprint));
+    message.faces({face});
+    host.publish(topics::kFaces, message);
+  }
+  run(0.1, standing);
+  const auto people = host.last(topics::kPeople);
+  ASSERT_TRUE(people && people->people().size() == 1U);
+  const auto& seen = people->people()[0];
+  EXPECT_LT((map_T_odom * Point2(seen.x(), seen.y()) - standing(0.0)).norm(), 0.15);
+  EXPECT_TRUE(seen.by_face() && seen.by_laser() && !seen.by_kinect());
+  EXPECT_NEAR(seen.height(), 1.6 / 0.93, 0.02);
+  face.range(std::nanf(""));
+  message.header(wire::header(host.now(), frames::kBaseFootprint));
+  message.faces({face});
+  host.publish(topics::kFaces, message);
+  run(0.1, standing);
+  EXPECT_EQ(host.counter("faces: rejected"), 1U);
+}
+
 TEST_F(Component, TellsMovementControlWhoIsInTheRobotsWay) {
   host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
   localize();

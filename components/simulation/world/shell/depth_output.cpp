@@ -1,5 +1,6 @@
 #include "simulation/world/shell/depth_output.hpp"
 
+#include "simulation/rendering/core/face_pictures.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
 
@@ -78,8 +79,9 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
       "Depth cameras: rendered pixels, or the scans of the model that is fitted to them.");
   if (kind == "model") kind_ = Kind::kModel;
   if (kind == "pixels") kind_ = Kind::kPixels;
-  if (host.parameters().flag("color", false, "Whether colour images are painted too."))
-    painter_.emplace(drawn_faces());
+  read_faces();
+  has_rear_ = host.parameters().flag("robot.rear_camera.fitted", true,
+                                     "Whether the robot has a rear camera.");
   kinect_model_.emplace(model_for<DepthScanModelConfig>(kinect_.config()), seed);
   rear_model_.emplace(model_for<DepthScanModelConfig>(rear_.config()), seed + 1);
   kinect_people_model_.emplace(model_for<PeopleModelConfig>(kinect_.config()), seed);
@@ -105,6 +107,22 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   timer_ = host.timer("depth", kTurn, [this](auto) { publish_next(); });
 }
 
+void DepthOutput::read_faces() {
+  const bool color =
+      host_.parameters().flag("color", false, "Whether colour images are painted too.");
+  const std::string folder = host_.parameters().file(
+      "face_pictures", "",
+      "Folder of pictures, one face each, that the people have in turn; empty: drawn faces.");
+  if (!color) return;
+  if (folder.empty()) {
+    painter_.emplace(drawn_faces());
+    return;
+  }
+  auto faces = rendering::load_faces(folder);
+  if (!faces) host_.fault("face_pictures: " + faces.error());
+  painter_.emplace(std::move(faces).value());
+}
+
 void DepthOutput::step(runtime::Time now) {
   kinect_.step(world_->base().truth());
   rear_.step(world_->base().truth());
@@ -115,7 +133,11 @@ void DepthOutput::publish_next() {
   if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
   if (!told_ && kind_ == Kind::kPixels) publish_info();
   told_ = true;
-  kinect_next_ ? publish_kinect() : publish_rear();
+  if (kinect_next_) {
+    publish_kinect();
+  } else if (has_rear_) {
+    publish_rear();
+  }
   kinect_next_ = !kinect_next_;
   ++images_;
 }
@@ -123,6 +145,7 @@ void DepthOutput::publish_next() {
 void DepthOutput::publish_info() {
   kinect_info_.publish(
       wire::to_message(stepped_, kKinectFrame, intrinsics_of(kinect_.config().sensor.lens)));
+  if (!has_rear_) return;
   rear_info_.publish(
       wire::to_message(stepped_, kRearFrame, intrinsics_of(rear_.config().sensor.lens)));
 }

@@ -31,6 +31,7 @@ class DepthOutput {
   enum class Kind { kOff, kModel, kPixels };
   static DepthCameraConfig read_kinect(runtime::Parameters& parameters);
   static DepthCameraConfig read_rear(runtime::Parameters& parameters);
+  void read_faces();
   void publish_next();
   void publish_info();
   void publish_kinect();
@@ -44,6 +45,7 @@ class DepthOutput {
   runtime::Host& host_;
   const World* world_;
   Kind kind_ = Kind::kOff;
+  bool has_rear_ = true;
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
   std::optional<PeopleModel> kinect_people_model_, rear_people_model_;
