@@ -27,10 +27,12 @@ constexpr double kPatience = 60.0;  // [s] until the mission has begun
 constexpr const char* kOperator = "operator";
 constexpr const char* kTurnRate = "0.4";  // [rad/s] R IV-E
 
-/// Who was in view of the exploring robot, and whom it passed by.
+/// Who was in view of the exploring robot, and whom it passed by. Who is in a meeting room is there
+/// already, and nobody is looked for there.
 class MissJudge {
  public:
-  MissJudge(const grid::OccupancyGrid& map, explorer::SeenArea seen) : seen_(std::move(seen)) {
+  MissJudge(const grid::OccupancyGrid& map, std::vector<SiteRoom> rooms, explorer::SeenArea seen)
+      : seen_(std::move(seen)), rooms_(std::move(rooms)) {
     seen_.set_map(map, {});
   }
   std::uint32_t missed() const { return missed_; }
@@ -45,7 +47,7 @@ class MissJudge {
     const auto view = seen_.view(*truth);
     for (const MeetingPerson& person : one.people) {
       const auto at = record.person(person.name);
-      if (!at || !person.comes) continue;
+      if (!at || !person.comes || in_a_room(*at)) continue;
       const auto cell = seen_.geometry().cell_at(*at);
       const bool seen =
           seen_.geometry().contains(cell) &&
@@ -67,7 +69,13 @@ class MissJudge {
   struct Encounter {
     double seen = 0.0, gone = 0.0;  // [s]
   };
+  bool in_a_room(const geometry::Point2& at) const {
+    return std::any_of(rooms_.begin(), rooms_.end(),
+                       [&](const SiteRoom& room) { return room.contains(at); });
+  }
+
   explorer::SeenArea seen_;
+  std::vector<SiteRoom> rooms_;
   std::map<std::string, Encounter> encounters_;
   std::uint32_t missed_ = 0;
 };
@@ -114,9 +122,11 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
     return Error{put.error()};
   const auto map = site_map(deployment);
   if (!map) return Error{map.error()};
+  auto rooms = site_meeting_rooms(deployment);
+  if (!rooms) return Error{rooms.error()};
   auto seen = explorer::SeenArea::create({});
   if (!seen) return Error{seen.error()};
-  MissJudge judge(*map, std::move(seen).value());
+  MissJudge judge(*map, std::move(rooms).value(), std::move(seen).value());
   auto made = LockstepRun::create(deployment, seed);
   if (!made) return Error{made.error()};
   LockstepRun& run = **made;

@@ -34,7 +34,7 @@ struct MeetingRun {
   double seconds = 0.0;                   ///< from the request to the end
   std::string first_room;                 ///< location of the first drive
   std::uint32_t missed = 0;  ///< times that somebody stood in view of the exploring robot for 1 s,
-                             ///< and it went by
+                             ///< and it went by; in a meeting room nobody is missed
   RunRecord::Summary summary;
   double wall = 0.0;       ///< [s]
   double simulated = 0.0;  ///< [s]
