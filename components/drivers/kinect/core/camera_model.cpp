@@ -14,6 +14,7 @@ constexpr double kMostDistortion = 10.0;
 }  // namespace
 
 imaging::Intrinsics kinect_v1() { return {640, 480, 575.8, 575.8, 319.5, 239.5}; }
+imaging::Intrinsics kinect_v1_registered() { return {640, 480, 525.0, 525.0, 319.5, 239.5}; }
 imaging::Intrinsics kinect_v2() { return {512, 424, 365.46, 365.46, 254.88, 205.40}; }
 
 std::uint16_t millimeters_of_raw(std::uint16_t raw) {

@@ -10,6 +10,8 @@ namespace usher::kinect {
 
 /// What the two devices measure with, by default; a calibration of the single device is better.
 imaging::Intrinsics kinect_v1();  ///< depth camera, 640 x 480
+/// The same laid on the color image, as the device's own registration delivers it.
+imaging::Intrinsics kinect_v1_registered();
 imaging::Intrinsics kinect_v2();  ///< depth camera, 512 x 424
 
 /// Radial and tangential distortion: k1, k2, p1, p2, k3 of the usual (Brown) model.

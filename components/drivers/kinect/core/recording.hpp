@@ -41,6 +41,7 @@ class Recording {
   double time(std::size_t index) const { return times_[index]; }
   /// Reads an image; blocks. The error names the file.
   Result<Frame> read(std::size_t index) const;
+  bool has_color(std::size_t index) const { return !colors_[index].empty(); }
   /// The color image of the same moment (at most 20 ms apart): r-<time>-<stamp>.ppm of INDEX.txt,
   /// else the file NAME.ppm beside NAME.pgm. Blocks. The error names the file, or says that none
   /// was recorded.

@@ -11,17 +11,28 @@ using std::chrono::milliseconds;
 
 constexpr auto kTick = milliseconds(5);
 constexpr auto kReading = milliseconds(10);  // of a frame, for simulation
+constexpr auto kAgain = milliseconds(1000);  // a Kinect that is not there is looked for
 
 }  // namespace
 
 void KinectComponent::Job::run() {
   error.clear();
-  const auto frame = recording->read(index);
-  if (!frame) {
-    error = frame.error();
-    return;
-  }
-  if (const auto status = rectifier->rectify(*frame, rectified); !status) error = status.error();
+  color.rgb.clear();
+  Status done = fetch();
+  if (done) done = rectifier->rectify(read, rectified);
+  if (!done) error = done.error();
+}
+
+Status KinectComponent::Job::fetch() {
+  if (live) return live->read(read, color);
+  auto frame = recording->read(index);
+  if (!frame) return Error{frame.error()};
+  read = std::move(frame).value();
+  if (!recording->has_color(index)) return {};
+  auto colors = recording->read_color(index);
+  if (!colors) return Error{colors.error()};
+  color = std::move(colors).value();
+  return {};
 }
 
 KinectComponent::KinectComponent(runtime::Host& host)
@@ -29,13 +40,9 @@ KinectComponent::KinectComponent(runtime::Host& host)
   auto& p = host.parameters();
   const bool v1 = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
                            "Kinect v2 (512 x 424) or v1 (640 x 480).") == "v1";
-  intrinsics_ = v1 ? kinect_v1() : kinect_v2();
-  const auto lens = p.numbers("robot.kinect.intrinsics", "-", {0, 5000}, 0, 4, {},
-                              "fx, fy, cx, cy in pixels; none: the model's usual ones.");
-  if (lens.size() == 4) {
-    intrinsics_.fx = lens[0], intrinsics_.fy = lens[1];
-    intrinsics_.cx = lens[2], intrinsics_.cy = lens[3];
-  }
+  live_ = p.choice("source", {"recording", "live"}, "recording",
+                   "Recorded images, or a Kinect v1 at the USB.") == "live";
+  if (live_ && !v1) host.fault("a live Kinect v2 needs libfreenect2, which Debian does not have");
   const auto given = p.numbers("robot.kinect.distortion", "-", {-10, 10}, 0, 5, {},
                                "k1, k2, p1, p2, k3; none: the recording is rectified already.");
   Distortion distortion{};
@@ -47,18 +54,31 @@ KinectComponent::KinectComponent(runtime::Host& host)
                      "What the recorded values are.") == "raw_11_bit"
                 ? Values::kRaw11
                 : Values::kMillimeters;
+  const bool laid_on_color = live_ && values_ == Values::kMillimeters;
+  intrinsics_ = laid_on_color ? kinect_v1_registered() : v1 ? kinect_v1() : kinect_v2();
+  const auto lens = p.numbers("robot.kinect.intrinsics", "-", {0, 5000}, 0, 4, {},
+                              "fx, fy, cx, cy in pixels; none: the model's usual ones.");
+  if (lens.size() == 4) {
+    intrinsics_.fx = lens[0], intrinsics_.fy = lens[1];
+    intrinsics_.cx = lens[2], intrinsics_.cy = lens[3];
+  }
   repeat_ = p.flag("repeat", true, "Begins anew at the end of the recording.");
   auto rectifier = Rectifier::make(intrinsics_, distortion, mirrored);
   if (!rectifier) host.fault(rectifier.error());
   job_->rectifier.emplace(std::move(rectifier).value());
   timer_ = host.timer("frame", kTick, [this](auto) {
-    if (!job_->recording) open();
+    if (!job_->recording && !job_->live) open();
     start_reading();
     take_frame();
   });
 }
 
 void KinectComponent::open() {
+  if (live_) {
+    job_->live.emplace(values_);
+    publisher_.publish_info(host_.now(), intrinsics_);
+    return;
+  }
   if (folder_.empty()) {
     host_.health().set(HealthState::kDegraded, "no recording is set");
     return;
@@ -74,8 +94,8 @@ void KinectComponent::open() {
 }
 
 void KinectComponent::start_reading() {
-  if (!job_->recording || reading_ || ready_) return;
-  if (job_->index == job_->recording->size()) {
+  if ((!job_->recording && !job_->live) || reading_ || ready_ || host_.now() < again_) return;
+  if (job_->recording && job_->index == job_->recording->size()) {
     if (!repeat_) return;
     job_->index = 0;
     started_ = host_.now();
@@ -92,16 +112,20 @@ void KinectComponent::start_reading() {
 /// Publishes the frame that was read, when its time has come.
 void KinectComponent::take_frame() {
   if (!ready_) return;
-  const double due = job_->recording->time(job_->index);
-  if (runtime::seconds(host_.now() - started_) < due) return;
+  if (job_->recording) {
+    const double due = job_->recording->time(job_->index);
+    if (runtime::seconds(host_.now() - started_) < due) return;
+    ++job_->index;
+  }
   ready_ = false;
-  ++job_->index;
   if (!job_->error.empty()) {
     ++rejected_;
     host_.health().set(HealthState::kDegraded, job_->error);
+    if (live_) again_ = host_.now() + kAgain;
     return;
   }
   publisher_.publish(host_.now(), job_->rectified);
+  if (!job_->color.rgb.empty()) publisher_.publish(host_.now(), job_->color);
   host_.health().set(HealthState::kOk);
 }
 

@@ -5,12 +5,13 @@
 
 #include "drivers/kinect/core/camera_model.hpp"
 #include "drivers/kinect/core/recording.hpp"
+#include "drivers/kinect/device_real/live_kinect.hpp"
 #include "drivers/kinect/shell/camera_publisher.hpp"
 
 namespace usher::kinect {
 
-/// The driver over recorded frames, as they were recorded or round and round. Reading and decoding
-/// happen beside the handlers.
+/// The driver: of a Kinect v1 at the USB, or over recorded frames, as they were recorded or round
+/// and round. Reading and decoding happen beside the handlers.
 class KinectComponent final : public runtime::Component {
  public:
   explicit KinectComponent(runtime::Host& host);
@@ -18,12 +19,15 @@ class KinectComponent final : public runtime::Component {
  private:
   /// What the job beside the handlers works on.
   struct Job {
+    std::optional<LiveKinect> live;
     std::optional<Recording> recording;
     std::optional<Rectifier> rectifier;
     std::size_t index = 0;
-    Frame rectified;
+    Frame read, rectified;
+    ColorFrame color;  ///< empty: none
     std::string error;
     void run();
+    Status fetch();
   };
   void open();
   void start_reading();
@@ -32,11 +36,13 @@ class KinectComponent final : public runtime::Component {
   runtime::Host& host_;
   CameraPublisher publisher_;
   imaging::Intrinsics intrinsics_;
+  bool live_ = false;
   std::string folder_;
   Values values_ = Values::kMillimeters;
   bool repeat_ = true;
   std::shared_ptr<Job> job_ = std::make_shared<Job>();
   runtime::Time started_{};
+  runtime::Time again_{};  ///< not before, after an error of a live one
   bool reading_ = false, ready_ = false;
   std::uint64_t& rejected_;
   runtime::Timer timer_;

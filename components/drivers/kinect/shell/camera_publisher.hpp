@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/kinect/core/device.hpp"
+#include "drivers/kinect/core/recording.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -13,10 +13,12 @@ class CameraPublisher {
 
   void publish_info(runtime::Time stamp, const imaging::Intrinsics& intrinsics);
   void publish(runtime::Time stamp, const Frame& frame);
+  /// Of the same moment, pixel by pixel what the depths lie on.
+  void publish(runtime::Time stamp, const ColorFrame& frame);
 
  private:
   sensor_msgs::msg::Image message_;
-  runtime::Output<sensor_msgs::msg::Image> depth_;
+  runtime::Output<sensor_msgs::msg::Image> depth_, color_;
   runtime::Output<sensor_msgs::msg::CameraInfo> info_;
 };
 

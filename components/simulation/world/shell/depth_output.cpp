@@ -80,6 +80,8 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   if (kind == "model") kind_ = Kind::kModel;
   if (kind == "pixels") kind_ = Kind::kPixels;
   read_faces();
+  every_ = static_cast<int>(host.parameters().integer(
+      "images_every", "-", {1, 30}, 1, "Only every n-th image of the 30 a second is rendered."));
   has_rear_ = host.parameters().flag("robot.rear_camera.fitted", true,
                                      "Whether the robot has a rear camera.");
   kinect_model_.emplace(model_for<DepthScanModelConfig>(kinect_.config()), seed);
@@ -133,11 +135,9 @@ void DepthOutput::publish_next() {
   if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
   if (!told_ && kind_ == Kind::kPixels) publish_info();
   told_ = true;
-  if (kinect_next_) {
-    publish_kinect();
-  } else if (has_rear_) {
-    publish_rear();
-  }
+  const bool rendered = kind_ != Kind::kPixels || images_ / 2 % every_ == 0;
+  if (rendered && kinect_next_) publish_kinect();
+  if (rendered && !kinect_next_ && has_rear_) publish_rear();
   kinect_next_ = !kinect_next_;
   ++images_;
 }

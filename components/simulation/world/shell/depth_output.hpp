@@ -46,6 +46,7 @@ class DepthOutput {
   const World* world_;
   Kind kind_ = Kind::kOff;
   bool has_rear_ = true;
+  int every_ = 1;  ///< only every n-th image is rendered
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
   std::optional<PeopleModel> kinect_people_model_, rear_people_model_;

@@ -1,0 +1,76 @@
+// The driver of a live Kinect v1 against libfreenect's own stand-in for the device (fakenect, which
+// LD_LIBRARY_PATH puts in the library's place): it plays a recording, 11 bits as the sensor
+// measures.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "drivers/kinect/core/camera_model.hpp"
+#include "drivers/kinect/device_real/component.hpp"
+#include "runtime/testing/test_host.hpp"
+#include "support/folder.hpp"
+
+namespace usher::kinect {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kRaw = 800;
+
+/// Ten moments, 33 ms apart.
+void record(const test::Folder& folder) {
+  std::string index;
+  for (int i = 0; i < 10; ++i) {
+    const std::string time = "-1." + std::to_string(100 + 33 * i) + "000-" + std::to_string(i + 1);
+    std::string depth = "P5 640 480 65535\n", color = "P6 640 480 255\n";
+    for (int pixel = 0; pixel < 640 * 480; ++pixel) {
+      depth += static_cast<char>(kRaw & 0xff);
+      depth += static_cast<char>(kRaw >> 8);
+      color += {10, 20, 30};
+    }
+    folder.file("d" + time + ".pgm", depth);
+    folder.file("r" + time + ".ppm", color);
+    index += "d" + time + ".pgm\nr" + time + ".ppm\n";
+  }
+  folder.file("INDEX.txt", index);
+}
+
+bool is_fake() {
+  const char* libraries = std::getenv("LD_LIBRARY_PATH");
+  return libraries != nullptr && std::string(libraries).find("fakenect") != std::string::npos;
+}
+
+TEST(LiveKinectTest, DeliversDepthAndColorOfOneMoment) {
+  if (!is_fake()) GTEST_SKIP() << "ctest puts libfreenect's fakenect in LD_LIBRARY_PATH";
+  const test::Folder folder;
+  record(folder);
+  setenv("FAKENECT_PATH", folder.path().c_str(), 1);
+  runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
+                         "robot.kinect.model: v1\nsource: live\nvalues: raw_11_bit");
+  host.run_for(milliseconds(100));
+  const auto depth = host.last(topics::kKinectDepth);
+  const auto color = host.last(topics::kKinectColor);
+  ASSERT_TRUE(depth && color) << host.heartbeat().reason();
+  EXPECT_EQ(depth->header().stamp().nanosec(), color->header().stamp().nanosec());
+  EXPECT_EQ(depth->width(), 640U);
+  EXPECT_EQ(depth->data()[0] + 256 * depth->data()[1], millimeters_of_raw(kRaw));
+  EXPECT_EQ(color->encoding(), "rgb8");
+  EXPECT_THAT(std::vector<int>(color->data().begin(), color->data().begin() + 3),
+              testing::ElementsAre(10, 20, 30));
+  EXPECT_EQ(host.last(topics::kKinectInfo)->k()[0], kinect_v1().fx);
+  EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
+TEST(LiveKinectTest, SaysWhatIsMissing) {
+  if (is_fake()) GTEST_SKIP() << "against the library itself";
+  runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
+                         "robot.kinect.model: v1\nsource: live");
+  host.run_for(milliseconds(2500));
+  if (host.last(topics::kKinectDepth)) GTEST_SKIP() << "a Kinect is connected";
+  EXPECT_THAT(host.heartbeat().reason(), testing::HasSubstr("no Kinect v1 at the USB"));
+  EXPECT_EQ(host.counter("frames: rejected"), 3U) << "looked for once a second";
+}
+
+}  // namespace
+}  // namespace usher::kinect
