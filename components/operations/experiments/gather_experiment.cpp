@@ -11,6 +11,7 @@
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/meeting_run.hpp"
 #include "operations/experiments/run_jobs.hpp"
+#include "operations/experiments/site_facts.hpp"
 #include "operations/face_study/annotated.hpp"
 
 namespace usher::operations {
@@ -45,7 +46,8 @@ struct Trial {
   std::optional<MeetingRun> run;
   bool failed() const {
     using namespace usher_msgs::msg::MeetingStatus_Constants;
-    return run->status.mission().outcome() != OUTCOME_COMPLETE || run->summary.contacts > 0;
+    return run->status.mission().outcome() != OUTCOME_COMPLETE || run->summary.contacts > 0 ||
+           run->present < run->status.mission().brought();
   }
   /// [s] after the room was found.
   double gathering() const {
@@ -178,9 +180,10 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
              std::to_string(m.invited()) + "," + std::to_string(m.unanswered()) + "," +
              std::to_string(m.lost()) + "," + std::to_string(run.summary.contacts) + "\n";
       if (trial.failed())
-        std::printf("%s: %u brought after %s, %s; contacts %u %s\n%s", name_of(trial).c_str(),
-                    m.brought(), minutes(run.seconds).c_str(), m.reason().c_str(),
-                    run.summary.contacts, run.summary.contact_with.c_str(), run.complaints.c_str());
+        std::printf("%s: %u brought, %u there after %s, %s; contacts %u %s\n%s",
+                    name_of(trial).c_str(), m.brought(), run.present, minutes(run.seconds).c_str(),
+                    m.reason().c_str(), run.summary.contacts, run.summary.contact_with.c_str(),
+                    run.complaints.c_str());
     }
     if (n == 0) continue;
     const Distance& d = kDistances[distance];

@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 namespace state = usher_msgs::msg::MeetingStatus_Constants;
 
 constexpr auto kLook = milliseconds(100);
+constexpr auto kToSeats = std::chrono::seconds(4);
 constexpr double kInView = 1.0;     // [s] somebody is missed who was in view for so long
 constexpr double kOutOfView = 1.0;  // [s] and is no more
 constexpr double kPatience = 60.0;  // [s] until the mission has begun
@@ -126,7 +127,7 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
   if (!rooms) return Error{rooms.error()};
   auto seen = explorer::SeenArea::create({});
   if (!seen) return Error{seen.error()};
-  MissJudge judge(*map, std::move(rooms).value(), std::move(seen).value());
+  MissJudge judge(*map, *rooms, std::move(seen).value());
   auto made = LockstepRun::create(deployment, seed);
   if (!made) return Error{made.error()};
   LockstepRun& run = **made;
@@ -176,6 +177,14 @@ Result<MeetingRun> run_meeting(Deployment deployment, const MeetingCase& one, st
   result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   result.simulated = runtime::seconds(world.elapsed());
   result.missed = judge.missed();
+  world.run_for(kToSeats);
+  const auto room = std::find_if(rooms->begin(), rooms->end(), [&](const SiteRoom& each) {
+    return each.name == result.status.mission().room();
+  });
+  for (const MeetingPerson& person : one.people) {
+    const auto at = run.record().person(person.name);
+    result.present += at && room != rooms->end() && room->contains(*at) ? 1U : 0U;
+  }
   result.summary = run.record().summary();
   result.digest = world.digest();
   result.complaints = run.complaints();

@@ -35,6 +35,7 @@ struct MeetingRun {
   std::string first_room;                 ///< location of the first drive
   std::uint32_t missed = 0;  ///< times that somebody stood in view of the exploring robot for 1 s,
                              ///< and it went by; in a meeting room nobody is missed
+  std::uint32_t present = 0;  ///< who really is in the meeting's room soon after the end
   RunRecord::Summary summary;
   double wall = 0.0;       ///< [s]
   double simulated = 0.0;  ///< [s]

@@ -15,7 +15,10 @@ namespace {
 constexpr std::uint32_t kMostPersons = 100;
 constexpr double kLongestMission = 3600.0;  // [s]
 constexpr double kRefusedRadius = 0.5;      // [m] around a face that was none
-constexpr double kFollowerNear = 2.5;       // [m] from where it should be
+constexpr double kFollowerNear = 2.5;       // [m] from where it should be: a face
+constexpr double kStandsNear = 1.2;         // [m] the same: what the laser sees
+constexpr double kNearest = 0.4;            // [m] nearer is the robot itself
+constexpr std::ptrdiff_t kOfSomebody = 3;   // points of the laser
 constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
 constexpr Time kForever = Time::max();
@@ -49,6 +52,12 @@ bool Meeting::in_a_room(const Point2& point) const {
   return std::any_of(rooms_.begin(), rooms_.end(), [&](const Room& room) {
     return room.contains(point, parameters_.room_margin);
   });
+}
+
+Status Meeting::set_map(const grid::OccupancyGrid& map) {
+  Status taken = ways_.set_map(map, parameters_.passing_room);
+  if (taken) cleared_.set_extent(map.geometry());
+  return taken;
 }
 
 void Meeting::set_places(const std::vector<Place>& places) {
@@ -147,6 +156,7 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
     ++report_.accepted;
     tries_ = 0;
     follower_ = person_;
+    cleared_.forget();
     in_the_room_ = false;
     enter(State::kGuide, Cause::kYes, now);
   } else {
@@ -170,9 +180,9 @@ const Actions& Meeting::step(const Surroundings& robot, Time now) {
   else if (state_ == State::kIdle && !lacks().empty())
     enter(State::kInitialise, Cause::kNotReady, now);
   if (active(state_)) watch_robot(now);
+  if (state_ == State::kGuide) trail_follower();
   follow_motion(now);
   if (state_ == State::kScanRoom) scan(now);
-  if (state_ == State::kGuide) trail_follower();
   pass_time(now);
   return finish(now);
 }
@@ -242,6 +252,7 @@ void Meeting::arrive_in(State state, Time now) {
       departed_ = false;
       break;
     case State::kLookBack:
+      stands_there_ = 0;
       turn_ = Turn::kFace;
       face_to_ = follower_;
       break;
@@ -393,7 +404,10 @@ void Meeting::pass_time(Time now) {
       break;
     case State::kGuide:
       if (!departed_ && passed >= parameters_.tone) depart(now);
-      if (passed >= parameters_.unseen) enter(State::kLookBack, Cause::kUnseen, now);
+      // Who stands in its way is before it, and not behind.
+      if (passed >= parameters_.unseen && departed_ && robot_.pose &&
+          (robot_.pose->position() - departure_).norm() >= kDeparted)
+        enter(State::kLookBack, Cause::kUnseen, now);
       break;
     case State::kLookBack:
       if (!motion_.may_turn(robot_)) since_ = now;  // held meanwhile: it cannot look
@@ -612,12 +626,13 @@ void Meeting::depart(Time now) {
 /// Nobody sees behind this robot: who follows is taken to walk where it drove.
 void Meeting::trail_follower() {
   if (!robot_.pose) return;
-  const Point2 behind = follower_ - robot_.pose->position();
+  const Point2 here = robot_.pose->position();
+  const Point2 behind = follower_ - here;
   if (behind.norm() > parameters_.follows)
-    follower_ = robot_.pose->position() + parameters_.follows * behind.normalized();
+    follower_ = here + parameters_.follows * behind.normalized();
 }
 
-/// Whoever comes along has come; somebody who stands far from there is somebody else.
+/// A face where the follower should be; one far from there is somebody else's.
 void Meeting::look_for_follower(const Faces& all, Time now) {
   Faces some = all;
   std::erase_if(some.faces,
@@ -625,6 +640,26 @@ void Meeting::look_for_follower(const Faces& all, Time now) {
   if (track_.take(some)) face_to_ = track_.face().at;
   if (track_.successive() < parameters_.notice) return;
   follower_ = track_.face().at;
+  has_followed(now);
+}
+
+/// Whoever stands so near that the camera does not see the face is seen by the laser, where nobody
+/// was when the robot came.
+const Actions& Meeting::look(const Point2& from, std::span<const Point2> points, Time now) {
+  actions_ = {};
+  if (state_ == State::kGuide) cleared_.add(from, points);
+  if (state_ != State::kLookBack || !robot_.pose) return finish(now);
+  const Point2 here = robot_.pose->position();
+  const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
+    return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
+           cleared_.was_clear(point);
+  });
+  stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
+  if (stands_there_ >= parameters_.confirmations) has_followed(now);
+  return finish(now);
+}
+
+void Meeting::has_followed(Time now) {
   enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
 }
 

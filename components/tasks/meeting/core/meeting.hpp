@@ -5,12 +5,14 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "foundation/grid/way_lengths.hpp"
 #include "foundation/result/result.hpp"
 #include "interaction/phrases/core/phrase_file.hpp"
+#include "tasks/meeting/core/cleared_space.hpp"
 #include "tasks/meeting/core/faces.hpp"
 #include "tasks/meeting/core/mission.hpp"
 #include "tasks/meeting/core/motion.hpp"
@@ -108,9 +110,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
           std::size_t language, std::uint64_t first_id);
 
   /// An error leaves what was there.
-  Status set_map(const grid::OccupancyGrid& map) {
-    return ways_.set_map(map, parameters_.passing_room);
-  }
+  Status set_map(const grid::OccupancyGrid& map);
   /// Places that the navigator knows, the rooms' among them. Those that are not finite are left
   /// out.
   void set_places(const std::vector<Place>& places);
@@ -122,6 +122,9 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   const Actions& answer(const service::Answer& answer, Time now);
   /// A message of the face detector; faces that are none are left out and counted.
   const Actions& see(Faces faces, Time now);
+  /// What the laser sees now, and from where, in map; heard while the robot guides somebody and
+  /// looks back at him.
+  const Actions& look(const Point2& from, std::span<const Point2> points, Time now);
   /// Time passed, or something else of the robot changed. At 5 Hz or faster.
   const Actions& step(const Surroundings& robot, Time now);
 
@@ -190,6 +193,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void depart(Time now);
   void trail_follower();
   void look_for_follower(const Faces& all, Time now);
+  void has_followed(Time now);
   bool calls(Time now) const;
 
   // Screens.
@@ -232,6 +236,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   int tries_ = 0;
   bool departed_ = false;
   Point2 follower_{0, 0};           ///< [m] in map, where it should be
+  ClearedSpace cleared_;            ///< while it drove with it
+  int stands_there_ = 0;            ///< scans in a row that have somebody where nobody was
   bool in_the_room_ = false;        ///< the guidance is at its end
   std::optional<Time> arrived_at_;  ///< where somebody was seen
 

@@ -1,6 +1,7 @@
 #include "tasks/meeting/shell/component.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -26,6 +27,7 @@ constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr auto kGoalAge = milliseconds(2000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kFacesAge = milliseconds(1000);
+constexpr auto kScanAge = milliseconds(500);
 constexpr auto kPoseAge = milliseconds(500);
 constexpr const char* kMemory = "mission";
 /// Ids of goals must not be those of another client that counts from the same clock.
@@ -173,6 +175,10 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
                        .on_loss = "takes no request; looks on, sees nobody",
                        .optional = true},
                       [this](const auto& message, const auto&) { take_faces(message); });
+  scan_ = host.input(
+      topics::kScanFiltered,
+      {.max_age = kScanAge, .on_loss = "who follows is known by the face alone", .optional = true},
+      [this](const auto&, const auto&) { take_scan(); });
   request_ = host.input(topics::kMeetingRequest, {.optional = true},
                         [this](const auto& request, const auto&) { take_request(request); });
   cancel_ = host.input(
@@ -252,6 +258,29 @@ void MeetingComponent::see(const usher_msgs::msg::Faces& message, const Pose2& p
   }
   act(core_.see(std::move(faces), now()));
   rejected_faces_ = core_.rejected_faces();
+}
+
+void MeetingComponent::take_scan() {
+  if ((core_.state() != State::kGuide && core_.state() != State::kLookBack) || !pose()) return;
+  const auto scan = scan_.share();
+  if (!wire::check(*scan)) {
+    ++rejected_;
+    return;
+  }
+  transforms_.when_known(
+      frames::kMap, scan->header().frame_id(), wire::from_message(scan->header().stamp()),
+      [this, scan](const geometry::Pose3& pose) { look(*scan, geometry::to_plane(pose)); });
+}
+
+void MeetingComponent::look(const sensor_msgs::msg::LaserScan& scan, const Pose2& map_T_scan) {
+  points_.clear();
+  double angle = scan.angle_min();
+  for (const float range : scan.ranges()) {
+    if (range >= scan.range_min() && range <= scan.range_max())
+      points_.push_back(map_T_scan * Point2(range * std::cos(angle), range * std::sin(angle)));
+    angle += static_cast<double>(scan.angle_increment());
+  }
+  act(core_.look(map_T_scan.position(), points_, now()));
 }
 
 void MeetingComponent::take_request(const usher_msgs::msg::MeetingRequest& request) {

@@ -28,6 +28,8 @@ class MeetingComponent final : public runtime::Component {
   void take_locations(const usher_msgs::msg::Locations& message);
   void take_faces(const usher_msgs::msg::Faces& message);
   void see(const usher_msgs::msg::Faces& message, const Pose2& pose);
+  void take_scan();
+  void look(const sensor_msgs::msg::LaserScan& scan, const Pose2& map_T_scan);
   void take_request(const usher_msgs::msg::MeetingRequest& request);
   void take_answer(const usher_msgs::msg::DialogueAnswer& answer);
   void tick();
@@ -48,6 +50,7 @@ class MeetingComponent final : public runtime::Component {
   std::uint64_t& ignored_answers_;
   std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
+  std::vector<Point2> points_;
   std::string remembered_;
   std::optional<Report> left_;  ///< of a mission that a restart ended
 
@@ -59,6 +62,7 @@ class MeetingComponent final : public runtime::Component {
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<usher_msgs::msg::Locations> locations_;
   runtime::Input<usher_msgs::msg::Faces> faces_;
+  runtime::Input<sensor_msgs::msg::LaserScan> scan_;
   runtime::Input<usher_msgs::msg::MeetingRequest> request_;
   runtime::Input<usher_msgs::msg::GoalCancel> cancel_;
   runtime::Input<usher_msgs::msg::DialogueAnswer> answers_;

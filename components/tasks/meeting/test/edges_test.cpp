@@ -67,7 +67,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.wait(1000), r.no_way(); }, State::kExplore}}},
       {"is looked for on the way, and follows",
        {{[](Rig& r) { r.to_guide(); }, State::kGuide},
-        {[](Rig& r) { r.wait(20000); }, State::kLookBack},
+        {[](Rig& r) { r.wait(1500), r.robot.pose->y += 2.5, r.wait(20000); }, State::kLookBack},
         {[](Rig& r) { r.see(1.1, 0.0, 2); }, State::kGuide}}},
       {"does not follow",
        {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},

@@ -224,6 +224,45 @@ TEST(Meeting, LooksBackWhereItsFollowerShouldBeAndGoesOn) {
   EXPECT_NE(rig.taken().find("goal:west"), std::string::npos) << "on to the room";
 }
 
+TEST(Meeting, SeesWithTheLaserWhoStandsWhereNobodyWas) {
+  Rig rig;
+  rig.to_guide();
+  rig.wait(1500);
+  const auto look = [&](const Point2& at, int times) {
+    const std::vector<Point2> points{at, at + Point2(0.03, 0.0), at - Point2(0.03, 0.0)};
+    for (int i = 0; i < times; ++i) {
+      rig.note(rig.meeting.look(rig.robot.pose->position(), points, rig.now()));
+      rig.wait(100);
+    }
+  };
+  const Point2 start = rig.robot.pose->position();
+  std::vector<Point2> ahead;  // a wall 4 m to the left of where it looks
+  for (double x = -1.5; x < 1.5; x += 0.01) ahead.push_back(start + Point2(x, 4.0));
+  for (int i = 0; i < 10; ++i) {
+    rig.note(rig.meeting.look(rig.robot.pose->position(), ahead, rig.now()));
+    rig.robot.pose->y += 0.25;
+    rig.wait(100);
+  }
+  rig.wait(20000);
+  ASSERT_EQ(rig.state(), State::kLookBack);
+  look(start + Point2(1.8, 1.5), 5);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "may have stood there before";
+  look(rig.robot.pose->position() + Point2(0.0, -0.3), 5);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "the robot itself";
+  look(start + Point2(0.1, 1.2), 2);
+  look({kNan, kNan}, 1);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "three scans in a row";
+  look(start + Point2(0.1, 1.2), 3);
+  EXPECT_EQ(rig.state(), State::kGuide);
+}
+
+TEST(Meeting, LooksBackAtNobodyWhoStandsBeforeIt) {
+  Rig rig;
+  rig.to_guide();
+  rig.wait(60000);  // blocked by whom it guides
+  EXPECT_EQ(rig.state(), State::kGuide);
+}
+
 TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
   Rig rig;
   rig.to_look_back(2);
@@ -484,6 +523,12 @@ TEST(Meeting, HasNoDeadEnd) {
         rig.see(0.5 + 3.0 * random.uniform(), 0.8 * random.uniform() - 0.4,
                 1 + static_cast<int>(4 * random.uniform()));
       }
+      if (rig.state() == State::kLookBack && random.uniform() < 0.1) {
+        const Point2 near = rig.robot.pose ? rig.robot.pose->position() : Point2(any(), any());
+        const std::vector<Point2> points(3, near + Point2(any(), any()));
+        for (int k = 0; k < 3; ++k) rig.note(rig.meeting.look(near, points, rig.now()));
+        rig.see(1.1, 0.0, 2);
+      }
       if (random.uniform() < 0.02) rig.see({{any(), any(), any(), any(), any(), any(), any()}});
       const auto& options = rig.meeting.screen().options;
       if (!options.empty() && random.uniform() < 0.1)
@@ -507,7 +552,7 @@ TEST(Meeting, HasNoDeadEnd) {
   std::printf(
       "complete %llu, time over %llu, failed %llu\n", static_cast<unsigned long long>(outcomes[1]),
       static_cast<unsigned long long>(outcomes[2]), static_cast<unsigned long long>(outcomes[3]));
-  EXPECT_GT(outcomes[1], 20U);
+  EXPECT_GT(outcomes[1], 10U);
 }
 
 }  // namespace

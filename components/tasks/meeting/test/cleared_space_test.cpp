@@ -1,0 +1,55 @@
+#include "tasks/meeting/core/cleared_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace usher::meeting {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// 4 x 4 m.
+ClearedSpace room() {
+  ClearedSpace space;
+  space.set_extent(grid::GridGeometry{80, 80, 0.05, -1.0, -1.0});
+  return space;
+}
+/// A fan of beams that end 2 m ahead.
+std::vector<Point2> wall() {
+  std::vector<Point2> points;
+  for (double y = -0.6; y <= 0.6; y += 0.02) points.emplace_back(2.0, y);
+  return points;
+}
+
+TEST(ClearedSpace, IsWhereTwoScansLookedThrough) {
+  ClearedSpace space = room();
+  EXPECT_FALSE(space.was_clear({1.0, 0.0}));
+  space.add({0.0, 0.0}, wall());
+  EXPECT_FALSE(space.was_clear({1.0, 0.0})) << "once may be noise";
+  space.add({0.0, 0.0}, wall());
+  EXPECT_TRUE(space.was_clear({1.0, 0.0}));
+  EXPECT_FALSE(space.was_clear({1.9, 0.0})) << "the wall and what belongs to it";
+  EXPECT_FALSE(space.was_clear({1.0, 0.6})) << "beside the fan";
+  EXPECT_FALSE(space.was_clear({-0.5, 0.0})) << "behind";
+  space.forget();
+  EXPECT_FALSE(space.was_clear({1.0, 0.0}));
+}
+
+TEST(ClearedSpace, BadInputIsNothing) {
+  ClearedSpace nowhere;
+  nowhere.add({0.0, 0.0}, wall());
+  EXPECT_FALSE(nowhere.was_clear({1.0, 0.0})) << "without a map";
+  ClearedSpace space = room();
+  std::vector<Point2> bad{{kNan, 0.0}, {1e300, 1e300}, {0.0, 0.0}};
+  for (double y = 20.0; y < 110.0; y += 0.5) bad.emplace_back(50.0, y);
+  for (int i = 0; i < 3; ++i) space.add({0.0, 0.0}, bad);
+  space.add({kNan, 0.0}, wall());
+  EXPECT_TRUE(space.was_clear({0.7, 0.7})) << "on the way to what lies outside";
+  EXPECT_FALSE(space.was_clear({kNan, 1.0}));
+  EXPECT_FALSE(space.was_clear({1e300, 1.0}));
+}
+
+}  // namespace
+}  // namespace usher::meeting
