@@ -6,11 +6,12 @@
 namespace usher::meeting {
 
 namespace {
-constexpr double kSide = 0.05;    // [m] of a cell
-constexpr double kBefore = 0.2;   // [m] of a point: what it stands for begins there
-constexpr double kLongest = 6.0;  // [m]
-constexpr std::uint32_t kOften = 2;
-constexpr int kAround = 3;  // [cells]
+constexpr double kSide = 0.05;        // [m] of a cell
+constexpr double kBefore = 0.2;       // [m] of a point: what it stands for begins there
+constexpr double kLongest = 6.0;      // [m]
+constexpr std::uint32_t kOften = 3;   // scans
+constexpr std::uint32_t kSeldom = 3;  // times more looked through than met something
+constexpr int kAround = 3;            // [cells]
 
 bool near(const Point2& point) { return point.allFinite() && point.cwiseAbs().maxCoeff() < 1e6; }
 }  // namespace
@@ -30,6 +31,8 @@ void ClearedSpace::add(const Point2& from, std::span<const Point2> points) {
   for (const Point2& point : points) {
     if (!near(point)) continue;
     const Point2 way = point - from;
+    if (const grid::Cell met = cells_.geometry().cell_at(point); cells_.geometry().contains(met))
+      ++cells_.at(met).met;
     const double length = std::min(way.norm(), kLongest) - kBefore;
     if (length <= 0.0) continue;
     const Point2 step = way.normalized() * kSide;
@@ -51,7 +54,8 @@ bool ClearedSpace::was_clear(const Point2& point) const {
   for (int y = -kAround; y <= kAround; ++y) {
     for (int x = -kAround; x <= kAround; ++x) {
       if (x * x + y * y > kAround * kAround) continue;
-      if (cells_.value_or({middle.x + x, middle.y + y}, {}).scans < kOften) return false;
+      const Looked looked = cells_.value_or({middle.x + x, middle.y + y}, {});
+      if (looked.scans < kOften || kSeldom * looked.met > looked.scans) return false;
     }
   }
   return true;

@@ -21,14 +21,15 @@ class ClearedSpace {
   /// A scan from a place in map: up to 0.2 m before each of its points nothing stood. Points that
   /// are not finite are nothing. O(points x length), no allocation.
   void add(const Point2& from, std::span<const Point2> points);
-  /// Two scans or more looked through there and through what lies 0.15 m around it: no wall is so
-  /// thin.
+  /// Three scans or more looked through there and through what lies 0.15 m around it (no wall is so
+  /// thin), and few met something there.
   bool was_clear(const Point2& point) const;
 
  private:
   struct Looked {
     std::uint32_t last = 0;   ///< number of the last scan that looked through; 0: none did
     std::uint32_t scans = 0;  ///< so many did
+    std::uint32_t met = 0;    ///< points that lay there
   };
   grid::Grid<Looked> cells_;
   std::uint32_t scan_ = 0;

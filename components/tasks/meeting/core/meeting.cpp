@@ -15,10 +15,11 @@ namespace {
 constexpr std::uint32_t kMostPersons = 100;
 constexpr double kLongestMission = 3600.0;  // [s]
 constexpr double kRefusedRadius = 0.5;      // [m] around a face that was none
-constexpr double kFollowerNear = 2.5;       // [m] from where it should be: a face
-constexpr double kStandsNear = 1.2;         // [m] the same: what the laser sees
+constexpr double kFollowerNear = 1.6;       // [m] from where it should be: a face
+constexpr double kStandsNear = 1.4;         // [m] the same: what the laser sees
 constexpr double kNearest = 0.4;            // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;   // points of the laser
+constexpr double kInside = 0.5;             // [m] from its walls somebody is in a room
 constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
 constexpr Time kForever = Time::max();
@@ -56,7 +57,9 @@ bool Meeting::in_a_room(const Point2& point) const {
 
 Status Meeting::set_map(const grid::OccupancyGrid& map) {
   Status taken = ways_.set_map(map, parameters_.passing_room);
-  if (taken) cleared_.set_extent(map.geometry());
+  if (!taken) return taken;
+  cleared_.set_extent(map.geometry());
+  turning_.build(map, parameters_.turning_room);
   return taken;
 }
 
@@ -404,13 +407,17 @@ void Meeting::pass_time(Time now) {
       break;
     case State::kGuide:
       if (!departed_ && passed >= parameters_.tone) depart(now);
-      // Who stands in its way is before it, and not behind.
+      // Who stands in its way is before it, and not behind; in the room the place is good enough.
       if (passed >= parameters_.unseen && departed_ && robot_.pose &&
-          (robot_.pose->position() - departure_).norm() >= kDeparted)
+          (robot_.pose->position() - departure_).norm() >= kDeparted &&
+          turning_.free(robot_.pose->position())) {
+        in_the_room_ = is_there();
         enter(State::kLookBack, Cause::kUnseen, now);
+      }
       break;
     case State::kLookBack:
       if (!motion_.may_turn(robot_)) since_ = now;  // held meanwhile: it cannot look
+      if (calls(now) && track_.successive() == 0) turn_ = Turn::kSearch;
       if (now - since_ < parameters_.look_back) break;
       ++report_.lost;
       look_for_people(Cause::kLost, now);
@@ -537,8 +544,8 @@ void Meeting::check(const Faces& all, Time now) {
   if (!track_.take(some)) return;
   face_seen_ = now;
   face_to_ = track_.face().at;
-  const bool centered =
-      state_ == State::kCheckRoom || std::abs(track_.face().bearing) <= parameters_.centered;
+  const bool centered = state_ == State::kCheckRoom || !may_face() ||
+                        std::abs(track_.face().bearing) <= parameters_.centered;
   if (centered && track_.successive() >= parameters_.confirmations) confirm(now);
 }
 
@@ -637,7 +644,10 @@ void Meeting::look_for_follower(const Faces& all, Time now) {
   Faces some = all;
   std::erase_if(some.faces,
                 [&](const Face& face) { return (face.at - follower_).norm() > kFollowerNear; });
-  if (track_.take(some)) face_to_ = track_.face().at;
+  if (track_.take(some)) {
+    turn_ = Turn::kFace;
+    face_to_ = track_.face().at;
+  }
   if (track_.successive() < parameters_.notice) return;
   follower_ = track_.face().at;
   has_followed(now);
@@ -651,8 +661,8 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
   if (state_ != State::kLookBack || !robot_.pose) return finish(now);
   const Point2 here = robot_.pose->position();
   const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
-    return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
-           cleared_.was_clear(point);
+    const double near = in_the_room_ ? (point - here).norm() : (point - follower_).norm();
+    return (point - here).norm() > kNearest && near < kStandsNear && cleared_.was_clear(point);
   });
   stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
   if (stands_there_ >= parameters_.confirmations) has_followed(now);
@@ -661,6 +671,13 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
 
 void Meeting::has_followed(Time now) {
   enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
+}
+
+/// In the room of this meeting.
+bool Meeting::is_there() const {
+  return std::any_of(rooms_.begin(), rooms_.end(), [&](const Room& room) {
+    return room.area.name == report_.room && room.contains(robot_.pose->position(), -kInside);
+  });
 }
 
 bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }

@@ -32,8 +32,8 @@ struct Parameters {
   Time check_most = std::chrono::seconds(10);    ///< a face that is not confirmed by then is none
   Time nobody = std::chrono::seconds(2);         ///< nobody seen where somebody was: has gone
   Time unseen = std::chrono::seconds(20);        ///< who is guided is looked for after that
-  Time look_back = std::chrono::seconds(20);     ///< and is lost when not seen for so long
-  Time call = std::chrono::seconds(9);           ///< after that it calls
+  Time look_back = std::chrono::seconds(27);     ///< and is lost when not seen for so long
+  Time call = std::chrono::seconds(9);           ///< after that it calls and looks all round
   Time scan_most = std::chrono::seconds(60);     ///< a turn takes at most so long
   Time recovery = std::chrono::seconds(60);      ///< a robot that may not move is waited for
   Time ask_again = std::chrono::seconds(180);    ///< who did not answer, or could not be reached
@@ -49,6 +49,7 @@ struct Parameters {
   double seen_again = 1.5;     ///< [m] from where somebody was seen on the way
   double room_margin = 0.2;    ///< [m] a face in the wall of a room is one in the room
   double passing_room = 0.27;  ///< [m] from obstacles, for lengths of ways
+  double turning_room = 0.38;  ///< [m] from obstacles, to turn round on the way
   int most_failures = 5;       ///< explorations that fail in a row end the mission
 };
 
@@ -130,8 +131,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
 
   State state() const { return state_; }
   /// Where the robot shall turn now, while it stands; the bearing [rad] of kFace, the sign of
-  /// kSearch.
-  Turn turn() const { return turn_ == Turn::kFace && !robot_.pose ? Turn::kStand : turn_; }
+  /// kSearch. Toward a face only where it has the room on the map.
+  Turn turn() const { return turn_ == Turn::kFace && !may_face() ? Turn::kStand : turn_; }
   double bearing() const;
   const service::Screen& screen() const { return screen_; }
   /// Of the drive that goes on, or was the last.
@@ -195,6 +196,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void look_for_follower(const Faces& all, Time now);
   void has_followed(Time now);
   bool calls(Time now) const;
+  bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
+  bool is_there() const;
 
   // Screens.
   service::Screen build(Time now) const;
@@ -206,6 +209,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   phrases::PhraseBook phrases_;
   std::size_t language_;
   grid::WayLengths ways_;
+  grid::FreeSpace turning_;  ///< where it may turn round
   Motion motion_;
   People people_;
   Surroundings robot_;

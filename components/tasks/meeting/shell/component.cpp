@@ -104,9 +104,13 @@ Parameters MeetingComponent::read_parameters(runtime::Host& host) {
   number("room_margin", "m", {0, 1}, c.room_margin, "A face so near to a room is one in the room.");
   count("most_failures", c.most_failures,
         "So many explorations that fail in a row end the mission.");
+  const auto footprint = wire::read_footprint(host);
   c.passing_room =
-      wire::read_footprint(host).inscribed_radius() +
+      footprint.inscribed_radius() +
       p.number("clearance", "m", {0, 1}, 0.08, "Around the outline, for lengths of ways.");
+  c.turning_room =
+      footprint.circumscribed_radius() +
+      p.number("turning_clearance", "m", {0, 1}, 0.08, "Around the outline, to turn on the way.");
   return c;
 }
 

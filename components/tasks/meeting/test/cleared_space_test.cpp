@@ -23,11 +23,12 @@ std::vector<Point2> wall() {
   return points;
 }
 
-TEST(ClearedSpace, IsWhereTwoScansLookedThrough) {
+TEST(ClearedSpace, IsWhereThreeScansLookedThrough) {
   ClearedSpace space = room();
   EXPECT_FALSE(space.was_clear({1.0, 0.0}));
   space.add({0.0, 0.0}, wall());
-  EXPECT_FALSE(space.was_clear({1.0, 0.0})) << "once may be noise";
+  space.add({0.0, 0.0}, wall());
+  EXPECT_FALSE(space.was_clear({1.0, 0.0})) << "twice may be noise";
   space.add({0.0, 0.0}, wall());
   EXPECT_TRUE(space.was_clear({1.0, 0.0}));
   EXPECT_FALSE(space.was_clear({1.9, 0.0})) << "the wall and what belongs to it";
@@ -35,6 +36,16 @@ TEST(ClearedSpace, IsWhereTwoScansLookedThrough) {
   EXPECT_FALSE(space.was_clear({-0.5, 0.0})) << "behind";
   space.forget();
   EXPECT_FALSE(space.was_clear({1.0, 0.0}));
+}
+
+TEST(ClearedSpace, IsNoWallThatFewBeamsMissed) {
+  ClearedSpace space = room();
+  std::vector<Point2> beyond;
+  for (const Point2& point : wall()) beyond.emplace_back(1.4 * point);
+  for (int i = 0; i < 100; ++i) space.add({0.0, 0.0}, wall());
+  for (int i = 0; i < 5; ++i) space.add({0.0, 0.0}, beyond);
+  EXPECT_FALSE(space.was_clear({2.0, 0.0}));
+  EXPECT_TRUE(space.was_clear({1.0, 0.0}));
 }
 
 TEST(ClearedSpace, BadInputIsNothing) {

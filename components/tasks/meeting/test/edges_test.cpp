@@ -71,7 +71,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.see(1.1, 0.0, 2); }, State::kGuide}}},
       {"does not follow",
        {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},
-        {[](Rig& r) { r.wait(19900); }, State::kLookBack},
+        {[](Rig& r) { r.wait(26900); }, State::kLookBack},
         {[](Rig& r) { r.wait(200); }, State::kExplore}}},
       {"leaves when it is looked for",
        {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},

@@ -263,6 +263,21 @@ TEST(Meeting, LooksBackAtNobodyWhoStandsBeforeIt) {
   EXPECT_EQ(rig.state(), State::kGuide);
 }
 
+TEST(Meeting, LooksBackWhereItHasRoomToTurn) {
+  Rig rig;
+  grid::OccupancyGrid map = hall();
+  for (int x = 0; x < 200; ++x) map.at({x, 69}) = map.at({x, 75}) = grid::kOccupied;
+  ASSERT_TRUE(rig.meeting.set_map(map).ok());
+  rig.to_guide();
+  rig.wait(1500);
+  rig.robot.pose->y = 7.2;  // in a passage of 0.6 m
+  rig.wait(30000);
+  EXPECT_EQ(rig.state(), State::kGuide);
+  rig.robot.pose->y = 8.0;
+  rig.wait(100);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+}
+
 TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
   Rig rig;
   rig.to_look_back(2);
@@ -270,7 +285,8 @@ TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
   rig.said.clear();
   rig.wait(9000);
   EXPECT_EQ(rig.said, std::vector<std::string>{"Are you there? I am waiting for you."});
-  rig.wait(11100);
+  EXPECT_EQ(rig.meeting.turn(), Turn::kSearch) << "all round";
+  rig.wait(18400);
   EXPECT_EQ(rig.state(), State::kExplore);
   EXPECT_EQ(rig.meeting.report().lost, 1U);
   EXPECT_EQ(rig.meeting.report().brought, 0U);
@@ -283,7 +299,7 @@ TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
   rig.wait(40000);
   EXPECT_EQ(rig.state(), State::kLookBack);
   rig.robot.supervisor = Supervisor::kAvailable;
-  rig.wait(19000);
+  rig.wait(26000);
   EXPECT_EQ(rig.state(), State::kLookBack);
   rig.see(1.1, 0.0, 2);
   EXPECT_EQ(rig.state(), State::kArrived);
@@ -411,6 +427,19 @@ TEST(Meeting, IsNotReadyAndSaysWhy) {
             "no location 'west'");
   Rig bare({}, {});
   EXPECT_EQ(bare.meeting.screen().status, "the site has no meeting rooms");
+}
+
+TEST(Meeting, TurnsToNobodyWhereItHasNoRoomAndTakesTheFaceAsItIs) {
+  Rig rig;
+  grid::OccupancyGrid map = hall();
+  for (int x = 0; x < 200; ++x) map.at({x, 53}) = grid::kOccupied;
+  ASSERT_TRUE(rig.meeting.set_map(map).ok());
+  rig.to_explore();  // 0.3 m from the wall
+  rig.see(2.5, 0.35, 2);
+  ASSERT_EQ(rig.state(), State::kCheckFace);
+  EXPECT_EQ(rig.meeting.turn(), Turn::kStand);
+  rig.see(2.5, 0.35, 1);
+  EXPECT_EQ(rig.state(), State::kApproach);
 }
 
 TEST(Meeting, TurnsToNobodyWithoutAPose) {
