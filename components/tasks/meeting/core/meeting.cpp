@@ -16,6 +16,7 @@ constexpr std::uint32_t kMostPersons = 100;
 constexpr double kLongestMission = 3600.0;  // [s]
 constexpr double kRefusedRadius = 0.5;      // [m] around a face that was none
 constexpr double kFollowerNear = 1.6;       // [m] from where it should be: a face
+constexpr double kFollowerInRoom = 1.9;     // [m] from the robot: farther sit those who came before
 constexpr double kStandsNear = 1.4;         // [m] the same: what the laser sees
 constexpr double kNearest = 0.4;            // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;   // points of the laser
@@ -642,8 +643,10 @@ void Meeting::trail_follower() {
 /// A face where the follower should be; one far from there is somebody else's.
 void Meeting::look_for_follower(const Faces& all, Time now) {
   Faces some = all;
-  std::erase_if(some.faces,
-                [&](const Face& face) { return (face.at - follower_).norm() > kFollowerNear; });
+  std::erase_if(some.faces, [&](const Face& face) {
+    return (face.at - follower_).norm() > kFollowerNear ||
+           (in_the_room_ && face.range > kFollowerInRoom);
+  });
   if (track_.take(some)) {
     turn_ = Turn::kFace;
     face_to_ = track_.face().at;
