@@ -33,8 +33,8 @@ struct MeetingRun {
   usher_msgs::msg::MeetingStatus status;  ///< the last one
   double seconds = 0.0;                   ///< from the request to the end
   std::string first_room;                 ///< location of the first drive
-  std::uint32_t missed = 0;  ///< times that somebody stood in view of the exploring robot for 1 s,
-                             ///< and it went by; in a meeting room nobody is missed
+  std::uint32_t missed = 0;   ///< times that somebody stood in view of the exploring robot for 1 s,
+                              ///< and it went by; in a meeting room nobody is missed
   std::uint32_t present = 0;  ///< who really is in the meeting's room soon after the end
   RunRecord::Summary summary;
   double wall = 0.0;       ///< [s]

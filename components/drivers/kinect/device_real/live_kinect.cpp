@@ -10,7 +10,7 @@ namespace usher::kinect {
 
 namespace {
 constexpr int kWidth = 640, kHeight = 480;
-constexpr std::size_t kPixels = 640 * 480;
+constexpr std::size_t kPixels = std::size_t{640} * 480;
 }  // namespace
 
 LiveKinect::~LiveKinect() { freenect_sync_stop(); }

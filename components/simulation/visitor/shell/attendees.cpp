@@ -26,8 +26,7 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
   const double stray = p.number("stray_time", "s", {0, 600}, 12.0, "How long who strays follows.");
   const auto invite = [&](const char* name, const char* text, Manner manner) {
     std::istringstream list(p.text(name, "", text));
-    for (std::string one; list >> one;)
-      people_.push_back({one, Attendee(manner, reading, stray)});
+    for (std::string one; list >> one;) people_.push_back({one, Attendee(manner, reading, stray)});
   };
   invite("come", "Names of people in the world who come along.", Manner::kComes);
   invite("decline", "Names of those who do not.", Manner::kDeclines);
