@@ -25,6 +25,7 @@ struct Surroundings {
   std::optional<GoalReport> navigation;   ///< nothing: the navigator is silent
   std::optional<GoalReport> exploration;  ///< nothing: the explorer is silent
   bool sees = false;                      ///< the face detector is heard
+  std::vector<std::string> team{};        ///< robots of the fleet that are heard
 };
 
 /// Where the navigator shall go.
