@@ -61,15 +61,17 @@ struct Trial {
   /// What all robots did.
   usher_msgs::msg::MeetingReport mission() const {
     auto all = run->status.mission();
+    std::uint32_t checked = 0, refused = 0, invited = 0, unanswered = 0, lost = 0;
     for (const auto& [robot, status] : run->statuses) {
       const auto& m = status.mission();
-      if (m == run->status.mission()) continue;
-      all.faces_checked(all.faces_checked() + m.faces_checked());
-      all.faces_refused(all.faces_refused() + m.faces_refused());
-      all.invited(all.invited() + m.invited());
-      all.unanswered(all.unanswered() + m.unanswered());
-      all.lost(all.lost() + m.lost());
+      checked += m.faces_checked(), refused += m.faces_refused();
+      invited += m.invited(), unanswered += m.unanswered(), lost += m.lost();
     }
+    all.faces_checked(checked);
+    all.faces_refused(refused);
+    all.invited(invited);
+    all.unanswered(unanswered);
+    all.lost(lost);
     return all;
   }
 };

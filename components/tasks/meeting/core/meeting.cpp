@@ -606,6 +606,7 @@ void Meeting::remember_seen(const Faces& all, Time now) {
 
 void Meeting::follow_team(Time now) {
   team_.hear(robot_.team);
+  team_.place(robot_.team_at);
   if (state_ == State::kIdle) join(now);
   divide_work();
   if (!active(state_)) return;
@@ -758,10 +759,14 @@ void Meeting::look_for_people(Cause cause, Time now) {
   visit_if_remembered(now);
 }
 
+/// The nearest of those to whom no other robot that has time is nearer.
 void Meeting::visit_if_remembered(Time now) {
-  if (people_.remembered().empty() || !robot_.pose || !may_invite()) return;
+  if (!robot_.pose || !may_invite()) return;
+  std::vector<Point2> all = people_.remembered();
+  std::erase_if(all,
+                [&](const Point2& at) { return team_.is_nearer(at, robot_.pose->position()); });
+  if (all.empty()) return;
   ways_.start_from(robot_.pose->position());
-  const auto& all = people_.remembered();
   const Point2 nearest = *std::min_element(
       all.begin(), all.end(),
       [&](const Point2& a, const Point2& b) { return ways_.way_to(a) < ways_.way_to(b); });

@@ -157,6 +157,17 @@ bool Team::settled_by_another(const Point2& at, Time now) const {
   });
 }
 
+bool Team::is_nearer(const Point2& to, const Point2& own) const {
+  const double own_way = (to - own).norm();
+  const auto all = mates();
+  return std::any_of(all.begin(), all.end(), [&](const TeamReport* mate) {
+    const auto at = places_.find(mate->robot);
+    if (mate->state != State::kExplore || at == places_.end()) return false;
+    const double way = (to - at->second).norm();
+    return std::tie(way, mate->robot) < std::tie(own_way, robot_);
+  });
+}
+
 bool Team::visited_by_another(const Point2& at, Time now) const {
   const auto all = mates();
   const bool claimed = std::any_of(all.begin(), all.end(), [&](const TeamReport* mate) {

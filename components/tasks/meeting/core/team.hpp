@@ -82,6 +82,8 @@ class Team {
   /// Who is heard now. Others are taken for lost: what they claimed is free, what they found out
   /// stays.
   void hear(std::vector<std::string> robots) { heard_ = std::move(robots); }
+  /// Where robots are now [m] in map, as far as that is known.
+  void place(std::map<std::string, Point2> robots) { places_ = std::move(robots); }
 
   /// A mission that somebody is on, other than the one that is named, for a robot that has none.
   const TeamReport* call(std::uint64_t except_id, const std::string& except_client) const;
@@ -101,6 +103,8 @@ class Team {
   /// Whether another robot goes to somebody seen there, or has been: who only stands beside the way
   /// of a guide is still to be visited.
   bool visited_by_another(const Point2& at, Time now) const;
+  /// Whether another robot that explores, and so has time, is nearer than `own` to a point.
+  bool is_nearer(const Point2& to, const Point2& own) const;
   /// Whether another robot has found out that nobody there need be asked.
   bool settled_by_another(const Point2& at, Time now) const;
   /// Whether another robot is nearer to asking the person there than this one, that is in `state`.
@@ -133,6 +137,7 @@ class Team {
   std::uint64_t id_ = 0;
   std::string client_;
   std::vector<std::string> heard_;
+  std::map<std::string, Point2> places_;
   std::map<std::string, TeamReport> newest_;                          // of the others
   std::map<std::pair<std::string, std::uint64_t>, Encounter> facts_;  // by robot and id
 };

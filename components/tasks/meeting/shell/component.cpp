@@ -276,6 +276,10 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
                       .optional = true,
                       .each_writer = true},
                      [this](const auto& message, const auto&) { take_team(message); });
+  places_ = host.input(topics::kFleetLook, {.max_age = kTeamAge,
+                                            .on_loss = "does not know who is nearer to somebody",
+                                            .optional = true,
+                                            .each_writer = true});
   team_told_ = host.output(topics::kFleetMeeting);
   share_ = host.output(topics::kExploreShare);
   told_ = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
@@ -425,6 +429,9 @@ Surroundings MeetingComponent::surroundings() const {
   s.sees = faces_.fresh() != nullptr;
   for (const auto* told : team_.fresh_of_each()) {
     if (!left_) s.team.push_back(told->robot());
+  }
+  for (const auto* place : places_.fresh_of_each()) {
+    if (const Point2 at(place->x(), place->y()); at.allFinite()) s.team_at[place->robot()] = at;
   }
   return s;
 }

@@ -75,6 +75,7 @@ class MeetingComponent final : public runtime::Component {
   runtime::Output<usher_msgs::msg::FaceTarget> target_;
   runtime::Output<usher_msgs::msg::GoalCancel> cancel_drive_, cancel_exploration_;
   runtime::Input<usher_msgs::msg::FleetMeeting> team_;
+  runtime::Input<usher_msgs::msg::FleetLook> places_;
   runtime::Output<usher_msgs::msg::FleetMeeting> team_told_;
   runtime::Output<usher_msgs::msg::ExploreShare> share_;
   wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;

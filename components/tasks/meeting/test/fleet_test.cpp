@@ -35,9 +35,12 @@ class Fleet : public testing::Test {
   void run(int ms) {
     for (int at = 0; at < ms; at += 500) {
       iris.rig.robot.team = otto.rig.robot.team = {};
+      iris.rig.robot.team_at = otto.rig.robot.team_at = {};
       if (linked) {
         iris.rig.robot.team = {"otto"};
         otto.rig.robot.team = {"iris"};
+        iris.rig.robot.team_at = otto.rig.robot.team_at = {
+            {"iris", iris.rig.robot.pose->position()}, {"otto", otto.rig.robot.pose->position()}};
         say(iris, otto);
         say(otto, iris);
       }
@@ -102,8 +105,8 @@ TEST_F(Fleet, RemembersWhomItSeesUntilThereIsARoom) {
   seeks.rig.arrive();
   seeks.rig.turn_round();
   run(1000);
-  EXPECT_EQ(explores.rig.state() == State::kRevisit || seeks.rig.state() == State::kRevisit, true);
-  EXPECT_NE(explores.rig.state(), seeks.rig.state()) << "one of them goes there";
+  EXPECT_EQ(explores.rig.state(), State::kRevisit);
+  EXPECT_EQ(seeks.rig.state(), State::kExplore) << "it is farther from there";
 }
 
 TEST_F(Fleet, SeeksTheRoomItselfWhenTheOtherFallsSilent) {

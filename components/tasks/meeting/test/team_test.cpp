@@ -171,6 +171,17 @@ TEST_F(TeamOfOtto, LeavesTheRoomToWhoIsNearer) {
   EXPECT_FALSE(otto.room_is_sought(5.0));
 }
 
+TEST_F(TeamOfOtto, LeavesASightingToWhoIsNearerAndHasTime) {
+  otto.take(says(State::kExplore));
+  EXPECT_FALSE(otto.is_nearer({5, 1}, {8, 1})) << "nobody knows where iris is";
+  otto.place({{"iris", Point2(4, 1)}});
+  EXPECT_TRUE(otto.is_nearer({5, 1}, {8, 1}));
+  EXPECT_FALSE(otto.is_nearer({5, 1}, {5.5, 1}));
+  EXPECT_TRUE(otto.is_nearer({5, 1}, {6, 1})) << "iris comes first";
+  otto.take(says(State::kGuide));
+  EXPECT_FALSE(otto.is_nearer({5, 1}, {8, 1}));
+}
+
 TEST_F(TeamOfOtto, DividesTheWorkTheSameWayOnAllRobots) {
   const Point2 of_iris(1, 2), of_otto(8, 3);
   TeamReport report = says();
