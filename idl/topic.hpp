@@ -16,6 +16,10 @@ struct Qos {
 /// The four kinds of topics . Writers are always reliable; readers of streams choose best effort.
 enum class Kind { kStream, kCommand, kLatched, kEvent };
 
+/// Who shares a topic: the components of one robot, in its own DDS domain, or all robots of a
+/// fleet, in a second one.
+enum class Scope { kRobot, kFleet };
+
 /// One topic of the catalogue: its name on the wire is "rt/" + name, its type the message's ROS 2
 /// type name.
 template <class M>
@@ -28,6 +32,7 @@ struct Topic {
   std::string_view
       writers;  ///< component types that may write it, separated by spaces; "*" = every component
   std::string_view text;
+  Scope scope = Scope::kRobot;
 
   constexpr Qos writer_qos() const { return {true, kind == Kind::kLatched, depth}; }
   constexpr Qos reader_qos() const {

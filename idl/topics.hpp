@@ -288,6 +288,9 @@ inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kExploreCoverage{
     "explorer",
     "For viewers: 100 not seen in this round, 0 seen, -1 not to be looked at; frame map."};
 
+inline constexpr Topic<usher_msgs::msg::ExploreShare> kExploreShare{
+    "explore/share", Kind::kLatched, 1, 0, "meeting", "What to look at first; the rest after it."};
+
 // --- Dialogue
 inline constexpr Topic<usher_msgs::msg::DialogueScreen> kDialogueScreen{
     "dialogue/screen", Kind::kLatched, 1, 0, "guide meeting", "What the visitor sees and hears."};
@@ -314,6 +317,19 @@ inline constexpr Topic<usher_msgs::msg::MeetingStatus> kMeetingStatus{
     "meeting/status", Kind::kLatched, 1, 2, "meeting", "What the assistant does, who is there."};
 inline constexpr Topic<usher_msgs::msg::MeetingReport> kMeetingReport{
     "meeting/report", Kind::kEvent, 32, 0, "meeting", "A mission is over."};
+
+// --- Fleet
+inline constexpr Topic<usher_msgs::msg::FleetMeeting> kFleetMeeting{
+    "fleet/meeting",
+    Kind::kLatched,
+    1,
+    2,
+    "meeting",
+    "What each robot of a fleet knows of the meeting that they call together.",
+    Scope::kFleet};
+inline constexpr Topic<usher_msgs::msg::FleetLook> kFleetLook{
+    "fleet/look", Kind::kStream, 1, 10, "explorer", "Where each robot of a fleet looks now.",
+    Scope::kFleet};
 
 // --- Simulated devices
 inline constexpr Topic<usher_sim_msgs::msg::BaseCommand> kSimBaseCommand{
@@ -379,6 +395,31 @@ inline constexpr Topic<usher_sim_msgs::msg::GroundTruth> kSimGroundTruth{
 inline constexpr Topic<usher_sim_msgs::msg::PersonGoal> kSimPersonGoal{
     "sim/person/goal", Kind::kEvent, 32, 0, "attendees visitor", "Moves a scripted person."};
 
+inline constexpr Topic<usher_sim_msgs::msg::FleetBody> kFleetSimBody{
+    "fleet/sim/body",
+    Kind::kStream,
+    1,
+    100,
+    "world",
+    "Where each simulated robot of a fleet is, for the worlds of the others.",
+    Scope::kFleet};
+inline constexpr Topic<usher_sim_msgs::msg::FleetPeople> kFleetSimPeople{
+    "fleet/sim/people",
+    Kind::kStream,
+    1,
+    100,
+    "world",
+    "Everybody, from the one world of a fleet that moves them.",
+    Scope::kFleet};
+inline constexpr Topic<usher_sim_msgs::msg::FleetPersonGoal> kFleetSimPersonGoal{
+    "fleet/sim/person/goal",
+    Kind::kEvent,
+    32,
+    0,
+    "world",
+    "Moves a scripted person, to the world that moves them.",
+    Scope::kFleet};
+
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
     kBattery, kTf, kTfStatic, kKinectDepth, kKinectColor, kKinectInfo, kRearDepth, kRearInfo,
@@ -395,6 +436,7 @@ inline constexpr auto kAll = std::tie(
     kMeetingCancel, kMeetingStatus, kMeetingReport, kSimKinectFaces, kSimBaseCommand,
     kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth,
     kSimKinectColor, kSimKinectInfo, kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow,
-    kSimRearScan, kSimKinectPeople, kSimRearPeople, kSimGroundTruth, kSimPersonGoal);
+    kSimRearScan, kSimKinectPeople, kSimRearPeople, kSimGroundTruth, kSimPersonGoal, kExploreShare,
+    kFleetMeeting, kFleetLook, kFleetSimBody, kFleetSimPeople, kFleetSimPersonGoal);
 
 }  // namespace usher::topics

@@ -91,13 +91,19 @@ class DdsStage final : public Stage {
     std::istringstream lines(role.parameters);
     for (std::string line; std::getline(lines, line);) text << "  " << line << '\n';
     auto file = runtime::parse_parameter_file(text.str(), role.name + ".yaml").value();
-    file.domain = test_domain();
+    // Each robot has its domain; the one without a fleet is where outsiders and the judge are.
+    const std::string full = role.robot.empty() ? role.name : role.robot + "/" + role.name;
+    if (!role.robot.empty() && robots_.count(role.robot) == 0)
+      robots_.emplace(role.robot, static_cast<std::uint32_t>(robots_.size() + 2));
+    file.robot = role.robot;
+    file.fleet_domain = test_domain(1);
+    file.domain = test_domain(role.robot.empty() ? 0 : robots_.at(role.robot));
     file.run_directory = run_directory_;
     file.clock_anchor = kAnchor;
-    actors_.erase(role.name);
-    makers_[role.name] = std::move(make);
-    auto& actor = actors_[role.name];
-    actor = std::make_unique<Actor>(std::move(file), makers_[role.name]);
+    actors_.erase(full);
+    makers_[full] = std::move(make);
+    auto& actor = actors_[full];
+    actor = std::make_unique<Actor>(std::move(file), makers_[full]);
     return actor->status();
   }
   void stop(const std::string& name) override { actors_.at(name)->stop(); }
@@ -190,6 +196,7 @@ class DdsStage final : public Stage {
   }
 
   const std::filesystem::path run_directory_;
+  std::map<std::string, std::uint32_t> robots_;  ///< of a fleet, with the offset of their domain
   std::mutex mutex_;
   std::map<std::string, std::vector<usher_msgs::msg::Heartbeat>> heartbeats_;
   std::unique_ptr<Observer> observer_;

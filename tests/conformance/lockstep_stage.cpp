@@ -14,6 +14,7 @@ runtime::ParameterFile file_of(const Stage::Role& role) {
   std::ostringstream text;
   text << "component: subject\nname: " << role.name << "\nhost: " << role.host
        << "\nseed: " << role.seed << "\ncritical: " << (role.critical ? "true" : "false")
+       << (role.robot.empty() ? "" : "\nrobot: " + role.robot + "\nfleet_domain: 1")
        << "\nparameters:\n";
   std::istringstream lines(role.parameters);
   for (std::string line; std::getline(lines, line);) text << "  " << line << '\n';
@@ -29,14 +30,15 @@ class LockstepStage final : public Stage {
   }
 
   Status start(const Role& role, Make make) override {
-    if (makers_.count(role.name) > 0) {
-      makers_[role.name] = std::move(make);
-      world_.start(role.name);
-      return world_.running(role.name) ? Status() : Status(Error{world_.fault_reason(role.name)});
+    const std::string full = role.robot.empty() ? role.name : role.robot + "/" + role.name;
+    if (makers_.count(full) > 0) {
+      makers_[full] = std::move(make);
+      world_.start(full);
+      return world_.running(full) ? Status() : Status(Error{world_.fault_reason(full)});
     }
-    makers_[role.name] = std::move(make);
-    runtime::ComponentFactory factory{
-        "subject", [this, name = role.name](Host& host) { return makers_.at(name)(host); }};
+    makers_[full] = std::move(make);
+    runtime::ComponentFactory factory{"subject",
+                                      [this, full](Host& host) { return makers_.at(full)(host); }};
     return world_.add(std::move(factory), file_of(role), {role.work, std::nullopt});
   }
   void stop(const std::string& name) override {

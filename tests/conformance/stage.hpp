@@ -39,6 +39,7 @@ class Stage {
     bool critical = false;
     Duration work{};         ///< how long work() takes inside a handler
     std::string parameters;  ///< YAML below `parameters:`
+    std::string robot{};     ///< in a fleet; the component is called "robot/name" then
   };
   using Make = std::function<std::unique_ptr<Component>(Host&)>;
 

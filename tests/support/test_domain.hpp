@@ -8,13 +8,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace usher {
 
-/// A DDS domain that no other test program of this machine uses while this process lives: tests run
-/// side by side and must not meet. Its UDP ports lie below those that the kernel hands out.
-inline std::uint32_t test_domain() {
-  static const std::uint32_t domain = [] {
+/// DDS domains that no other test program of this machine uses while this process lives: tests run
+/// side by side and must not meet. Their UDP ports lie below those that the kernel hands out. One
+/// thread only.
+inline std::uint32_t test_domain(std::size_t which = 0) {
+  static std::vector<std::uint32_t> domains;
+  const auto claim = [] {
     const std::string prefix = std::filesystem::temp_directory_path() / "usher-test-domain-";
     for (std::uint32_t i = 0; i < 100; ++i) {
       const std::uint32_t candidate = 1 + (static_cast<std::uint32_t>(::getpid()) + i) % 100;
@@ -26,8 +29,9 @@ inline std::uint32_t test_domain() {
     }
     assert(!"100 test programs hold a DDS domain");
     return 0U;
-  }();
-  return domain;
+  };
+  while (domains.size() <= which) domains.push_back(claim());
+  return domains[which];
 }
 
 }  // namespace usher

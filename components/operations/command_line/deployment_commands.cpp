@@ -70,7 +70,8 @@ int components(const std::string& path) {
   return 0;
 }
 
-/// The data flow in the language of graphviz: components as boxes in their hosts, topics as edges.
+/// The data flow in the language of graphviz: components as boxes in their hosts, topics as edges,
+/// those of a fleet dashed: they come from the other robots too.
 int graph(const std::string& path) {
   const auto installation = Installation::of_this_program();
   const auto contracts = read_contracts(installation.contracts);
@@ -101,8 +102,10 @@ int graph(const std::string& path) {
           input.topic == topics::kTfStatic.name)
         continue;
       for (const auto& writer : writers[input.topic]) {
+        const bool of_fleet = input.scope == topics::Scope::kFleet;
+        if (of_fleet && manifest->fleet.robot.empty()) continue;
         std::cout << "  \"" << writer << "\" -> \"" << component.name << "\" [label=\""
-                  << input.topic << "\"];\n";
+                  << input.topic << "\"" << (of_fleet ? ", style=dashed" : "") << "];\n";
       }
     }
   }

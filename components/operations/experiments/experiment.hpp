@@ -16,6 +16,7 @@ struct ExperimentOptions {
   std::string out;            ///< folder for result.json, table.md, *.csv, *.png; exists
   std::string data;           ///< folder with real data, empty = none
   std::string only;           ///< one of the experiment's inputs; empty = all
+  int robots = 1;             ///< that work together, for those that know fleets
   double minutes = 0.0;       ///< how long, for those that run for a time; 0 = their own
   std::uint32_t domain = 44;  ///< of those with real processes
   Installation installation;

@@ -40,9 +40,13 @@ const std::array<Distance, 4> kDistances{
      {"long", 715.0, 2.0, "10", {{{10.2, 10.4}, {10.2, 1.5}, {13.4, 9.2}, {10.2, 5.2}}}},
      {"stray", 0.0, 0.0, "", {{{7.3, 4.6}, {4.4, 2.0}, {7.4, 2.0}, {6.8, 9.8}}}, true}}};
 
+/// Beside the first robot.
+const geometry::Pose2 kSecondStart{2.35, 1.5, 1.5708};
+
 struct Trial {
   std::size_t distance = 0;
   std::uint64_t seed = 0;
+  int robots = 1;
   std::optional<MeetingRun> run;
   bool failed() const {
     using namespace usher_msgs::msg::MeetingStatus_Constants;
@@ -59,11 +63,28 @@ struct Trial {
     const double room = run->status.mission().room_time();
     return run->seconds - (std::isfinite(room) ? room : 0.0);
   }
+  /// What all robots did.
+  usher_msgs::msg::MeetingReport mission() const {
+    auto all = run->status.mission();
+    std::uint32_t checked = 0, refused = 0, invited = 0, unanswered = 0, lost = 0;
+    for (const auto& [robot, status] : run->statuses) {
+      const auto& m = status.mission();
+      checked += m.faces_checked(), refused += m.faces_refused();
+      invited += m.invited(), unanswered += m.unanswered(), lost += m.lost();
+    }
+    all.faces_checked(checked);
+    all.faces_refused(refused);
+    all.invited(invited);
+    all.unanswered(unanswered);
+    all.lost(lost);
+    return all;
+  }
 };
 
 MeetingCase case_of(const Trial& trial, double limit) {
   MeetingCase one;
   one.start = {1.5, 1.5, 1.5708};
+  if (trial.robots > 1) one.starts_of_others = {kSecondStart};
   one.persons = kPersons;
   one.longest = limit;
   Random random(stream_seed(trial.seed, "gather"));
@@ -80,8 +101,14 @@ MeetingCase case_of(const Trial& trial, double limit) {
   return one;
 }
 
+/// "short", or "short_2_robots".
+std::string row_of(std::size_t distance, int robots) {
+  const std::string name = kDistances[distance].name;
+  return robots == 1 ? name : name + "_" + std::to_string(robots) + "_robots";
+}
+
 std::string name_of(const Trial& trial) {
-  return std::string(kDistances[trial.distance].name) + "_" + std::to_string(trial.seed);
+  return row_of(trial.distance, trial.robots) + "_" + std::to_string(trial.seed);
 }
 
 /// With the detector's fitted model, or with pixels and the detector itself.
@@ -123,15 +150,25 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
   const int seeds = options.seeds > 0 ? options.seeds : setup.seeds;
   const std::string only = setup.pixels && options.only.empty() ? "medium" : options.only;
   const double limit = options.minutes > 0.0 ? 60.0 * options.minutes : kLimit;
+  std::vector<Deployment> fleet;
+  if (options.robots > 1) {
+    if (setup.pixels) return Error{"a fleet is simulated without pixels"};
+    auto read = meeting_fleet(options);
+    if (!read) return Error{read.error()};
+    fleet = std::move(read).value();
+  }
   std::vector<Trial> trials;
-  for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
-    if (!only.empty() && only != kDistances[distance].name) continue;
-    for (int seed = 1; seed <= seeds; ++seed)
-      trials.push_back({distance, static_cast<std::uint64_t>(seed), {}});
+  for (int robots = 1; robots <= options.robots; ++robots) {
+    for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
+      if (!only.empty() && only != kDistances[distance].name) continue;
+      for (int seed = 1; seed <= seeds; ++seed)
+        trials.push_back({distance, static_cast<std::uint64_t>(seed), robots, {}});
+    }
   }
   if (trials.empty()) return Error{"no such distance: " + only};
   const auto run_one = [&](const Trial& trial, const std::string& name, const std::string& title) {
-    return run_meeting(*deployment, case_of(trial, limit), trial.seed, options.out, name, title);
+    return run_meeting(trial.robots > 1 ? fleet : std::vector{*deployment}, case_of(trial, limit),
+                       trial.seed, options.out, name, title);
   };
   const Status done =
       run_jobs(trials.size(), "meetings", [&](std::size_t i) -> Result<std::string> {
@@ -159,13 +196,16 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
       "unanswered,lost,contacts\n";
   double failed_all = 0.0, worst = 0.0, missed_all = 0.0, contacts = 0.0, wall = 0.0,
          simulated = 0.0;
-  for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
+  for (std::size_t row = 0; row < kDistances.size() * static_cast<std::size_t>(options.robots);
+       ++row) {
+    const std::size_t distance = row / static_cast<std::size_t>(options.robots);
+    const int robots = 1 + static_cast<int>(row % static_cast<std::size_t>(options.robots));
     double n = 0, failed = 0, mean = 0, longest = 0, total = 0, missed = 0, checked = 0,
-           refused = 0, lost = 0, wrong = 0, touched = 0;
+           refused = 0, lost = 0, wrong = 0, touched = 0, met = 0, grazed = 0, whole = 0;
     for (const Trial& trial : trials) {
-      if (trial.distance != distance) continue;
+      if (trial.distance != distance || trial.robots != robots) continue;
       const MeetingRun& run = *trial.run;
-      const auto& m = run.status.mission();
+      const auto m = trial.mission();
       ++n;
       failed += trial.failed() ? 1 : 0;
       mean += trial.gathering();
@@ -177,8 +217,11 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
       lost += m.lost();
       wrong += trial.wrongly_counted();
       touched += run.summary.contacts;
-      wall += run.wall, simulated += run.simulated;
-      csv += std::string(kDistances[distance].name) + "," + std::to_string(trial.seed) + "," +
+      met += run.robot_contacts;
+      grazed += run.robot_touches;
+      whole += run.seconds;
+      if (robots == 1) wall += run.wall, simulated += run.simulated;
+      csv += row_of(distance, robots) + "," + std::to_string(trial.seed) + "," +
              (trial.failed() ? "1" : "0") + format(",%.1f", m.room_time()) +
              format(",%.1f", trial.gathering()) + format(",%.1f,", run.seconds) +
              std::to_string(m.brought()) + "," + std::to_string(run.missed) + "," +
@@ -194,12 +237,18 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
     if (n == 0) continue;
     const Distance& d = kDistances[distance];
     const bool published = d.published > 0.0;
-    table.add({d.name, format("%.0f", n), format("%.0f", failed), d.published_failed,
-               minutes(mean / n), published ? minutes(d.published) : "", minutes(longest),
-               minutes(total), format("%.2f", missed / n),
+    table.add({row_of(distance, robots), format("%.0f", n), format("%.0f", failed),
+               d.published_failed, minutes(mean / n), published ? minutes(d.published) : "",
+               minutes(longest), minutes(total), format("%.2f", missed / n),
                published ? format("%.1f", d.published_missed) : "", format("%.1f", checked / n),
                format("%.1f", refused / n), format("%.0f", lost), format("%.0f", touched)});
-    const std::string name = d.name;
+    const std::string name = row_of(distance, robots);
+    if (options.robots > 1) sheet.metrics["mean_with_room_s_" + name] = whole / n;
+    if (robots > 1) {
+      sheet.metrics["between_robots_contacts_" + name] = met;
+      sheet.targets["between_robots_contacts_" + name] = {Bound::kAtMost, 0.0};
+      sheet.metrics["between_robots_touches_" + name] = grazed;
+    }
     sheet.metrics["mean_s_" + name] = mean / n;
     sheet.metrics["missed_" + name] = missed / n;
     if (published) {
@@ -227,6 +276,11 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
   const auto again = run_one(trials.front(), name_of(trials.front()), "");
   if (!again) return Error{again.error()};
   sheet.flags["digest_repeats"] = again->digest == trials.front().run->digest;
+  if (options.robots > 1) {
+    const auto together = run_one(trials.back(), name_of(trials.back()), "");
+    if (!together) return Error{together.error()};
+    sheet.flags["digest_repeats_of_a_fleet"] = together->digest == trials.back().run->digest;
+  }
   std::printf("%s\n", table.text().c_str());
   Status saved = write_file(options.out + "/meetings.md", table.markdown());
   if (saved) saved = write_file(options.out + "/meetings.csv", csv);

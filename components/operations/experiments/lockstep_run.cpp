@@ -4,19 +4,25 @@
 
 namespace usher::operations {
 
-LockstepRun::LockstepRun(std::uint64_t seed) : world_({.network = {.seed = seed}}) {
-  const auto take = [this](const auto& message, const auto&) { record_.take(message); };
-  world_.observe(topics::kSimGroundTruth, take);
-  world_.observe(topics::kAmclPose, take);
-  world_.observe(topics::kPlan, take);
-  world_.observe(topics::kNavigateStatus, take);
-  world_.observe(topics::kDialogueScreen, take);
-  world_.observe(topics::kCmdVelNavigation, take);
-  world_.observe(topics::kDriveCommand, take);
-  world_.observe(topics::kWhiskers, take);
-  world_.observe(topics::kHeartbeat, [this](const auto& message, const auto&) {
-    heartbeats_[message.component_name()] = message;
-  });
+LockstepRun::LockstepRun(std::uint64_t seed) : world_({.network = {.seed = seed}}) {}
+
+void LockstepRun::watch(const std::string& robot) {
+  RunRecord& record = records_[robot];
+  const auto take = [&record](const auto& message, const auto&) { record.take(message); };
+  world_.observe(topics::kSimGroundTruth, take, robot);
+  world_.observe(topics::kAmclPose, take, robot);
+  world_.observe(topics::kPlan, take, robot);
+  world_.observe(topics::kNavigateStatus, take, robot);
+  world_.observe(topics::kDialogueScreen, take, robot);
+  world_.observe(topics::kCmdVelNavigation, take, robot);
+  world_.observe(topics::kDriveCommand, take, robot);
+  world_.observe(topics::kWhiskers, take, robot);
+  world_.observe(
+      topics::kHeartbeat,
+      [this, robot](const auto& message, const auto&) {
+        heartbeats_[(robot.empty() ? "" : robot + "/") + message.component_name()] = message;
+      },
+      robot);
 }
 
 std::string LockstepRun::complaints() const {
@@ -32,24 +38,37 @@ std::string LockstepRun::complaints() const {
   return out;
 }
 
-Result<std::unique_ptr<LockstepRun>> LockstepRun::create(const Deployment& deployment,
-                                                         std::uint64_t seed) {
+Status LockstepRun::add(const Deployment& deployment, std::uint64_t seed) {
   if (!deployment.findings.empty()) {
     const auto& first = deployment.findings.front();
     return Error{to_string(first.verdict) + ": " + first.text + " (" + first.origin + ")"};
   }
-  std::unique_ptr<LockstepRun> run(new LockstepRun(seed));
+  watch(deployment.manifest.fleet.robot);
   for (auto file : deployment.files) {
     const auto* factory = find_component(file.component);
     if (factory == nullptr) return Error{"unknown component type '" + file.component + "'"};
     file.seed = seed;
     // A restarted process is back within a moment, as under the launcher.
     const std::string name = file.name;
-    if (auto status = run->world_.add(*factory, std::move(file),
-                                      {.restart_after = std::chrono::milliseconds(100)});
+    if (auto status = world_.add(*factory, std::move(file),
+                                 {.restart_after = std::chrono::milliseconds(100)});
         !status) {
       return Error{name + ": " + status.error()};
     }
+  }
+  return {};
+}
+
+Result<std::unique_ptr<LockstepRun>> LockstepRun::create(const Deployment& deployment,
+                                                         std::uint64_t seed) {
+  return create(std::span(&deployment, 1), seed);
+}
+
+Result<std::unique_ptr<LockstepRun>> LockstepRun::create(std::span<const Deployment> fleet,
+                                                         std::uint64_t seed) {
+  std::unique_ptr<LockstepRun> run(new LockstepRun(seed));
+  for (const Deployment& deployment : fleet) {
+    if (Status added = run->add(deployment, seed); !added) return Error{added.error()};
   }
   return run;
 }

@@ -135,6 +135,10 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
   app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--robots", options.robots,
+                 "gather: also with so many robots that call the meeting together")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain of experiments with real processes")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();

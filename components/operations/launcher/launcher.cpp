@@ -50,6 +50,13 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+void write_addresses(const char* key, const std::vector<std::string>& all, std::ostream& out) {
+  if (all.empty()) return;
+  out << key << ": [";
+  for (std::size_t i = 0; i < all.size(); ++i) out << (i > 0 ? ", " : "") << quoted(all[i]);
+  out << "]\n";
+}
+
 /// The same for all components of this host, so that their stamps agree.
 std::int64_t clock_anchor() {
   timespec wall{};
@@ -162,14 +169,13 @@ std::string to_yaml(const runtime::ParameterFile& file) {
       << "\ncritical: " << (file.critical ? "true" : "false")
       << "\nclock_anchor: " << file.clock_anchor << "\n";
   if (!file.run_directory.empty()) out << "run_directory: " << quoted(file.run_directory) << "\n";
-  if (!file.peers.empty()) {
-    out << "peers: [";
-    for (std::size_t i = 0; i < file.peers.size(); ++i)
-      out << (i > 0 ? ", " : "") << quoted(file.peers[i]);
-    out << "]\n";
-  }
+  write_addresses("peers", file.peers, out);
   if (!file.discovery_server.empty()) out << "discovery_server: " << file.discovery_server << "\n";
   if (!file.identity.empty()) out << "identity: " << quoted(file.identity) << "\n";
+  if (!file.robot.empty()) {
+    out << "robot: " << file.robot << "\nfleet_domain: " << file.fleet_domain << "\n";
+    write_addresses("fleet_peers", file.fleet_peers, out);
+  }
   out << (file.values.empty() ? "parameters: {}\n" : "parameters:\n");
   for (const auto& value : file.values) {
     out << "  " << value.name << ": {value: " << value.yaml << ", origin: " << quoted(value.origin)

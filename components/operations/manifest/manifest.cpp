@@ -255,6 +255,28 @@ ManifestDiscoveryServer read_discovery_server(const Tree& tree, std::vector<Find
   return server;
 }
 
+ManifestFleet read_fleet(const Tree& tree, const Manifest& manifest,
+                         std::vector<Finding>& findings) {
+  ManifestFleet fleet;
+  Fields fields(tree, "the fleet", findings);
+  fields.text("robot", fleet.robot);
+  fields.number("domain", std::uint32_t{0}, std::uint32_t{232}, fleet.domain);
+  fields.texts("peers", fleet.peers);
+  if (const Tree* start = fields.take("start"); start != nullptr)
+    fleet.start = {"site.initial_pose", start->yaml(), start->origin};
+  fields.finish();
+  if (tree.find("domain") == nullptr) fields.missing("domain");
+  if (fleet.robot.empty()) fields.missing("robot");
+  if (!fleet.robot.empty()) judge_name(fleet.robot, "a robot's", tree.origin, findings);
+  for (const auto& peer : fleet.peers)
+    judge_address("a peer of the fleet", peer, tree.origin, findings);
+  if (fleet.domain == manifest.domain)
+    fields.wrong(
+        "its domain must not be the robot's own, both are " + std::to_string(manifest.domain),
+        tree);
+  return fleet;
+}
+
 /// A path is meant from the folder of the file that gives it.
 std::string beside(const std::string& origin, const std::string& path) {
   const std::filesystem::path file = origin.substr(0, origin.rfind(':'));
@@ -331,6 +353,7 @@ Result<Manifest> read_manifest(const std::string& path,
   std::string keys;
   fields.text("security", keys);
   const Tree* server = fields.map("discovery_server");
+  const Tree* fleet = fields.map("fleet");
   const Tree* hosts = fields.map("hosts", true);
   const Tree* components = fields.map("components", true);
   fields.finish();
@@ -356,6 +379,7 @@ Result<Manifest> read_manifest(const std::string& path,
     manifest.discovery_server = read_discovery_server(*server, manifest.findings);
     judge_host("the discovery server", manifest.discovery_server.host, server->origin, manifest);
   }
+  if (fleet != nullptr) manifest.fleet = read_fleet(*fleet, manifest, manifest.findings);
   return manifest;
 }
 

@@ -49,6 +49,15 @@ struct ManifestDiscoveryServer {
   std::string locator() const { return host.empty() ? "" : address + ":" + std::to_string(port); }
 };
 
+/// Robots that work together share a second DDS domain.
+struct ManifestFleet {
+  std::string robot;         ///< name of this one, unique in the fleet; empty = belongs to none
+  std::uint32_t domain = 0;  ///< other than that of each robot
+  std::vector<std::string> peers;  ///< addresses of the others, where multicast does not reach
+  runtime::ParameterValue start;   ///< where this one starts, instead of the site's `initial_pose`;
+                                   ///< empty = there
+};
+
 /// What runs where. Read strictly: an unknown key, a missing host or a wrong type is a finding.
 struct Manifest {
   std::string path;
@@ -61,6 +70,7 @@ struct Manifest {
                              ///< elsewhere than the last one
   std::string keys;          ///< folder of `usher keys` (`security:`); empty = without security
   ManifestDiscoveryServer discovery_server;
+  ManifestFleet fleet;
   std::vector<ManifestHost> hosts;
   std::vector<ManifestComponent> components;
   std::map<std::string, std::string> origins;  ///< of the keys that are given

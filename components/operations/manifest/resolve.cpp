@@ -116,6 +116,10 @@ class Resolver {
         site_(read_layer(manifest.site_file, "site", deployment.findings)) {}
 
   void run(const std::vector<Override>& overrides) {
+    if (!manifest_.fleet.robot.empty() && !manifest_.keys.empty())
+      found(Verdict::kWrongValue,
+            "a fleet and security do not go together: nothing on the fleet's domain is signed",
+            manifest_.origin_of("fleet"));
     for (const auto& component : manifest_.components) resolve(component, overrides);
     report_unknown_facts(robot_);
     report_unknown_facts(site_);
@@ -145,6 +149,9 @@ class Resolver {
     if (const auto* host = manifest_.host(component.host)) file.peers = host->peers;
     file.discovery_server = manifest_.discovery_server.locator();
     if (!manifest_.keys.empty()) file.identity = manifest_.keys + "/" + component.name;
+    file.robot = manifest_.fleet.robot;
+    file.fleet_domain = manifest_.fleet.domain;
+    file.fleet_peers = manifest_.fleet.peers;
 
     const auto contract = contracts_.find(component.type);
     if (contract == contracts_.end()) {
@@ -234,6 +241,9 @@ class Resolver {
   ParameterValue value_of(const Contract::Parameter& parameter,
                           std::map<std::string, ParameterValue>& own) {
     if (parameter.name.starts_with("manifest.")) return derived(parameter.name, manifest_);
+    if (const auto& start = manifest_.fleet.start;
+        !start.yaml.empty() && parameter.name == start.name)
+      return start;
     if (!owner_of(parameter.name).empty()) {
       const Layer& layer = parameter.name.starts_with("robot.") ? robot_ : site_;
       const auto value = layer.shared.find(parameter.name);

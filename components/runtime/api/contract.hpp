@@ -17,11 +17,13 @@ struct Contract {
     Qos qos;
     double rate_hz = 0.0, max_age = 0.0;
     bool optional = false;
+    topics::Scope scope = topics::Scope::kRobot;
   };
   struct OutputPort {
     std::string topic, type;
     Qos qos;
     double rate_hz = 0.0;
+    topics::Scope scope = topics::Scope::kRobot;
   };
   struct Parameter {
     std::string name, unit, fallback, text;

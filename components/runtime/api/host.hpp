@@ -36,7 +36,8 @@ struct InputOptions {
   const char* on_loss =
       "";  ///< what the component does when it is stale or was never there; required with max_age
   int depth = 0;  ///< zero = the catalogue's; a topic with many writers needs depth per writer
-  bool optional = false;  ///< the component works without any writer
+  bool optional = false;     ///< the component works without any writer
+  bool each_writer = false;  ///< for Input::fresh_of_each
 };
 
 /// A byte stream to a device (serial line, TCP). Owned by the host.
@@ -77,7 +78,8 @@ struct StreamHandlers {
 /// before timers, by time and then by declaration; a latched input gets a living writer's last
 /// value however late it starts; timers do not drift and count what they skipped; outputs leave
 /// when the handler returns without a fault, all or none; after a fault no handler runs; random
-/// streams have names and are seeded from (world seed, component, stream).
+/// streams have names and are seeded from (world seed, robot of a fleet, component, stream); topics
+/// of a fleet reach every robot of it, all others stay with one robot.
 class Host {
  public:
   virtual ~Host() = default;
@@ -86,6 +88,9 @@ class Host {
   /// Name of this component in the manifest, and of the host that it runs on.
   virtual const std::string& name() const = 0;
   virtual const std::string& host_name() const = 0;
+  /// Name of this robot in its fleet. Empty: it belongs to none, and ports of fleet topics neither
+  /// give nor take anything, nor grow stale.
+  virtual const std::string& robot_name() const = 0;
   virtual Parameters& parameters() = 0;
   virtual Health& health() = 0;
   virtual Random random(std::string_view stream) = 0;
@@ -106,6 +111,8 @@ class Host {
     declaration.max_age = options.max_age;
     declaration.on_loss = options.on_loss;
     declaration.optional = options.optional;
+    declaration.each_writer = options.each_writer;
+    declaration.scope = topic.scope;
     if (handler) {
       declaration.on_sample = [handler = std::move(handler)](const InputPort::Sample& sample) {
         handler(*static_cast<const Message*>(sample.message.get()), sample.info);
@@ -118,8 +125,9 @@ class Host {
   /// A topic that this component writes.
   template <class Message>
   Output<Message> output(const topics::Topic<Message>& topic) {
-    return Output<Message>(&declare(OutputDeclaration{
-        std::string(topic.name), &message_type<Message>(), topic.writer_qos(), topic.rate_hz}));
+    return Output<Message>(
+        &declare(OutputDeclaration{std::string(topic.name), &message_type<Message>(),
+                                   topic.writer_qos(), topic.rate_hz, topic.scope}));
   }
 
   /// A periodic timer, first due one period after the start; a period of zero makes a stopped
@@ -144,7 +152,7 @@ class Host {
   virtual Result<Bytes> kept(const std::string& key) = 0;
 
   /// Every writer of the topic that discovery sees, of whatever type and quality, before its first
-  /// sample; also its end.
+  /// sample; also its end. Topics of the own robot only.
   virtual void watch_writers(const std::string& topic,
                              std::function<void(const WriterInfo&)> handler) = 0;
 

@@ -53,6 +53,9 @@ class InputPort {
   virtual const Sample* latest() const = 0;  ///< null before the first
   virtual const Sample* fresh()
       const = 0;  ///< null when there is none or it is older than declared
+  /// The newest of each writer that is not older than declared, in the order of their arrival;
+  /// where the input was declared with `each_writer`.
+  virtual std::vector<const Sample*> fresh_of_each() const = 0;
   virtual std::vector<WriterInfo> writers() const = 0;
   virtual std::uint64_t lost() const = 0;  ///< overwritten in the mailbox before a handler saw them
   virtual std::uint64_t rejected() const = 0;  ///< not a message of this type
@@ -77,10 +80,12 @@ struct InputDeclaration {
   std::string topic;
   const MessageType* type = nullptr;
   Qos qos;
-  Duration max_age{};     ///< zero = never stale
-  std::string on_loss;    ///< what the component does then, for contract and documentation
-  double rate_hz = 0.0;   ///< nominal rate of the topic, 0 = on occasion
-  bool optional = false;  ///< `usher check` accepts a manifest without a writer
+  Duration max_age{};        ///< zero = never stale
+  std::string on_loss;       ///< what the component does then, for contract and documentation
+  double rate_hz = 0.0;      ///< nominal rate of the topic, 0 = on occasion
+  bool optional = false;     ///< `usher check` accepts a manifest without a writer
+  bool each_writer = false;  ///< the newest sample of each writer is kept
+  topics::Scope scope = topics::Scope::kRobot;
   std::function<void(const InputPort::Sample&)> on_sample;
   std::function<void()> on_stale;
 };
@@ -90,6 +95,7 @@ struct OutputDeclaration {
   const MessageType* type = nullptr;
   Qos qos;
   double rate_hz = 0.0;
+  topics::Scope scope = topics::Scope::kRobot;
 };
 
 struct TimerDeclaration {
@@ -113,6 +119,13 @@ class Input {
   const Message* latest() const { return message(port_->latest()); }
   /// The same, but null when it is older than the age that the input declared.
   const Message* fresh() const { return message(port_->fresh()); }
+  /// Where the input was declared with `each_writer`: the newest sample of every writer that is not
+  /// older than declared. The one way to notice the silence of one writer among many.
+  std::vector<const Message*> fresh_of_each() const {
+    std::vector<const Message*> all;
+    for (const auto* sample : port_->fresh_of_each()) all.push_back(message(sample));
+    return all;
+  }
   /// The newest sample, to keep beyond the handler without a copy; null before the first.
   std::shared_ptr<const Message> share() const {
     const auto* sample = port_->latest();

@@ -126,6 +126,9 @@ class Reader {
     allow(node, {"reliable", "latched", "depth"});
     return {value<bool>(node, "reliable"), value<bool>(node, "latched"), value<int>(node, "depth")};
   }
+  topics::Scope scope(const YAML::Node& map) const {
+    return value<bool>(map, "fleet", false) ? topics::Scope::kFleet : topics::Scope::kRobot;
+  }
   Range range(const YAML::Node& map) const {
     const YAML::Node node = map["range"];
     if (!node) return {};
@@ -186,20 +189,21 @@ Contract::Parameter read_parameter(const Reader& reader, const YAML::Node& node)
 }
 
 Contract::InputPort read_input(const Reader& reader, const YAML::Node& node) {
-  reader.allow(node, {"topic", "type", "qos", "rate", "max_age", "on_loss", "optional"});
+  reader.allow(node, {"topic", "type", "qos", "rate", "max_age", "on_loss", "optional", "fleet"});
   return {reader.value<std::string>(node, "topic"),
           reader.value<std::string>(node, "type"),
           reader.value<std::string>(node, "on_loss", ""),
           reader.qos(node),
           reader.value<double>(node, "rate"),
           reader.value<double>(node, "max_age", 0.0),
-          reader.value<bool>(node, "optional", false)};
+          reader.value<bool>(node, "optional", false),
+          reader.scope(node)};
 }
 
 Contract::OutputPort read_output(const Reader& reader, const YAML::Node& node) {
-  reader.allow(node, {"topic", "type", "qos", "rate"});
+  reader.allow(node, {"topic", "type", "qos", "rate", "fleet"});
   return {reader.value<std::string>(node, "topic"), reader.value<std::string>(node, "type"),
-          reader.qos(node), reader.value<double>(node, "rate")};
+          reader.qos(node), reader.value<double>(node, "rate"), reader.scope(node)};
 }
 
 Contract read_contract(const Reader& reader, const YAML::Node& root) {
@@ -246,6 +250,7 @@ std::string to_yaml(const Contract& contract) {
       node["on_loss"] = input.on_loss;
     }
     if (input.optional) node["optional"] = true;
+    if (input.scope == topics::Scope::kFleet) node["fleet"] = true;
     root["inputs"].push_back(node);
   }
   for (const auto& output : contract.outputs) {
@@ -254,6 +259,7 @@ std::string to_yaml(const Contract& contract) {
     node["type"] = output.type;
     node["qos"] = qos_node(output.qos);
     node["rate"] = number_node(output.rate_hz);
+    if (output.scope == topics::Scope::kFleet) node["fleet"] = true;
     root["outputs"].push_back(node);
   }
   for (const auto& timer : contract.timers) {

@@ -1,6 +1,7 @@
 #include "runtime/contract/describe.hpp"
 
 #include <deque>
+#include <iomanip>
 #include <memory>
 #include <sstream>
 
@@ -17,6 +18,7 @@ class NoInput final : public InputPort {
  public:
   const Sample* latest() const override { return nullptr; }
   const Sample* fresh() const override { return nullptr; }
+  std::vector<const Sample*> fresh_of_each() const override { return {}; }
   std::vector<WriterInfo> writers() const override { return {}; }
   std::uint64_t lost() const override { return 0; }
   std::uint64_t rejected() const override { return 0; }
@@ -73,7 +75,7 @@ class DescribeHost final : public Host {
     contract_.parameters = parameters_.declared();
     contract_.version = USHER_VERSION;
     std::ostringstream digest;
-    digest << std::hex << USHER_IDL_DIGEST;
+    digest << std::hex << std::setw(16) << std::setfill('0') << USHER_IDL_DIGEST;
     contract_.idl_digest = digest.str();
     return std::move(contract_);
   }
@@ -81,6 +83,7 @@ class DescribeHost final : public Host {
   Time now() const override { return {}; }
   const std::string& name() const override { return name_; }
   const std::string& host_name() const override { return host_name_; }
+  const std::string& robot_name() const override { return robot_name_; }
   Parameters& parameters() override { return parameters_; }
   Health& health() override { return health_; }
   Random random(std::string_view /*stream*/) override { return Random(1); }
@@ -100,12 +103,13 @@ class DescribeHost final : public Host {
     }
     contract_.inputs.push_back({declaration.topic, std::string(declaration.type->name),
                                 declaration.on_loss, declaration.qos, declaration.rate_hz,
-                                seconds(declaration.max_age), declaration.optional});
+                                seconds(declaration.max_age), declaration.optional,
+                                declaration.scope});
     return input_;
   }
   OutputPort& declare(OutputDeclaration declaration) override {
     contract_.outputs.push_back({declaration.topic, std::string(declaration.type->name),
-                                 declaration.qos, declaration.rate_hz});
+                                 declaration.qos, declaration.rate_hz, declaration.scope});
     return output_;
   }
   TimerPort& declare(TimerDeclaration declaration) override {
@@ -114,7 +118,7 @@ class DescribeHost final : public Host {
   }
 
  private:
-  std::string name_, host_name_ = "localhost", wrong_;
+  std::string name_, host_name_ = "localhost", robot_name_, wrong_;
   ParameterSet parameters_;
   NoHealth health_;
   NoStream stream_;

@@ -27,6 +27,8 @@ std::string quality(const Qos& qos) {
          ", depth " + std::to_string(qos.depth);
 }
 
+std::string scope(topics::Scope scope) { return scope == topics::Scope::kFleet ? " (fleet)" : ""; }
+
 /// Columns aligned under their titles; nothing when there are no rows.
 std::string table(const std::string& title, const std::vector<Row>& rows) {
   if (rows.size() < 2) return {};
@@ -81,13 +83,14 @@ std::string values(const Contract::Parameter& parameter) {
 std::string to_table(const Contract& contract) {
   std::vector<Row> inputs{{"topic", "type", "rate", "quality", "oldest", "when it is lost"}};
   for (const auto& port : contract.inputs) {
-    inputs.push_back({port.topic + (port.optional ? " (optional)" : ""), port.type,
-                      rate(port.rate_hz), quality(port.qos),
+    inputs.push_back({port.topic + scope(port.scope) + (port.optional ? " (optional)" : ""),
+                      port.type, rate(port.rate_hz), quality(port.qos),
                       port.max_age > 0.0 ? number(port.max_age) + " s" : "-", port.on_loss});
   }
   std::vector<Row> outputs{{"topic", "type", "rate", "quality"}};
   for (const auto& port : contract.outputs) {
-    outputs.push_back({port.topic, port.type, rate(port.rate_hz), quality(port.qos)});
+    outputs.push_back(
+        {port.topic + scope(port.scope), port.type, rate(port.rate_hz), quality(port.qos)});
   }
   std::vector<Row> parameters{{"name", "values", "default", "meaning"}};
   for (const auto& parameter : contract.parameters) {

@@ -171,8 +171,14 @@ DdsHost::~DdsHost() = default;
 
 Result<std::unique_ptr<DdsHost>> DdsHost::create(ParameterFile file, const StopFlag& stop) {
   const MonotonicClock clock(file.clock_anchor);
-  auto transport = DdsTransport::create(
-      {file.name, file.host, file.domain, file.peers, file.discovery_server, file.identity}, clock);
+  auto transport = DdsTransport::create({file.name,
+                                         file.host,
+                                         file.domain,
+                                         file.peers,
+                                         file.discovery_server,
+                                         file.identity,
+                                         {file.robot, file.fleet_domain, file.fleet_peers}},
+                                        clock);
   if (!transport) return Error{transport.error()};
   return std::unique_ptr<DdsHost>(new DdsHost(std::make_unique<Implementation>(
       std::move(file), clock, std::move(transport).value(), stop)));

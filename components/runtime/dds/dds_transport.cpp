@@ -142,10 +142,26 @@ class DdsTransport::Implementation {
  public:
   MonotonicClock clock;
   Time begin;
-  // The participant goes first: it ends the callbacks into the ports.
+  // The participants go first: they end the callbacks into the ports.
   std::vector<std::unique_ptr<DdsReader>> readers;
   std::vector<std::unique_ptr<DdsWriter>> writers;
   std::unique_ptr<Participant> participant;
+  ParticipantOptions fleet;
+  std::unique_ptr<Participant> in_fleet{};  ///< null until there is a port for it
+
+  Participant& of(topics::Scope scope) {
+    if (scope == topics::Scope::kRobot) return *participant;
+    if (!in_fleet) {
+      auto made = Participant::create(fleet, clock);
+      // As a port that cannot be made.
+      if (!made) {
+        std::fprintf(stderr, "fatal: the fleet: %s\n", made.error().c_str());
+        std::abort();
+      }
+      in_fleet = std::move(made).value();
+    }
+    return *in_fleet;
+  }
 };
 
 DdsTransport::DdsTransport(std::unique_ptr<Implementation> implementation)
@@ -154,24 +170,33 @@ DdsTransport::~DdsTransport() = default;
 
 Result<std::unique_ptr<DdsTransport>> DdsTransport::create(const Options& options,
                                                            const MonotonicClock& clock) {
+  if (!options.fleet.robot.empty() && !options.identity.empty())
+    return Error{
+        "a fleet and security do not go together: nothing on the fleet's domain is signed"};
   auto participant = Participant::create({options.name, options.host, options.domain, options.peers,
                                           options.discovery_server, options.identity},
                                          clock);
   if (!participant) return Error{participant.error()};
+  ParticipantOptions fleet;
+  fleet.name = options.fleet.robot + "/" + options.name;
+  // What one robot calls "laptop" is not the "laptop" of another: their clocks differ.
+  fleet.host = options.fleet.robot + "/" + options.host;
+  fleet.domain = options.fleet.domain;
+  fleet.peers = options.fleet.peers;
   auto implementation = std::make_unique<Implementation>(
-      Implementation{clock, clock.now(), {}, {}, std::move(participant).value()});
+      Implementation{clock, clock.now(), {}, {}, std::move(participant).value(), std::move(fleet)});
   return std::unique_ptr<DdsTransport>(new DdsTransport(std::move(implementation)));
 }
 
 Transport::Reader& DdsTransport::open_reader(const InputDeclaration& declaration, Deliver deliver) {
-  implementation_->readers.push_back(
-      std::make_unique<DdsReader>(*implementation_->participant, declaration, std::move(deliver)));
+  implementation_->readers.push_back(std::make_unique<DdsReader>(
+      implementation_->of(declaration.scope), declaration, std::move(deliver)));
   return *implementation_->readers.back();
 }
 
 Transport::Writer& DdsTransport::open_writer(const OutputDeclaration& declaration) {
   implementation_->writers.push_back(
-      std::make_unique<DdsWriter>(*implementation_->participant, declaration));
+      std::make_unique<DdsWriter>(implementation_->of(declaration.scope), declaration));
   return *implementation_->writers.back();
 }
 

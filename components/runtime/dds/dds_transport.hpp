@@ -11,11 +11,17 @@
 
 namespace usher::runtime {
 
-/// Carries the samples of one component over Fast DDS: one participant with the component's name.
+/// Carries the samples of one component over Fast DDS: one participant with the component's name,
+/// and a second one in the domain of the fleet, "robot/component", once it has a port there.
 /// Received samples are decoded and delivered in the middleware's threads. A topic that the
 /// catalogue calls "scan" is "rt/scan" on the wire.
 class DdsTransport final : public Transport {
  public:
+  struct Fleet {
+    std::string robot;  ///< empty = belongs to none
+    std::uint32_t domain = 0;
+    std::vector<std::string> peers;  ///< of the other robots, besides multicast
+  };
   struct Options {
     std::string name;
     std::string host;
@@ -23,9 +29,10 @@ class DdsTransport final : public Transport {
     std::vector<std::string> peers;  ///< numeric IPv4 addresses besides multicast
     std::string discovery_server;    ///< "10.0.0.1:11811"; empty = everybody announces to everybody
     std::string identity;            ///< folder of `usher keys`; empty = without security
+    Fleet fleet{};
   };
-  /// Fails when the domain is not 0..232, a peer is no address, or the machine has no network at
-  /// all.
+  /// Fails when a domain is not 0..232, a peer is no address, the machine has no network at all, or
+  /// a fleet comes together with security: nothing on the fleet's domain is signed.
   static Result<std::unique_ptr<DdsTransport>> create(const Options& options,
                                                       const MonotonicClock& clock);
   ~DdsTransport() override;

@@ -60,6 +60,9 @@
   TYPE(usher_msgs::msg::GoalCancel)                   \
   TYPE(usher_msgs::msg::ExploreGoal)                  \
   TYPE(usher_msgs::msg::ExploreStatus)                \
+  TYPE(usher_msgs::msg::ExploreShare)                 \
+  TYPE(usher_msgs::msg::FleetLook)                    \
+  TYPE(usher_msgs::msg::FleetMeeting)                 \
   TYPE(usher_msgs::msg::MeetingRequest)               \
   TYPE(usher_msgs::msg::MeetingStatus)                \
   TYPE(usher_msgs::msg::MeetingReport)                \
@@ -83,7 +86,10 @@
   TYPE(usher_sim_msgs::msg::SensorBoardReading)       \
   TYPE(usher_sim_msgs::msg::SensorBoardCommand)       \
   TYPE(usher_sim_msgs::msg::GroundTruth)              \
-  TYPE(usher_sim_msgs::msg::PersonGoal)
+  TYPE(usher_sim_msgs::msg::PersonGoal)               \
+  TYPE(usher_sim_msgs::msg::FleetBody)                \
+  TYPE(usher_sim_msgs::msg::FleetPeople)              \
+  TYPE(usher_sim_msgs::msg::FleetPersonGoal)
 
 namespace usher::runtime {
 namespace {

@@ -47,6 +47,7 @@ class EngineInput final : public InputPort {
 
   /// The sample becomes the newest one.
   void accept(Sample&& sample) {
+    if (declaration_.each_writer) keep(sample);
     latest_ = std::move(sample);
     if (fresh() != nullptr) loss_reported_ = false;
   }
@@ -54,7 +55,8 @@ class EngineInput final : public InputPort {
   std::uint32_t order() const { return order_; }
   /// The first moment at which fresh() would say no, while that has not been reported.
   Time loss_due() const {
-    if (declaration_.max_age <= Duration::zero() || loss_reported_) return Time::max();
+    if (declaration_.max_age <= Duration::zero() || loss_reported_ || reader_ == nullptr)
+      return Time::max();
     const Time reference = latest_.message ? latest_.info.effective : start_;
     return reference + declaration_.max_age + Duration(1);
   }
@@ -65,9 +67,14 @@ class EngineInput final : public InputPort {
 
   const Sample* latest() const override { return latest_.message ? &latest_ : nullptr; }
   const Sample* fresh() const override {
-    if (!latest_.message) return nullptr;
-    if (declaration_.max_age <= Duration::zero()) return &latest_;
-    return *now_ - latest_.info.effective <= declaration_.max_age ? &latest_ : nullptr;
+    return latest_.message && young(latest_) ? &latest_ : nullptr;
+  }
+  std::vector<const Sample*> fresh_of_each() const override {
+    std::vector<const Sample*> all;
+    for (const Sample& sample : newest_) {
+      if (young(sample)) all.push_back(&sample);
+    }
+    return all;
   }
   std::vector<WriterInfo> writers() const override {
     return reader_ ? reader_->writers() : std::vector<WriterInfo>{};
@@ -87,11 +94,25 @@ class EngineInput final : public InputPort {
   }
 
  private:
+  bool young(const Sample& sample) const {
+    return declaration_.max_age <= Duration::zero() ||
+           *now_ - sample.info.effective <= declaration_.max_age;
+  }
+  /// In the place of the writer's last one, at the end of the order.
+  void keep(const Sample& sample) {
+    std::erase_if(newest_, [&](const Sample& other) {
+      return other.info.writer == sample.info.writer || !young(other);
+    });
+    if (newest_.size() == Engine::kMaxWriters) newest_.erase(newest_.begin());
+    newest_.push_back(sample);
+  }
+
   InputDeclaration declaration_;
   std::uint32_t order_;
   const Time* now_;
   std::uint32_t mailbox_;
   const Inbox* inbox_;
+  std::vector<Sample> newest_;  ///< of each writer, where they are kept
   Transport::Reader* reader_ = nullptr;
   Sample latest_;
   Time start_{};
@@ -230,8 +251,15 @@ class Engine::State {
   }
 
   void open_ports() {
-    for (EngineInput& input : inputs) input.open(transport, inbox);
-    for (EngineOutput& output : outputs) output.open(transport);
+    const auto belongs = [this](topics::Scope scope) {
+      return scope == topics::Scope::kRobot || !file.robot.empty();
+    };
+    for (EngineInput& input : inputs) {
+      if (belongs(input.declaration().scope)) input.open(transport, inbox);
+    }
+    for (EngineOutput& output : outputs) {
+      if (belongs(output.scope())) output.open(transport);
+    }
     for (const Watch& watch : watches) {
       transport.watch_writers(watch.topic,
                               [inbox = inbox, handler = watch.handler](const WriterInfo& info) {
@@ -459,11 +487,15 @@ std::uint64_t Engine::handlers_run() const { return state_->handlers_run; }
 Time Engine::now() const { return state_->now; }
 const std::string& Engine::name() const { return state_->file.name; }
 const std::string& Engine::host_name() const { return state_->file.host; }
+const std::string& Engine::robot_name() const { return state_->file.robot; }
 Parameters& Engine::parameters() { return state_->parameters; }
 Health& Engine::health() { return state_->heart; }
 
 Random Engine::random(std::string_view stream) {
-  const std::uint64_t own = stream_seed(state_->file.seed, state_->file.name.c_str());
+  const std::string& robot = state_->file.robot;
+  const std::uint64_t seed =
+      robot.empty() ? state_->file.seed : stream_seed(state_->file.seed, robot.c_str());
+  const std::uint64_t own = stream_seed(seed, state_->file.name.c_str());
   return Random(stream_seed(own, std::string(stream).c_str()));
 }
 

@@ -92,6 +92,7 @@ class Engine final : public Host {
   Time now() const override;
   const std::string& name() const override;
   const std::string& host_name() const override;
+  const std::string& robot_name() const override;
   Parameters& parameters() override;
   Health& health() override;
   Random random(std::string_view stream) override;

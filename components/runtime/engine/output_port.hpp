@@ -36,7 +36,11 @@ class EngineOutput final : public OutputPort {
       : declaration_(std::move(declaration)), outbox_(&outbox) {}
 
   void open(Transport& transport) { writer_ = &transport.open_writer(declaration_); }
-  void write(std::shared_ptr<const Bytes> cdr) { writer_->write(std::move(cdr)); }
+  topics::Scope scope() const { return declaration_.scope; }
+  /// Nothing where it was not opened, as ports of the fleet of a robot that is in none.
+  void write(std::shared_ptr<const Bytes> cdr) {
+    if (writer_ != nullptr) writer_->write(std::move(cdr));
+  }
 
   void publish(const void* message) override;
   std::size_t reader_count() const override { return writer_ ? writer_->reader_count() : 0; }

@@ -214,7 +214,7 @@ Status LockstepHost::start() {
   if (life_) return Error{file_.name + " is already running"};
   ++lives_;
   busy_until_ = hung_until_ = Time{};
-  life_ = std::make_unique<Life>(*this, network_.join(file_.name, file_.host, false));
+  life_ = std::make_unique<Life>(*this, network_.join(file_.name, file_.host, false, file_.robot));
   in_turn_ = true;
   Status status = life_->engine.construct(factory_);
   in_turn_ = false;

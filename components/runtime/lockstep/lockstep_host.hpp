@@ -41,12 +41,20 @@ class LockstepHost {
   void clock_jumped();
 
   const ParameterFile& file() const { return file_; }
+  /// In its world: "amcl", or "iris/amcl" of a robot in a fleet.
+  std::string name() const {
+    return file_.robot.empty() ? file_.name : file_.robot + "/" + file_.name;
+  }
   bool running() const { return life_ != nullptr; }
   bool in_turn() const { return in_turn_; }
   /// Of the last life that ended with one; empty = none.
   const std::string& fault_reason() const { return fault_reason_; }
   std::uint64_t lives() const { return lives_; }
   std::map<std::string, Bytes>& kept() { return kept_; }
+  /// Where it runs: "laptop", or "iris/laptop".
+  std::string host_name() const {
+    return file_.robot.empty() ? file_.host : file_.robot + "/" + file_.host;
+  }
   /// Null while it is dead.
   Engine* engine();
 

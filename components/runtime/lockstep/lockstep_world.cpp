@@ -15,8 +15,9 @@ LockstepWorld::~LockstepWorld() = default;
 
 Status LockstepWorld::add(ComponentFactory factory, ParameterFile file,
                           LockstepHost::Options options) {
-  const bool known = std::any_of(hosts_.begin(), hosts_.end(),
-                                 [&](const auto& each) { return each->file().name == file.name; });
+  const bool known = std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& each) {
+    return each->file().name == file.name && each->file().robot == file.robot;
+  });
   if (known) return Error{"the name " + file.name + " is given twice"};
   hosts_.push_back(std::make_unique<LockstepHost>(static_cast<std::uint32_t>(hosts_.size()),
                                                   schedule_, network_, std::move(factory),
@@ -26,14 +27,14 @@ Status LockstepWorld::add(ComponentFactory factory, ParameterFile file,
 
 LockstepHost& LockstepWorld::host(const std::string& name) const {
   for (const auto& each : hosts_) {
-    if (each->file().name == name) return *each;
+    if (each->name() == name) return *each;
   }
   throw std::out_of_range("no component " + name + " in this world");
 }
 
 std::vector<std::string> LockstepWorld::components() const {
   std::vector<std::string> names;
-  for (const auto& each : hosts_) names.push_back(each->file().name);
+  for (const auto& each : hosts_) names.push_back(each->name());
   return names;
 }
 
@@ -65,7 +66,7 @@ void LockstepWorld::hang(const std::string& name, Duration duration) {
 void LockstepWorld::jump_clock(const std::string& host, Duration by) {
   network_.jump_clock(host, by);
   for (const auto& each : hosts_) {
-    if (each->file().host == host) each->clock_jumped();
+    if (each->host_name() == host) each->clock_jumped();
   }
 }
 
@@ -90,15 +91,19 @@ void LockstepWorld::run_until(Time time) {
 }
 
 Transport::Writer& LockstepWorld::outsider_writer(const OutputDeclaration& declaration,
-                                                  const std::string& participant,
-                                                  const std::string& host_name) {
-  auto found = outsiders_.find(participant);
+                                                  const Speaker& speaker) {
+  const auto key = std::pair(speaker.participant, speaker.robot);
+  auto found = outsiders_.find(key);
   if (found == outsiders_.end()) {
-    // Without a host it lives beside the first component, so that its stamps count there.
-    const std::string fallback = hosts_.empty() ? "localhost" : hosts_.front()->file().host;
-    const auto id = network_.join(participant, host_name.empty() ? fallback : host_name, true);
+    // Without a host it lives beside the robot's first component, so that its stamps count there.
+    const auto first = std::find_if(hosts_.begin(), hosts_.end(), [&](const auto& each) {
+      return speaker.robot.empty() || each->file().robot == speaker.robot;
+    });
+    const std::string fallback = first == hosts_.end() ? "localhost" : (*first)->file().host;
+    const auto id = network_.join(
+        speaker.participant, speaker.host.empty() ? fallback : speaker.host, true, speaker.robot);
     network_.announce(id);
-    found = outsiders_.emplace(participant, Outsider{id, {}}).first;
+    found = outsiders_.emplace(key, Outsider{id, {}}).first;
   }
   auto& writer =
       found->second.writers[declaration.topic + ' ' + std::string(declaration.type->name)];
@@ -107,20 +112,19 @@ Transport::Writer& LockstepWorld::outsider_writer(const OutputDeclaration& decla
 }
 
 void LockstepWorld::publish(const OutputDeclaration& declaration, const void* message,
-                            const std::string& participant, const std::string& host_name) {
+                            const Speaker& speaker) {
   Bytes cdr;
   if (!declaration.type->serialize(message, cdr)) throw std::bad_alloc();
-  write_bytes(declaration, std::move(cdr), participant, host_name);
+  write_bytes(declaration, std::move(cdr), speaker);
 }
 
 void LockstepWorld::write_bytes(const OutputDeclaration& declaration, Bytes cdr,
-                                const std::string& participant, const std::string& host_name) {
-  outsider_writer(declaration, participant, host_name)
-      .write(std::make_shared<const Bytes>(std::move(cdr)));
+                                const Speaker& speaker) {
+  outsider_writer(declaration, speaker).write(std::make_shared<const Bytes>(std::move(cdr)));
 }
 
 void LockstepWorld::leave(const std::string& participant) {
-  const auto found = outsiders_.find(participant);
+  const auto found = outsiders_.find({participant, std::string()});
   if (found == outsiders_.end()) return;
   network_.leave(found->second.id);
   outsiders_.erase(found);

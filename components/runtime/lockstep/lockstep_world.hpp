@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "idl/topic.hpp"
@@ -24,6 +25,11 @@ namespace usher::runtime {
 ///     world.observe(topics::kAmclPose, [&](const auto& pose, const SampleInfo& info) { ... });
 ///     world.publish(topics::kInitialPose, start_pose);
 ///     world.run_for(std::chrono::seconds(60));
+///
+/// Several robots of a fleet may live in it (ParameterFile::robot): each has its own topics, those
+/// of the fleet are common, and a component is called "robot/name". Their hosts must have different
+/// names. What looks or speaks is told whose topic is meant; without it, that of the one robot that
+/// is in no fleet, or of all.
 ///
 /// The same world and seed give the same digest of everything that was written. The order of what
 /// happens at one moment: actions (in the order in which they were planned), deliveries (likewise),
@@ -73,17 +79,20 @@ class LockstepWorld {
   /// May change samples of the topic as they are written, by whom ever, or swallow them (false).
   template <class Message>
   void tamper(const topics::Topic<Message>& topic,
-              std::type_identity_t<std::function<bool(const Guid& writer, Message&)>> change) {
-    network_.tamper(std::string(topic.name),
-                    [change = std::move(change)](const Guid& writer, Bytes& cdr) {
-                      const MessageType& type = message_type<Message>();
-                      const auto read = type.deserialize(cdr);
-                      if (!read) return true;  // no message: left as it is
-                      Message message = *static_cast<const Message*>(read.get());
-                      if (!change(writer, message)) return false;
-                      cdr.clear();
-                      return type.serialize(&message, cdr);
-                    });
+              std::type_identity_t<std::function<bool(const Guid& writer, Message&)>> change,
+              const std::string& robot = {}) {
+    network_.tamper(
+        std::string(topic.name),
+        [change = std::move(change)](const Guid& writer, Bytes& cdr) {
+          const MessageType& type = message_type<Message>();
+          const auto read = type.deserialize(cdr);
+          if (!read) return true;  // no message: left as it is
+          Message message = *static_cast<const Message*>(read.get());
+          if (!change(writer, message)) return false;
+          cdr.clear();
+          return type.serialize(&message, cdr);
+        },
+        robot);
   }
   void tamper_bytes(const std::string& topic, Network::Tamper change) {
     network_.tamper(topic, std::move(change));
@@ -99,12 +108,15 @@ class LockstepWorld {
   template <class Message>
   void observe(
       const topics::Topic<Message>& topic,
-      std::type_identity_t<std::function<void(const Message&, const SampleInfo&)>> observer) {
-    network_.observe(std::string(topic.name), message_type<Message>(),
-                     [observer = std::move(observer)](const std::shared_ptr<const void>& message,
-                                                      const SampleInfo& info) {
-                       observer(*static_cast<const Message*>(message.get()), info);
-                     });
+      std::type_identity_t<std::function<void(const Message&, const SampleInfo&)>> observer,
+      const std::string& robot = {}) {
+    network_.observe(
+        std::string(topic.name), message_type<Message>(),
+        [observer = std::move(observer)](const std::shared_ptr<const void>& message,
+                                         const SampleInfo& info) {
+          observer(*static_cast<const Message*>(message.get()), info);
+        },
+        robot);
   }
   void observe_all(std::function<void(const WrittenSample&)> observer) {
     network_.observe_all(std::move(observer));
@@ -112,20 +124,21 @@ class LockstepWorld {
   /// Writes as a participant that is no component and that everybody knows from the start.
   template <class Message>
   void publish(const topics::Topic<Message>& topic, const std::type_identity_t<Message>& message,
-               const std::string& participant = "test", const std::string& host = {}) {
-    publish(declaration_of(topic), &message, participant, host);
+               const std::string& participant = "test", const std::string& host = {},
+               const std::string& robot = {}) {
+    publish(declaration_of(topic), &message, {participant, host, robot});
   }
   /// Bytes that need not be a message, for what a broken or hostile writer sends.
   template <class Message>
   void publish_bytes(const topics::Topic<Message>& topic, const Bytes& cdr,
                      const std::string& participant = "test", const std::string& host = {}) {
-    write_bytes(declaration_of(topic), cdr, participant, host);
+    write_bytes(declaration_of(topic), cdr, {participant, host, {}});
   }
   /// Of the writer that publish() uses; opens it.
   template <class Message>
   Guid writer_guid(const topics::Topic<Message>& topic, const std::string& participant = "test",
                    const std::string& host = {}) {
-    return outsider_writer(declaration_of(topic), participant, host).guid();
+    return outsider_writer(declaration_of(topic), {participant, host, {}}).guid();
   }
   /// The participant of publish() says goodbye; publishing again makes a new one.
   void leave(const std::string& participant);
@@ -158,6 +171,9 @@ class LockstepWorld {
   std::vector<std::string> components() const;
 
  private:
+  struct Speaker {
+    std::string participant, host, robot;
+  };
   struct Outsider {
     Network::ParticipantId id;
     std::map<std::string, Transport::Writer*> writers;  ///< by topic and type
@@ -165,22 +181,20 @@ class LockstepWorld {
 
   template <class Message>
   static OutputDeclaration declaration_of(const topics::Topic<Message>& topic) {
-    return {std::string(topic.name), &message_type<Message>(), topic.writer_qos(), topic.rate_hz};
+    return {std::string(topic.name), &message_type<Message>(), topic.writer_qos(), topic.rate_hz,
+            topic.scope};
   }
   LockstepHost& host(const std::string& name) const;
   void when_idle(std::function<void()> action);
-  Transport::Writer& outsider_writer(const OutputDeclaration& declaration,
-                                     const std::string& participant, const std::string& host);
-  void publish(const OutputDeclaration& declaration, const void* message,
-               const std::string& participant, const std::string& host);
-  void write_bytes(const OutputDeclaration& declaration, Bytes cdr, const std::string& participant,
-                   const std::string& host);
+  Transport::Writer& outsider_writer(const OutputDeclaration& declaration, const Speaker& speaker);
+  void publish(const OutputDeclaration& declaration, const void* message, const Speaker& speaker);
+  void write_bytes(const OutputDeclaration& declaration, Bytes cdr, const Speaker& speaker);
 
   const Time start_;
   Schedule schedule_;
   Network network_;
   std::vector<std::unique_ptr<LockstepHost>> hosts_;
-  std::map<std::string, Outsider> outsiders_;
+  std::map<std::pair<std::string, std::string>, Outsider> outsiders_;  ///< by name and robot
   bool turning_ = false;
 };
 

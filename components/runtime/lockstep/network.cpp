@@ -47,6 +47,8 @@ struct Network::Participant {
   ParticipantId id = 0;
   std::string name;
   std::size_t host = 0;
+  std::string host_name;  ///< as the robot calls it
+  std::string robot;
   bool instant = false;
   bool alive = true;
   bool announced = false;
@@ -71,6 +73,7 @@ class Network::Reader final : public Transport::Reader {
       : network(its_network),
         participant(its_participant),
         topic(declaration.topic),
+        scope(declaration.scope),
         type(declaration.type),
         qos(declaration.qos),
         deliver(std::move(its_deliver)) {}
@@ -80,6 +83,7 @@ class Network::Reader final : public Transport::Reader {
   Network& network;
   Participant& participant;
   std::string topic;
+  topics::Scope scope;
   const MessageType* type;
   Qos qos;
   Transport::Deliver deliver;
@@ -102,6 +106,7 @@ class Network::Writer final : public Transport::Writer {
       : network(its_network),
         participant(its_participant),
         topic(its_topic),
+        scope(declaration.scope),
         type(declaration.type),
         qos(declaration.qos),
         id(its_guid) {}
@@ -113,6 +118,7 @@ class Network::Writer final : public Transport::Writer {
   Network& network;
   Participant& participant;
   Topic& topic;
+  topics::Scope scope;
   const MessageType* type;
   Qos qos;
   Guid id;
@@ -195,13 +201,15 @@ void Network::cut(const std::string& a, const std::string& b, Time from, Time un
 // --- Participants
 // ----------------------------------------------------------------------------------------------------
 
-Network::ParticipantId Network::join(const std::string& name, const std::string& host,
-                                     bool instant) {
+Network::ParticipantId Network::join(const std::string& name, const std::string& host, bool instant,
+                                     const std::string& robot) {
   auto participant = std::make_unique<Participant>();
   participant->id = static_cast<ParticipantId>(participants_.size());
   participant->name = name;
-  participant->host = host_index(host);
+  participant->host = host_index(robot.empty() ? host : robot + "/" + host);
+  participant->host_name = host;
   participant->instant = instant;
+  participant->robot = robot;
   participants_.push_back(std::move(participant));
   for (const auto& each : participants_)
     each->known_since.resize(participants_.size(), Time::max());
@@ -292,7 +300,8 @@ void Network::tell_watches(const Participant& seen, const Participant& by, bool 
   if (!by.alive) return;
   for (const Watch& watch : by.watches) {
     for (const auto& writer : seen.writers) {
-      if (writer->topic.name == watch.topic) watch.event(info_of(*writer, by, alive));
+      if (writer->topic.name == watch.topic && seen.robot == by.robot)
+        watch.event(info_of(*writer, by, alive));
     }
   }
 }
@@ -300,18 +309,19 @@ void Network::tell_watches(const Participant& seen, const Participant& by, bool 
 WriterInfo Network::info_of(const Writer& writer, const Participant& by, bool alive) const {
   const Participant& owner = writer.participant;
   const Time since = by.id == owner.id ? Time{} : by.known_since[owner.id] + clocks_[by.host];
-  return {writer.id, writer.topic.name, owner.name, hosts_[owner.host], alive, since};
+  return {writer.id, writer.topic.name, owner.name, owner.host_name, alive, since};
 }
 
 // --- Endpoints
 // -------------------------------------------------------------------------------------------------------
 
-Network::Topic& Network::topic(const std::string& name) {
-  auto& entry = topics_[name];
+Network::Topic& Network::topic(const std::string& name, const std::string& robot) {
+  const std::string key = robot.empty() ? name : robot + ' ' + name;
+  auto& entry = topics_[key];
   if (!entry) {
     entry = std::make_unique<Topic>();
     entry->name = name;
-    entry->digest = stream_seed(0, name.c_str());
+    entry->digest = stream_seed(0, key.c_str());
   }
   return *entry;
 }
@@ -336,14 +346,16 @@ Transport::Writer& Network::open_writer(ParticipantId id, const OutputDeclaratio
     guid[11 - i] = static_cast<std::uint8_t>((id + 1) >> (8 * i));
     guid[15 - i] = static_cast<std::uint8_t>(entity >> (8 * i));
   }
-  Topic& its_topic = topic(declaration.topic);
+  const bool of_fleet = declaration.scope == topics::Scope::kFleet;
+  Topic& its_topic = topic(declaration.topic, of_fleet ? std::string() : own.robot);
   own.writers.push_back(std::make_unique<Writer>(*this, own, its_topic, declaration, guid));
   Writer& writer = *own.writers.back();
   for (const auto& other : participants_) {
     if (other->id != id && !knows(id, other->id)) continue;
     if (other->id != id) {
       for (const Watch& watch : other->watches) {
-        if (watch.topic == its_topic.name) watch.event(info_of(writer, *other, true));
+        if (watch.topic == its_topic.name && other->robot == own.robot)
+          watch.event(info_of(writer, *other, true));
       }
     }
     for (const auto& reader : other->readers) match(writer, *reader);
@@ -358,7 +370,8 @@ void Network::watch_writers(ParticipantId id, const std::string& topic_name,
   for (const auto& other : participants_) {
     if (other->id == id || !knows(id, other->id)) continue;
     for (const auto& writer : other->writers) {
-      if (writer->topic.name == topic_name) own.watches.back().event(info_of(*writer, own, true));
+      if (writer->topic.name == topic_name && other->robot == own.robot)
+        own.watches.back().event(info_of(*writer, own, true));
     }
   }
 }
@@ -368,8 +381,10 @@ void Network::set_departure(ParticipantId id, Time departure) {
 }
 
 void Network::match(Writer& writer, Reader& reader) {
-  const bool fits = writer.topic.name == reader.topic && writer.type == reader.type &&
-                    (writer.qos.reliable || !reader.qos.reliable) &&
+  const bool common =
+      writer.scope == topics::Scope::kFleet || writer.participant.robot == reader.participant.robot;
+  const bool fits = common && writer.scope == reader.scope && writer.topic.name == reader.topic &&
+                    writer.type == reader.type && (writer.qos.reliable || !reader.qos.reliable) &&
                     (writer.qos.latched || !reader.qos.latched);
   if (!fits) return;
   Match fresh;
@@ -414,8 +429,8 @@ void Network::write(Writer& writer, std::shared_ptr<const Bytes> cdr) {
   }
 }
 
-void Network::tamper(const std::string& topic_name, Tamper tamper) {
-  topic(topic_name).tampers.push_back(std::move(tamper));
+void Network::tamper(const std::string& topic_name, Tamper tamper, const std::string& robot) {
+  topic(topic_name, robot).tampers.push_back(std::move(tamper));
 }
 
 void Network::write_now(Writer& writer, std::shared_ptr<const Bytes> cdr) {
@@ -451,7 +466,8 @@ void Network::write_now(Writer& writer, std::shared_ptr<const Bytes> cdr) {
   }
   // Observers last and by index: they may publish, which may add to the lists.
   for (std::size_t i = 0; i < observers_.size(); ++i) {
-    observers_[i]({own_topic.name, *writer.type, writer.id, number, now, *cdr});
+    observers_[i](
+        {own_topic.name, writer.participant.robot, *writer.type, writer.id, number, now, *cdr});
   }
   for (std::size_t i = 0; i < own_topic.observers.size(); ++i) {
     if (own_topic.observers[i].first != writer.type || !message) continue;
@@ -524,8 +540,9 @@ void Network::retry(Writer& writer, const Reader& reader) {
 // --- Observation
 // ------------------------------------------------------------------------------------------------------
 
-void Network::observe(const std::string& topic_name, const MessageType& type, Observer observer) {
-  topic(topic_name).observers.emplace_back(&type, std::move(observer));
+void Network::observe(const std::string& topic_name, const MessageType& type, Observer observer,
+                      const std::string& robot) {
+  topic(topic_name, robot).observers.emplace_back(&type, std::move(observer));
 }
 
 void Network::observe_all(std::function<void(const WrittenSample&)> observer) {

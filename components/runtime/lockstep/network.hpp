@@ -33,6 +33,7 @@ struct NetworkOptions {
 /// A sample at the moment at which it was written.
 struct WrittenSample {
   const std::string& topic;
+  const std::string& robot;  ///< of the writer; empty where there is one robot only
   const MessageType& type;
   const Guid& writer;
   std::uint64_t number;
@@ -51,7 +52,7 @@ class Network {
   Network(Schedule& schedule, NetworkOptions options);
   ~Network();
 
-  // --- Hosts and links
+  // --- Hosts and links; a host of a robot in a fleet is "robot/host"
   void set_clock(const std::string& host, Duration ahead);
   Duration clock_of(ParticipantId id) const;
   void set_link(const std::string& a, const std::string& b, const Link& link);
@@ -61,8 +62,10 @@ class Network {
   void cut(const std::string& a, const std::string& b, Time from, Time until, bool one_way = false);
 
   // --- Participants
-  /// `instant` ones are discovered at once (tests and experiments that were always there).
-  ParticipantId join(const std::string& name, const std::string& host, bool instant);
+  /// `instant` ones are discovered at once (tests and experiments that were always there). Topics
+  /// of a robot reach those only who joined for the same `robot`.
+  ParticipantId join(const std::string& name, const std::string& host, bool instant,
+                     const std::string& robot = {});
   /// From now on the others may discover it.
   void announce(ParticipantId id);
   void leave(ParticipantId id);   ///< says so, the others know after the link's latency
@@ -84,12 +87,14 @@ class Network {
   // --- Tampering
   /// May change the bytes of a sample on its way out, or keep it (false); in the order of adding.
   using Tamper = std::function<bool(const Guid& writer, Bytes& cdr)>;
-  void tamper(const std::string& topic, Tamper tamper);
+  void tamper(const std::string& topic, Tamper tamper, const std::string& robot = {});
 
   // --- Observation
   using Observer =
       std::function<void(const std::shared_ptr<const void>& message, const SampleInfo& info)>;
-  void observe(const std::string& topic, const MessageType& type, Observer observer);
+  /// `robot`: whose, empty for those of a fleet and where there is one robot only.
+  void observe(const std::string& topic, const MessageType& type, Observer observer,
+               const std::string& robot = {});
   void observe_all(std::function<void(const WrittenSample&)> observer);
   std::uint64_t digest() const { return digest_.value(); }
   std::uint64_t written() const { return written_; }
@@ -117,7 +122,7 @@ class Network {
 
   std::size_t host_index(const std::string& host);
   Way& way(std::size_t from, std::size_t to);
-  Topic& topic(const std::string& name);
+  Topic& topic(const std::string& name, const std::string& robot);
   bool knows(ParticipantId a, ParticipantId b) const;
   void plan_discovery(ParticipantId a, ParticipantId b);
   void discover(ParticipantId a, ParticipantId b);

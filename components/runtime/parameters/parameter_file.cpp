@@ -126,6 +126,22 @@ ParameterValue read_value(const Document& document, const std::string& name, con
   return value;
 }
 
+std::uint32_t read_domain(const Document& document, const YAML::Node& node,
+                          const std::string& key) {
+  const auto domain = document.integer<std::uint32_t>(node, key);
+  if (domain > 232) document.fail(node, key + " must be in [0, 232], got " + node.Scalar());
+  return domain;
+}
+
+std::vector<std::string> read_peers(const Document& document, const YAML::Node& node,
+                                    const std::string& key) {
+  if (!node.IsSequence()) document.fail(node, key + " must be a list of addresses");
+  std::vector<std::string> peers;
+  peers.reserve(node.size());
+  for (const auto& peer : node) peers.push_back(document.scalar(peer, "a peer"));
+  return peers;
+}
+
 ParameterFile read_file(const Document& document, const YAML::Node& root) {
   if (!root.IsMap()) document.fail(root, "a parameter file must be a mapping");
   ParameterFile file;
@@ -138,9 +154,7 @@ ParameterFile read_file(const Document& document, const YAML::Node& root) {
                   } else if (key == "host") {
                     file.host = document.scalar(node, key);
                   } else if (key == "domain") {
-                    file.domain = document.integer<std::uint32_t>(node, key);
-                    if (file.domain > 232)
-                      document.fail(node, "domain must be in [0, 232], got " + node.Scalar());
+                    file.domain = read_domain(document, node, key);
                   } else if (key == "seed") {
                     file.seed = document.integer<std::uint64_t>(node, key);
                   } else if (key == "critical") {
@@ -154,10 +168,13 @@ ParameterFile read_file(const Document& document, const YAML::Node& root) {
                   } else if (key == "clock_anchor") {
                     file.clock_anchor = document.integer<std::int64_t>(node, key);
                   } else if (key == "peers") {
-                    if (!node.IsSequence())
-                      document.fail(node, "peers must be a list of addresses");
-                    for (const auto& peer : node)
-                      file.peers.push_back(document.scalar(peer, "a peer"));
+                    file.peers = read_peers(document, node, key);
+                  } else if (key == "robot") {
+                    file.robot = document.scalar(node, key);
+                  } else if (key == "fleet_domain") {
+                    file.fleet_domain = read_domain(document, node, key);
+                  } else if (key == "fleet_peers") {
+                    file.fleet_peers = read_peers(document, node, key);
                   } else if (key == "discovery_server") {
                     file.discovery_server = document.scalar(node, key);
                   } else if (key == "identity") {
@@ -176,6 +193,9 @@ ParameterFile read_file(const Document& document, const YAML::Node& root) {
   if (file.component.empty()) document.fail(root, "component must be set");
   if (file.name.empty()) document.fail(root, "name must be set");
   if (file.host.empty()) document.fail(root, "host must be set");
+  if (!file.robot.empty() && file.fleet_domain == file.domain)
+    document.fail(root,
+                  "fleet_domain must differ from domain, both are " + std::to_string(file.domain));
   return file;
 }
 

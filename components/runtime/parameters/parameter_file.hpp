@@ -29,6 +29,9 @@ struct ParameterFile {
   std::vector<std::string> peers;  ///< addresses of further initial peers
   std::string discovery_server;    ///< "10.0.0.1:11811"; empty = everybody announces to everybody
   std::string identity;            ///< folder with the keys of this one; empty = without security
+  std::string robot;               ///< name in the fleet; empty = belongs to none
+  std::uint32_t fleet_domain = 0;  ///< DDS domain of the fleet, other than `domain`; 0..232
+  std::vector<std::string> fleet_peers;  ///< addresses of the other robots, besides multicast
   std::vector<ParameterValue> values;
 };
 

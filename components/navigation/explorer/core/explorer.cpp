@@ -34,12 +34,36 @@ Status Explorer::set_map(const grid::OccupancyGrid& map) {
       !status)
     return status;
   seen_.set_map(map, config_.leave_out);
+  divide_work();
   begin_round();
   return {};
 }
 
+Status Explorer::set_share(const Share& share) {
+  if (share.places.size() > Share::kMost)
+    return Error{"a share has at most " + std::to_string(Share::kMost) + " places, got " +
+                 std::to_string(share.places.size())};
+  if (!share.places.empty() && share.own >= share.places.size())
+    return Error{"the own place must be one of the share's " + std::to_string(share.places.size()) +
+                 ", got " + std::to_string(share.own)};
+  if (share == share_) return {};
+  share_ = share;
+  divide_work();
+  seen_.set_aside(of_others_);
+  strategy_->begin_round();
+  return {};
+}
+
+void Explorer::divide_work() {
+  of_others_.clear();
+  if (share_.places.size() < 2 || seen_.empty()) return;
+  of_others_ = divide(ground_, seen_, share_.places);
+  for (std::uint8_t& cell : of_others_) cell = cell == share_.own ? 0 : 1;
+}
+
 void Explorer::begin_round() {
   seen_.forget();
+  seen_.set_aside(of_others_);
   given_up_.clear();
   strategy_->begin_round();
 }
@@ -167,6 +191,10 @@ void Explorer::failed(const std::string& reason) {
 }
 
 std::optional<Pose2> Explorer::next_view(const Pose2& robot) {
+  auto view = strategy_->next({seen_, ground_, robot, given_up_});
+  if (view || !seen_.has_aside()) return view;
+  seen_.set_aside({});
+  strategy_->begin_round();
   return strategy_->next({seen_, ground_, robot, given_up_});
 }
 

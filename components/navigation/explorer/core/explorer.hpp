@@ -9,6 +9,7 @@
 #include "foundation/goal/goal_state.hpp"
 #include "navigation/explorer/core/ground.hpp"
 #include "navigation/explorer/core/seen_area.hpp"
+#include "navigation/explorer/core/share.hpp"
 #include "navigation/explorer/core/strategy.hpp"
 
 namespace usher::explorer {
@@ -82,7 +83,11 @@ class Explorer {
 
   /// Takes a map with nothing seen. An error leaves what was there.
   Status set_map(const grid::OccupancyGrid& map);
-  /// The camera looks, with the robot at this pose in map.
+  /// What others look at is looked at after all else of a round. More places than Share::kMost, or
+  /// an own one that is not among them, are an error and change nothing.
+  Status set_share(const Share& share);
+  /// The camera looks, with the robot, or another one that has the same camera, at this pose in
+  /// map.
   void look(const Pose2& robot) { seen_.look(robot); }
 
   /// The newest goal wins; one that is none is refused and does not disturb what runs.
@@ -106,6 +111,7 @@ class Explorer {
         last_drive_(first_id) {}
 
   void begin_round();
+  void divide_work();
   void wait(const std::string& reason);
   void finish(GoalState state, const std::string& reason);
   void follow_drive(const Situation& situation);
@@ -121,6 +127,8 @@ class Explorer {
   std::unique_ptr<Strategy> strategy_;
   Ground ground_;
   std::vector<Point2> given_up_;
+  Share share_;
+  std::vector<std::uint8_t> of_others_;  // per cell; empty: nothing is divided
 
   ExploreStatus status_;
   ExploreRequest request_;

@@ -31,7 +31,7 @@ void Frontier::mark_border(const SeenArea& seen) {
     const grid::Cell cell = g.cell(i);
     border_[i] = std::any_of(kBeside.begin(), kBeside.end(), [&](grid::Cell by) {
       const grid::Cell neighbor{cell.x + by.x, cell.y + by.y};
-      return g.contains(neighbor) && seen.unseen(g.index(neighbor));
+      return g.contains(neighbor) && seen.pending(g.index(neighbor));
     });
   }
 }

@@ -37,7 +37,9 @@ void SampledPoints::sample(const Outlook& outlook, double side) {
   parameters.cell_size = parameters.grid_step = side;
   parameters.points_per_cell = 1;
   grid::sample_points(ground.standing(), ground.standing_map(), parameters, random_, points_);
-  std::erase_if(points_, [&](const Point2& point) { return !std::isfinite(ground.way_to(point)); });
+  std::erase_if(points_, [&](const Point2& point) {
+    return !std::isfinite(ground.way_to(point)) || outlook.seen.aside(point);
+  });
   chain(outlook.robot.position(), points_);
   next_ = 0;
 }

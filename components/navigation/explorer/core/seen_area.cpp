@@ -31,6 +31,7 @@ void SeenArea::set_map(const grid::OccupancyGrid& map, std::span<const Rectangle
   counted_in_.assign(map.size(), 0);
   count_ = 0;
   wanted_ = seen_ = 0;
+  has_aside_ = false;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (map[i] < 0 || map[i] > kFreeUpTo) {
       cells_[i] = kOpaque;
@@ -67,6 +68,15 @@ void SeenArea::aim() {
 void SeenArea::forget() {
   for (auto& cell : cells_) cell = static_cast<std::uint8_t>(cell & ~kSeen);
   seen_ = 0;
+}
+
+void SeenArea::set_aside(std::span<const std::uint8_t> cells) {
+  has_aside_ = false;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const bool aside = i < cells.size() && cells[i] != 0 && wanted(i);
+    cells_[i] = static_cast<std::uint8_t>(aside ? cells_[i] | kAside : cells_[i] & ~kAside);
+    has_aside_ = has_aside_ || aside;
+  }
 }
 
 std::size_t SeenArea::most_in_view() const {
@@ -137,7 +147,7 @@ std::size_t SeenArea::gain(std::span<const Pose2> poses) {
   std::size_t gain = 0;
   for (const Pose2& pose : poses) {
     cast_view(pose, [&](std::size_t index) {
-      if (!unseen(index) || counted_in_[index] == count) return;
+      if (!pending(index) || counted_in_[index] == count) return;
       counted_in_[index] = count;
       ++gain;
     });
@@ -157,7 +167,7 @@ void SeenArea::gains(const Point2& position, Gains& gains) {
   for (std::size_t ray = 0; ray < circle_.size(); ++ray) {
     std::uint32_t& sector = sectors[ray / kRaysPerDirection];
     cast(from, circle_[ray].x(), circle_[ray].y(), [&](std::size_t index) {
-      if (!unseen(index) || counted_in_[index] == count) return;
+      if (!pending(index) || counted_in_[index] == count) return;
       counted_in_[index] = count;
       ++sector;
     });

@@ -37,7 +37,7 @@ struct Rectangle {
 class SeenArea {
  public:
   static constexpr int kDirections = 64;
-  /// Unseen cells that the camera would see from one place, by direction: entry d is the yaw
+  /// Pending cells that the camera would see from one place, by direction: entry d is the yaw
   /// 2 pi d / kDirections.
   using Gains = std::array<std::uint32_t, kDirections>;
 
@@ -48,6 +48,10 @@ class SeenArea {
   void set_map(const grid::OccupancyGrid& map, std::span<const Rectangle> leave_out);
   /// Nothing is seen.
   void forget();
+  /// Cells that are not zero are looked at when nothing else is left: no view is chosen for them;
+  /// what is seen of them counts as before. Empty: none are.
+  void set_aside(std::span<const std::uint8_t> cells);
+  bool has_aside() const { return has_aside_; }
 
   const grid::GridGeometry& geometry() const { return cells_.geometry(); }
   bool empty() const { return cells_.empty(); }
@@ -63,6 +67,14 @@ class SeenArea {
   }
   bool wanted(std::size_t index) const { return (cells_[index] & kWanted) != 0; }
   bool unseen(std::size_t index) const { return (cells_[index] & (kWanted | kSeen)) == kWanted; }
+  /// Unseen and not set aside: what views are chosen for.
+  bool pending(std::size_t index) const {
+    return (cells_[index] & (kWanted | kSeen | kAside)) == kWanted;
+  }
+  bool aside(const Point2& point) const {
+    const grid::Cell cell = geometry().cell_at(point);
+    return geometry().contains(cell) && (cells_[geometry().index(cell)] & kAside) != 0;
+  }
   bool seen(std::size_t index) const {
     return (cells_[index] & (kWanted | kSeen)) == (kWanted | kSeen);
   }
@@ -73,14 +85,14 @@ class SeenArea {
   std::span<const std::uint32_t> view(const Pose2& robot);
   /// The camera looks: marks what it sees, returns how many cells are new.
   std::size_t look(const Pose2& robot);
-  /// Unseen cells that the camera would see from at least one of the poses.
+  /// Pending cells that the camera would see from at least one of the poses.
   std::size_t gain(std::span<const Pose2> poses);
   /// What a turn at one place would show, by direction; each cell counts for the directions that
   /// have the ray in view that meets it first.
   void gains(const Point2& position, Gains& gains);
 
  private:
-  static constexpr std::uint8_t kOpaque = 1, kWanted = 2, kSeen = 4;
+  static constexpr std::uint8_t kOpaque = 1, kWanted = 2, kSeen = 4, kAside = 8;
   static constexpr int kRaysPerDirection = 6;
 
   explicit SeenArea(const Camera& camera) : camera_(camera) {}
@@ -94,6 +106,7 @@ class SeenArea {
   Camera camera_;
   grid::Grid<std::uint8_t> cells_;
   std::size_t wanted_ = 0, seen_ = 0;
+  bool has_aside_ = false;
   std::vector<Point2> rays_;               // unit vectors across the field of view
   std::vector<Point2> circle_;             // all around, kRaysPerDirection a direction
   std::vector<std::uint32_t> counted_in_;  // per cell: the count that it was counted in last

@@ -100,6 +100,11 @@ ExplorerComponent::ExplorerComponent(runtime::Host& host)
   cancel_drive_ = host.output(topics::kNavigateCancel);
   status_ = host.output(topics::kExploreStatus);
   coverage_ = host.output(topics::kExploreCoverage);
+  host.input(topics::kExploreShare, {.optional = true},
+             [this](const auto& share, const auto&) { take_share(share); });
+  host.input(topics::kFleetLook, {.optional = true},
+             [this](const auto& look, const auto&) { take_look(look); });
+  looks_ = host.output(topics::kFleetLook);
   timer_ = host.timer("step", kPeriod, [this](auto) { tick(); });
   publish_status();
 }
@@ -119,6 +124,28 @@ void ExplorerComponent::take_goal(const usher_msgs::msg::ExploreGoal& goal) {
   publish_status();
 }
 
+void ExplorerComponent::take_share(const usher_msgs::msg::ExploreShare& message) {
+  Share share;
+  share.own = message.own();
+  for (const auto& place : message.places()) share.places.emplace_back(place.x(), place.y());
+  if (!core_.set_share(share)) ++rejected_;
+}
+
+/// What another robot of the fleet sees need not be looked at again.
+void ExplorerComponent::take_look(const usher_msgs::msg::FleetLook& look) {
+  if (look.robot() != host_.robot_name()) core_.look({look.x(), look.y(), look.yaw()});
+}
+
+void ExplorerComponent::tell_fleet(const Pose2& robot) {
+  usher_msgs::msg::FleetLook look;
+  look.header(wire::header(host_.now(), frames::kMap));
+  look.robot(host_.robot_name());
+  look.x(robot.x);
+  look.y(robot.y);
+  look.yaw(robot.yaw);
+  looks_.publish(look);
+}
+
 void ExplorerComponent::take_navigation(const usher_msgs::msg::NavigateStatus& status) {
   if (status.client() == host_.name()) drives_.answered(status.id());
   step();
@@ -136,6 +163,7 @@ std::optional<Pose2> ExplorerComponent::pose() const {
 void ExplorerComponent::tick() {
   const auto robot = pose();
   if (robot) core_.look(*robot);
+  if (robot && !host_.robot_name().empty()) tell_fleet(*robot);
   step();
   ++ticks_;
   if (ticks_ % kStatusEvery == 0) publish_status();

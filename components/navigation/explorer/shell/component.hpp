@@ -21,6 +21,9 @@ class ExplorerComponent final : public runtime::Component {
   static Explorer make(runtime::Host& host);
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_goal(const usher_msgs::msg::ExploreGoal& goal);
+  void take_share(const usher_msgs::msg::ExploreShare& share);
+  void take_look(const usher_msgs::msg::FleetLook& look);
+  void tell_fleet(const Pose2& robot);
   void take_navigation(const usher_msgs::msg::NavigateStatus& status);
   std::optional<Pose2> pose() const;
   void tick();
@@ -46,6 +49,7 @@ class ExplorerComponent final : public runtime::Component {
   runtime::Output<usher_msgs::msg::GoalCancel> cancel_drive_;
   runtime::Output<usher_msgs::msg::ExploreStatus> status_;
   runtime::Output<nav_msgs::msg::OccupancyGrid> coverage_;
+  runtime::Output<usher_msgs::msg::FleetLook> looks_;
   runtime::Timer timer_;
 };
 

@@ -229,5 +229,25 @@ TEST_F(Component, RefusesGoalsThatAreNone) {
   EXPECT_EQ(drives(), 0U);
 }
 
+TEST_F(Component, TakesItsShareAndRefusesOneThatIsNone) {
+  give_map();
+  run(300);
+  usher_msgs::msg::ExploreShare share;
+  share.places().resize(2);
+  share.places()[0].x(2.0);
+  share.places()[0].y(5.0);
+  share.places()[1].x(8.0);
+  share.places()[1].y(5.0);
+  share.own(2);
+  host.publish(topics::kExploreShare, share);
+  run(200);
+  EXPECT_EQ(host.counter("inputs: rejected"), 1U);
+  share.own(1);
+  host.publish(topics::kExploreShare, share);
+  run(200);
+  EXPECT_EQ(host.counter("inputs: rejected"), 1U);
+  EXPECT_TRUE(host.written(topics::kFleetLook).empty()) << "it is in no fleet";
+}
+
 }  // namespace
 }  // namespace usher::explorer

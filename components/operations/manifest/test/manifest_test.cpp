@@ -258,5 +258,27 @@ TEST_F(ManifestFile, TakesTheNearestConfig) {
   EXPECT_EQ(manifest->site_file, installed);
 }
 
+TEST_F(ManifestFile, ReadsTheFleet) {
+  const std::string body = std::string(kHead) + "domain: 7\ncomponents: {amcl: {host: nuc}}\n";
+  const auto manifest = read(body +
+                             "fleet: {domain: 60, robot: iris, peers: [10.0.0.3], "
+                             "start: [1, 2, 0]}\n");
+  ASSERT_TRUE(manifest) << manifest.error();
+  EXPECT_THAT(manifest->findings, IsEmpty());
+  EXPECT_EQ(manifest->fleet.robot, "iris");
+  EXPECT_EQ(manifest->fleet.domain, 60U);
+  EXPECT_THAT(manifest->fleet.peers, ElementsAre("10.0.0.3"));
+  EXPECT_EQ(manifest->fleet.start.yaml, "[1, 2, 0]");
+  EXPECT_EQ(read(body)->fleet.robot, "");
+  EXPECT_THAT(findings(body + "fleet: {domain: 7, robot: iris}\n"),
+              ElementsAre(HasSubstr("its domain must not be the robot's own, both are 7")));
+  EXPECT_THAT(findings(body + "fleet: {robot: iris}\n"),
+              ElementsAre(HasSubstr("'domain' must be given")));
+  EXPECT_THAT(findings(body + "fleet: {domain: 60, robot: \"i/s\"}\n"),
+              ElementsAre(HasSubstr("a robot's name must be")));
+  EXPECT_THAT(findings(body + "fleet: {domain: 60, robot: iris, peers: [otto]}\n"),
+              ElementsAre(HasSubstr("IPv4")));
+}
+
 }  // namespace
 }  // namespace usher::operations

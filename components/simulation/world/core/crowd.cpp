@@ -74,7 +74,8 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
   }
 }
 
-Status Crowd::send(const std::string& name, const Point2& goal, double speed, bool follow) {
+Status Crowd::send(const std::string& name, const Point2& goal, double speed, bool follow,
+                   const std::string& leader) {
   for (std::size_t i = 0; i < people_.size(); ++i) {
     if (people_[i].name != name) continue;
     if (!people_[i].scripted) return Error{"person '" + name + "' walks a loop, nobody sends it"};
@@ -86,18 +87,26 @@ Status Crowd::send(const std::string& name, const Point2& goal, double speed, bo
     minds_[i].goal = goal;
     minds_[i].speed = speed;
     minds_[i].follow = follow;
+    minds_[i].leader = leader;
     minds_[i].has_goal = speed > 0.0;
     return {};
   }
   return Error{"no person is named '" + name + "'"};
 }
 
-void Crowd::step(const Scene& scene, const RobotView& robot) {
-  remember_robot(robot);
+void Crowd::show(std::vector<Person> people, std::vector<Mover> movers) {
+  people_ = std::move(people);
+  movers_ = std::move(movers);
+  minds_.resize(people_.size());
+}
+
+void Crowd::step(const Scene& scene, std::span<const RobotView> robots) {
+  remember_robots(robots);
   for (std::size_t i = 0; i < people_.size(); ++i) {
     Person& person = people_[i];
     Mind& mind = minds_[i];
-    choose_goal(person, mind, scene, robot);
+    choose_goal(person, mind, scene);
+    const RobotView& robot = robots_[nearest_robot(person.position)];
     const Point2 wanted = wanted_velocity(person, mind, robot);
     // Who follows and is near enough stands, and has to step out of the robot's way.
     const bool walks =
@@ -114,10 +123,19 @@ void Crowd::step(const Scene& scene, const RobotView& robot) {
     const bool by_a_wall = wall.distance < person.radius + 0.1;
     turn_sideways(person, walks, robot);
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
-    watch(person, mind, walks, robot);
+    watch(person, mind, walks, robots_[watched_robot(person, mind)]);
     lose_patience(person, mind, robot);
     hold(person, mind, movers_[i]);
   }
+}
+
+/// The one that spoke with him, while it is near.
+std::size_t Crowd::watched_robot(const Person& person, const Mind& mind) const {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const bool near = (robots_[i].pose.position() - person.position).norm() <= config_.watch_within;
+    if (near && !mind.leader.empty() && robots_[i].name == mind.leader) return i;
+  }
+  return nearest_robot(person.position);
 }
 
 /// Turns the face to a robot that is near.
@@ -137,7 +155,7 @@ void Crowd::turn_sideways(Person& person, bool walks, const RobotView& robot) co
   if (robot.footprint.empty()) return;
   const double gap =
       shapes::Polygon(robot.footprint).gap_to_disc(person.position, person.radius).distance;
-  const bool squeezes = walks && robot_stands_ > kStands && gap < kNear;
+  const bool squeezes = walks && robot.stands > kStands && gap < kNear;
   const double change = (squeezes ? config_.sideways : config_.radius) - person.radius;
   const double step = std::clamp(change, -kRate * kStep, kRate * kStep);
   if (step < gap - kSqueeze) person.radius += step;
@@ -161,22 +179,45 @@ void Crowd::hold(Person& person, const Mind& mind, Mover& mover) const {
   mover.top = top;
 }
 
-void Crowd::remember_robot(const RobotView& robot) {
-  if (robot.footprint.empty()) return;
-  const Point2 here = robot.pose.position();
-  robot_stands_ += kStep;
-  if ((here - robot_stood_at_).norm() > kSway) {
-    robot_stood_at_ = here;
-    robot_stands_ = 0.0;
+void Crowd::remember_robots(std::span<const RobotView> robots) {
+  robots_.assign(robots.begin(), robots.end());
+  tracks_.resize(robots.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    Track& track = tracks_[i];
+    if (robots_[i].footprint.empty()) continue;
+    const Point2 here = robots_[i].pose.position();
+    track.stands += kStep;
+    if ((here - track.stood_at).norm() > kSway) {
+      track.stood_at = here;
+      track.stands = 0.0;
+    }
+    robots_[i].stands = track.stands;
+    if (!track.trail.empty() && (track.trail.back() - here).norm() < kTrailStep) continue;
+    track.trail.push_back(here);
+    if (track.trail.size() > kTrailLength) track.trail.pop_front();
   }
-  if (!trail_.empty() && (trail_.back() - here).norm() < kTrailStep) return;
-  trail_.push_back(here);
-  if (trail_.size() > kTrailLength) trail_.pop_front();
+}
+
+std::size_t Crowd::nearest_robot(const Point2& to) const {
+  const auto nearest =
+      std::min_element(robots_.begin(), robots_.end(), [&](const auto& a, const auto& b) {
+        return (a.pose.position() - to).norm() < (b.pose.position() - to).norm();
+      });
+  return static_cast<std::size_t>(nearest - robots_.begin());
+}
+
+/// Whom somebody walks with, or round.
+std::size_t Crowd::robot_for(const Person& person, const Mind& mind) const {
+  if (!mind.follow) return nearest_robot(person.position);
+  const auto leader = std::find_if(robots_.begin(), robots_.end(),
+                                   [&](const auto& each) { return each.name == mind.leader; });
+  return leader == robots_.end() ? 0 : static_cast<std::size_t>(leader - robots_.begin());
 }
 
 /// Along the robot's way, so that no wall comes between: the newest point of it that a straight
 /// walk reaches, else a little on from the nearest.
-Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
+Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene,
+                              const std::deque<Point2>& trail) const {
   constexpr double kSight = 6.0;    // [m]
   constexpr double kTested = 0.2;   // [m] between tested points of the straight walk
   constexpr std::size_t kSkip = 3;  // points of the trail
@@ -190,21 +231,24 @@ Point2 Crowd::point_to_follow(const Point2& here, const Scene& scene) const {
     return true;
   };
   constexpr std::size_t kAhead = 8;  // points of the trail
-  std::size_t nearest = trail_.size() - 1;
-  for (std::size_t i = trail_.size(); i > 0; i -= std::min(i, kSkip)) {
-    const Point2& point = trail_[i - 1];
+  std::size_t nearest = trail.size() - 1;
+  for (std::size_t i = trail.size(); i > 0; i -= std::min(i, kSkip)) {
+    const Point2& point = trail[i - 1];
     if ((point - here).norm() < kSight && free(point)) return point;
-    if ((point - here).norm() < (trail_[nearest] - here).norm()) nearest = i - 1;
+    if ((point - here).norm() < (trail[nearest] - here).norm()) nearest = i - 1;
   }
-  return trail_[std::min(nearest + kAhead, trail_.size() - 1)];
+  return trail[std::min(nearest + kAhead, trail.size() - 1)];
 }
 
-void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot) {
-  if (mind.follow && mind.has_goal && !trail_.empty()) {
+void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene) {
+  const std::size_t which = robot_for(person, mind);
+  const RobotView& robot = robots_[which];
+  const std::deque<Point2>& trail = tracks_[which].trail;
+  if (mind.follow && mind.has_goal && !trail.empty()) {
     mind.look_left -= kStep;
     if (mind.look_left <= 0.0) {
       mind.look_left = kLookPeriod;
-      mind.goal = point_to_follow(person.position, scene);
+      mind.goal = point_to_follow(person.position, scene, trail);
     }
     // Near enough, or still in front of it: lets the robot pass first, and when it does not, walks
     // round it.
@@ -213,7 +257,7 @@ void Crowd::choose_goal(Person& person, Mind& mind, const Scene& scene, const Ro
     constexpr double kInFront = 2.5;  // [m]
     constexpr double kTooNear = 0.7;  // of the distance kept
     const bool in_front = from_robot.norm() < kInFront && from_robot.dot(heading) > 0.0;
-    if (in_front && robot_stands_ > config_.patience) {
+    if (in_front && robot.stands > config_.patience) {
       mind.goal = robot.pose.position() - config_.follow_distance * heading;
     } else if (!in_front && from_robot.norm() < kTooNear * config_.follow_distance) {
       mind.goal = person.position + 0.5 * unit(from_robot);  // it backs off: so does who follows
@@ -281,7 +325,7 @@ Point2 Crowd::wanted_velocity(const Person& person, const Mind& mind,
   const Point2 to_robot = unit(body.center() - person.position);
   const bool ahead = to_robot.dot(direction) > 0.5;
   if (!ahead) return speed * direction;
-  const double stop = robot_stands_ > kStands ? kSqueeze : config_.robot_stop;
+  const double stop = robot.stands > kStands ? kSqueeze : config_.robot_stop;
   if (gap.distance < stop) return Point2::Zero();
   const double caution = std::min(1.0, (gap.distance - stop) / (0.5 * config_.robot_see));
   return speed * (0.3 + 0.7 * caution) * direction;
@@ -313,7 +357,7 @@ Point2 Crowd::push_of_robot(const Person& person, bool walks, const RobotView& r
   const double apart = away.norm();
   if (apart > body.radius() + person.radius + config_.robot_see) return Point2::Zero();
   const double gap = body.gap_to_disc(person.position, person.radius).distance;
-  const bool stands = robot_stands_ > kStands;
+  const bool stands = robot.stands > kStands;
   Point2 push = (stands ? 0.25 : 1.0) * config_.robot_push * std::exp(-gap / config_.robot_reach) *
                 unit(away);
 

@@ -13,10 +13,12 @@
 
 namespace usher::world {
 
-/// What people see of the robot.
+/// What people see of a robot.
 struct RobotView {
   Pose2 pose;
   std::span<const Point2> footprint;  ///< corners in world, counter-clockwise; empty: no robot
+  std::string name{};                 ///< where there are several
+  double stands = 0.0;                ///< [s] since it moved; the crowd fills it in
 };
 
 /// Somebody in the world.
@@ -57,7 +59,8 @@ struct CrowdConfig {
 /// [helbing1995social] with habits on top. Who meets the robot keeps to the right; who is blocked
 /// stops, waits and in the end turns round, or walks away from a robot that bars both ways; past
 /// one that stands still people squeeze, sideways. Nobody walks into a wall or, by own will, into
-/// the robot.
+/// the robot. Of several robots everybody minds the nearest, follows the one that invited him, and
+/// watches that one while it is near, else the nearest.
 /// Deterministic for the seed.
 class Crowd {
  public:
@@ -70,12 +73,18 @@ class Crowd {
   /// The same people as bodies, in the same order.
   std::span<const Mover> movers() const { return movers_; }
 
-  /// Sends a scripted person straight to a point, or (follow) behind the robot wherever that goes.
-  /// Speed in [0, 2.5] m/s; 0 stands. Unknown names, walkers and values out of range are errors.
-  Status send(const std::string& name, const Point2& goal, double speed, bool follow);
+  /// Sends a scripted person straight to a point, or (follow) behind the robot `leader` wherever
+  /// that goes. Speed in [0, 2.5] m/s; 0 stands. Unknown names, walkers and values out of range are
+  /// errors; a robot that is not there is the first one.
+  Status send(const std::string& name, const Point2& goal, double speed, bool follow,
+              const std::string& leader = {});
 
-  /// Advances by kStep.
-  void step(const Scene& scene, const RobotView& robot);
+  /// Advances by kStep. The same robots each time, in the same order, at least one.
+  void step(const Scene& scene, std::span<const RobotView> robots);
+  void step(const Scene& scene, const RobotView& robot) { step(scene, {&robot, 1}); }
+
+  /// People whom another world moves, as they are now, one mover each; step() is not called then.
+  void show(std::vector<Person> people, std::vector<Mover> movers);
 
  private:
   struct Mind {
@@ -85,6 +94,7 @@ class Crowd {
     Point2 goal = Point2::Zero();
     bool has_goal = false;
     bool follow = false;
+    std::string leader;
     double look_left = 0.0;  // s, to the next look for the way to follow
     std::vector<Point2> loop;
     std::size_t next = 0;
@@ -96,9 +106,20 @@ class Crowd {
     Point2 stuck_at = Point2::Zero();
   };
 
-  void remember_robot(const RobotView& robot);
-  Point2 point_to_follow(const Point2& here, const Scene& scene) const;
-  void choose_goal(Person& person, Mind& mind, const Scene& scene, const RobotView& robot);
+  /// Where a robot was.
+  struct Track {
+    std::deque<Point2> trail;  // newest last
+    Point2 stood_at = Point2::Zero();
+    double stands = 0.0;  // s
+  };
+
+  void remember_robots(std::span<const RobotView> robots);
+  std::size_t nearest_robot(const Point2& to) const;
+  std::size_t watched_robot(const Person& person, const Mind& mind) const;
+  std::size_t robot_for(const Person& person, const Mind& mind) const;
+  Point2 point_to_follow(const Point2& here, const Scene& scene,
+                         const std::deque<Point2>& trail) const;
+  void choose_goal(Person& person, Mind& mind, const Scene& scene);
   void turn_round(Mind& mind) const;
   void lose_patience(Person& person, Mind& mind, const RobotView& robot);
   void watch(Person& person, const Mind& mind, bool walks, const RobotView& robot) const;
@@ -115,9 +136,8 @@ class Crowd {
   std::vector<Person> people_;
   std::vector<Mind> minds_;
   std::vector<Mover> movers_;
-  std::deque<Point2> trail_;  // of the robot, newest last
-  Point2 robot_stood_at_ = Point2::Zero();
-  double robot_stands_ = 0.0;  // s
+  std::vector<RobotView> robots_;  // of the step that runs
+  std::vector<Track> tracks_;      // likewise
 };
 
 }  // namespace usher::world

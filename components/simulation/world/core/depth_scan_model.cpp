@@ -77,6 +77,7 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
     movers_.push_back(
         {person.position, person.radius * config_.body_radius, share * person.height});
   }
+  for (const Mover& body : world.robot_bodies()) movers_.push_back(body);
   const geometry::Pose3 pose = camera.pose(world);
   const Eigen::Vector3d axis = pose.rotation * Eigen::Vector3d::UnitX();
   camera_height_ = pose.translation.z();

@@ -22,6 +22,25 @@ std::unique_ptr<Base> make_base(const RobotConfig& robot, std::uint64_t seed) {
   return std::make_unique<Segway>(robot.segway, seed);
 }
 
+/// Discs along the longer side of an outline's box, as wide as the shorter one.
+void add_bodies(const OtherRobot& robot, std::vector<Mover>& bodies) {
+  Point2 low = robot.outline.front(), high = low;
+  for (const Point2& corner : robot.outline) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const Point2 half = 0.5 * (high - low);
+  const double radius = half.minCoeff();
+  const double reach = half.maxCoeff() - radius;
+  const Point2 along = half.x() > half.y() ? Point2(reach, 0.0) : Point2(0.0, reach);
+  const int gaps = static_cast<int>(std::ceil(2.0 * reach / std::max(radius, 0.01)));
+  for (int i = 0; i <= gaps; ++i) {
+    const double share = gaps == 0 ? 0.0 : 2.0 * i / gaps - 1.0;
+    bodies.push_back(
+        {robot.pose * Point2(0.5 * (low + high) + share * along), radius, robot.height});
+  }
+}
+
 }  // namespace
 
 World::World(const WorldConfig& config, Building building, std::span<const PersonPlan> people,
@@ -64,7 +83,13 @@ void World::step() {
   base_->step();
   const Twist2 speed = base_->truth().twist;
   judge(before, speed);
-  crowd_.step(*scene_, {base_->truth().pose, footprint_at(base_->truth().pose)});
+  if (config_.moves_people) {
+    std::vector<RobotView> robots{
+        {base_->truth().pose, footprint_at(base_->truth().pose), config_.name}};
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      robots.push_back({robots_[i].pose, robot_outlines_[i], robots_[i].name});
+    crowd_.step(*scene_, robots);
+  }
   ++steps_;
   time_ = static_cast<double>(steps_) * kStep;
   if (steps_ % kWatchEvery == 0) watch_people();
@@ -101,19 +126,47 @@ std::vector<Point2>& World::footprint_at(const Pose2& pose) {
 }
 
 void World::scan(std::size_t laser, std::vector<float>& ranges) {
-  lasers_.at(laser).scan(*scene_, crowd_.movers(), base_in_world(), ranges);
+  lasers_.at(laser).scan(*scene_, everybody(), base_in_world(), ranges);
 }
 
 void World::sonar(std::vector<float>& ranges) {
-  sonar_.measure(*scene_, crowd_.movers(), base_in_world(), ranges);
+  sonar_.measure(*scene_, everybody(), base_in_world(), ranges);
 }
 
 WhiskerContacts World::whiskers() {
-  return whiskers_.touch(*scene_, crowd_.movers(), base_->truth().pose);
+  return whiskers_.touch(*scene_, everybody(), base_->truth().pose);
 }
 
-Status World::send_person(const std::string& name, const Point2& goal, double speed, bool follow) {
-  return crowd_.send(name, goal, speed, follow);
+Status World::send_person(const std::string& name, const Point2& goal, double speed, bool follow,
+                          const std::string& leader) {
+  return crowd_.send(name, goal, speed, follow, leader);
+}
+
+void World::show_people(std::vector<Person> people, std::vector<Mover> bodies) {
+  seen_since_.resize(people.size(), kNever);
+  touched_people_.resize(people.size(), false);
+  crowd_.show(std::move(people), std::move(bodies));
+}
+
+void World::show_robots(std::vector<OtherRobot> robots) {
+  robots_ = std::move(robots);
+  robots_seen_since_.resize(robots_.size(), kNever);
+  touched_robots_.resize(robots_.size(), false);
+  robot_outlines_.resize(robots_.size());
+  robot_bodies_.clear();
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    robot_outlines_[i].clear();
+    for (const Point2& corner : robots_[i].outline)
+      robot_outlines_[i].push_back(robots_[i].pose * corner);
+    add_bodies(robots_[i], robot_bodies_);
+  }
+}
+
+std::vector<Mover> World::everybody() const {
+  const auto people = crowd_.movers();
+  std::vector<Mover> all(people.begin(), people.end());
+  all.insert(all.end(), robot_bodies_.begin(), robot_bodies_.end());
+  return all;
 }
 
 Status World::set_door(const std::string& name, bool open) {
@@ -150,24 +203,51 @@ Status World::remove_thing(const std::string& name) {
 
 void World::watch_people() {
   const BaseTruth& robot = base_->truth();
-  const std::span<const Mover> movers = crowd_.movers();
-  for (std::size_t i = 0; i < movers.size(); ++i) {
-    const Point2 to = inverse(robot.pose) * movers[i].center;
+  const auto watch = [&](const Mover& mover, double& seen_since) {
+    const Point2 to = inverse(robot.pose) * mover.center;
     const double distance = to.norm();
     const double bearing = std::atan2(to.y(), to.x());
     bool seen = distance < config_.sight && std::abs(bearing) < config_.sight_angle;
-    if (seen && distance > movers[i].radius + 0.1) {
+    if (seen && distance > mover.radius + 0.1) {
       caster_.cast(*scene_, gaze_,
                    {{robot.pose.x, robot.pose.y, 1.0},
                     geometry::to_space({0.0, 0.0, robot.pose.yaw + bearing}).rotation},
-                   {.max_range = distance}, movers.subspan(i, 1), hits_);
+                   {.max_range = distance}, {&mover, 1}, hits_);
       seen = hits_.what[0] >= static_cast<std::int32_t>(scene_->things().size());
     }
     if (!seen) {
-      seen_since_[i] = kNever;
-    } else if (seen_since_[i] == kNever) {
-      seen_since_[i] = time_;
+      seen_since = kNever;
+    } else if (seen_since == kNever) {
+      seen_since = time_;
     }
+  };
+  const std::span<const Mover> movers = crowd_.movers();
+  for (std::size_t i = 0; i < movers.size(); ++i) watch(movers[i], seen_since_[i]);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const shapes::Polygon outline(robot_outlines_[i]);
+    watch({outline.center(), outline.radius(), robots_[i].height}, robots_seen_since_[i]);
+  }
+}
+
+/// Two robots that meet stop each other, as walls do; who only moves away, or turns, is let go.
+void World::judge_robots(const Pose2& before, double fastest) {
+  if (robots_.empty()) return;
+  std::vector<Point2> earlier;
+  for (const Point2& corner : config_.robot.footprint) earlier.push_back(before * corner);
+  const Pose2 now = base_->truth().pose;
+  const shapes::Polygon body(footprint_at(now));
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const double gap = body.gap_to_polygon(robot_outlines_[i]).distance;
+    if (gap < truth_.clearance) truth_.clearance = gap, truth_.nearest = robots_[i].name;
+    if (gap <= 0.0 && !touched_robots_[i]) {
+      count_touch(robots_[i].name, time_ - robots_seen_since_[i] > config_.stopping_time, fastest);
+    }
+    touched_robots_[i] = gap <= (touched_robots_[i] ? kApart : 0.0);
+    if (gap > 0.0) continue;
+    const Point2 other = robots_[i].pose.position();
+    const bool came = shapes::Polygon(earlier).gap_to_polygon(robot_outlines_[i]).distance > 0.0;
+    const bool comes = (now.position() - other).norm() < (before.position() - other).norm();
+    if (came || comes) base_->obstruct(before);
   }
 }
 
@@ -204,6 +284,7 @@ void World::judge(const Pose2& before, const Twist2& speed) {
     }
     touched_people_[i] = gap <= (touched_people_[i] ? kApart : 0.0);
   }
+  judge_robots(before, fastest);
 }
 
 void World::count_touch(const std::string& what, bool seen, double speed) {

@@ -49,8 +49,18 @@ struct GroundTruth {
   std::string contact_with;  ///< the last thing touched
 };
 
+/// A robot that another world moves, as this one sees it.
+struct OtherRobot {
+  std::string name;
+  Pose2 pose;
+  std::vector<Point2> outline;  ///< in base_footprint, convex and counter-clockwise, 3 and more
+  double height = 1.8;          ///< [m]
+};
+
 struct WorldConfig {
   RobotConfig robot;
+  std::string name;          ///< of the robot, where there are several
+  bool moves_people = true;  ///< else another world does
   CrowdConfig crowd;
   double stopping_time = 2.0;  ///< [s]
   double sight = 10.0;         ///< [m] farther people count as unseen
@@ -83,7 +93,20 @@ class World {
   WhiskerContacts whiskers();
 
   std::span<const Person> people() const { return crowd_.people(); }
-  Status send_person(const std::string& name, const Point2& goal, double speed, bool follow);
+  /// `leader`: which robot is followed.
+  Status send_person(const std::string& name, const Point2& goal, double speed, bool follow,
+                     const std::string& leader = {});
+  std::span<const Mover> bodies() const {
+    return crowd_.movers();
+  }  ///< of people(), in their order
+  /// People whom another world moves, as they are now.
+  void show_people(std::vector<Person> people, std::vector<Mover> bodies);
+
+  /// The other robots as they are now, the same ones in the same order or more of them. They are in
+  /// the way and people mind them as they mind this one.
+  void show_robots(std::vector<OtherRobot> robots);
+  /// What sensors meet of them: a few discs each, that together fill the outline.
+  std::span<const Mover> robot_bodies() const { return robot_bodies_; }
 
   /// Doors have the names of the building; an unknown one is an error.
   Status set_door(const std::string& name, bool open);
@@ -107,7 +130,9 @@ class World {
 
   void rebuild();
   std::vector<Point2>& footprint_at(const Pose2& pose);
+  std::vector<Mover> everybody() const;
   void watch_people();
+  void judge_robots(const Pose2& before, double fastest);
   bool thing_long_visible(const std::string& name) const;
   void judge(const Pose2& before, const Twist2& speed);
   void count_touch(const std::string& what, bool seen, double speed);
@@ -132,6 +157,11 @@ class World {
   std::vector<double> seen_since_;                         // of each person; infinity: unseen
   std::vector<std::string> touched_things_;                // while the contact lasts
   std::vector<bool> touched_people_;
+  std::vector<OtherRobot> robots_;
+  std::vector<std::vector<Point2>> robot_outlines_;  // in world
+  std::vector<Mover> robot_bodies_;
+  std::vector<double> robots_seen_since_;  // of each; infinity: unseen
+  std::vector<bool> touched_robots_;
   Fan gaze_{0.0, 0.1, 1};
   RayCaster caster_;
   FanHits hits_;

@@ -48,6 +48,20 @@ void read_laser(runtime::Parameters& p, LaserConfig& laser) {
                               "Beams beyond, to either side, see the robot itself.");
 }
 
+usher_sim_msgs::msg::Person to_message(const world::Person& person, std::uint32_t id,
+                                       const std::string& name) {
+  usher_sim_msgs::msg::Person entry;
+  entry.id(id);
+  entry.name(name);
+  entry.x(person.position.x());
+  entry.y(person.position.y());
+  entry.yaw(person.yaw);
+  entry.v(person.velocity.norm());
+  entry.height(person.height);
+  entry.posture(static_cast<std::uint8_t>(person.posture));
+  return entry;
+}
+
 }  // namespace
 
 WorldConfig WorldComponent::read_robot(runtime::Host& host) {
@@ -89,7 +103,11 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
 
 std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
   auto& p = host.parameters();
-  const WorldConfig config = read_robot(host);
+  WorldConfig config = read_robot(host);
+  people_of_ = p.text("people_of", "",
+                      "Robot of the fleet whose world moves the people; empty: this one does.");
+  config.name = host.robot_name();
+  config.moves_people = people_of_.empty();
   const std::string building_file = p.file(
       "site.world", "", "The building (world.yaml); without it the walls of the site's map.");
   const std::string map_file =
@@ -101,7 +119,7 @@ std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
   if (building_file.empty() && map_file.empty()) return nullptr;
 
   std::vector<PersonPlan> people;
-  if (with_people && !people_file.empty()) {
+  if (with_people && config.moves_people && !people_file.empty()) {
     auto loaded = load_people(people_file);
     if (!loaded) host.fault(loaded.error());
     people = std::move(loaded).value();
@@ -144,6 +162,17 @@ WorldComponent::WorldComponent(runtime::Host& host)
   scans_ = host.output(topics::kSimScan);
   boards_ = host.output(topics::kSimSensorBoard);
   truth_ = host.output(topics::kSimGroundTruth);
+  host.input(topics::kFleetSimBody, {.optional = true},
+             [this](const auto& body, const auto&) { take_body(body); });
+  host.input(topics::kFleetSimPeople, {.optional = true},
+             [this](const auto& people, const auto&) { take_people(people); });
+  host.input(topics::kFleetSimPersonGoal, {.optional = true},
+             [this](const auto& goal, const auto&) {
+               if (people_of_.empty()) move_person(goal.goal(), goal.robot());
+             });
+  bodies_ = host.output(topics::kFleetSimBody);
+  people_ = host.output(topics::kFleetSimPeople);
+  person_goals_ = host.output(topics::kFleetSimPersonGoal);
   timer_ = host.timer("step", kStepTime, [this](std::uint64_t skipped) { advance(skipped); });
   start_ = host.now();
   if (!world_)
@@ -170,15 +199,70 @@ void WorldComponent::take_command(const BaseCommand& command) {
 }
 
 void WorldComponent::take_person_goal(const PersonGoal& goal) {
+  if (people_of_.empty()) return move_person(goal, host_.robot_name());
+  FleetPersonGoal message;
+  message.robot(host_.robot_name());
+  message.goal(goal);
+  person_goals_.publish(message);
+}
+
+void WorldComponent::move_person(const PersonGoal& goal, const std::string& leader) {
   if (!world_ ||
-      !world_->send_person(goal.name(), {goal.x(), goal.y()}, goal.speed(), goal.follow()))
+      !world_->send_person(goal.name(), {goal.x(), goal.y()}, goal.speed(), goal.follow(), leader))
     ++rejected_;
+}
+
+/// A robot whose world falls silent stays where it was.
+void WorldComponent::take_body(const FleetBody& body) {
+  constexpr std::size_t kMostCorners = 64;
+  const Pose2 pose{body.x(), body.y(), body.yaw()};
+  const auto& corners = body.footprint();
+  if (!world_ || body.robot() == host_.robot_name()) return;
+  if (!pose.finite() || corners.size() < 3 || corners.size() > kMostCorners) {
+    ++rejected_;
+    return;
+  }
+  OtherRobot& other = others_[body.robot()];
+  other.name = body.robot();
+  other.pose = pose;
+  other.height = body.height();
+  other.outline.clear();
+  for (const auto& corner : corners) other.outline.emplace_back(corner.x(), corner.y());
+}
+
+void WorldComponent::take_people(const FleetPeople& message) {
+  if (!world_ || people_of_.empty() || message.robot() != people_of_) return;
+  std::vector<world::Person> people;
+  std::vector<Mover> bodies;
+  people.reserve(message.people().size());
+  bodies.reserve(message.people().size());
+  for (const auto& entry : message.people()) {
+    world::Person& person = people.emplace_back();
+    person.name = entry.person().name();
+    person.scripted = entry.scripted();
+    person.position = {entry.person().x(), entry.person().y()};
+    person.velocity = {entry.vx(), entry.vy()};
+    person.yaw = entry.person().yaw();
+    person.radius = entry.radius();
+    person.height = entry.person().height();
+    person.posture = static_cast<rendering::Posture>(
+        std::min<std::uint8_t>(entry.person().posture(), Person_Constants::POSTURE_ARMS_OUT));
+    person.stride = entry.stride();
+    bodies.push_back({person.position, person.radius, entry.top()});
+  }
+  world_->show_people(std::move(people), std::move(bodies));
 }
 
 void WorldComponent::advance(std::uint64_t skipped) {
   if (!world_) return;
   late_steps_ += skipped;
   const std::uint64_t due = std::min<std::uint64_t>(skipped + 1, kMostStepsAtOnce);
+  if (!others_.empty()) {
+    std::vector<OtherRobot> others;
+    others.reserve(others_.size());
+    for (const auto& [name, other] : others_) others.push_back(other);
+    world_->show_robots(std::move(others));
+  }
   bool scan = false, board = false, truth = false;
   for (std::uint64_t i = 0; i < due; ++i) {
     world_->step();
@@ -189,6 +273,7 @@ void WorldComponent::advance(std::uint64_t skipped) {
     truth = truth || steps_ % kTruthEvery == 0;
   }
   publish_feedback();
+  if (!host_.robot_name().empty()) publish_to_fleet();
   if (scan) publish_scan();
   if (board) publish_sensor_board();
   if (truth) publish_truth();
@@ -258,18 +343,43 @@ void WorldComponent::publish_truth() {
   message.lag(
       std::max(0.0, runtime::seconds(host_.now() - start_) - static_cast<double>(steps_) * kStep));
   std::uint32_t id = 0;
-  for (const auto& person : world_->people()) {
-    auto& entry = message.people().emplace_back();
-    entry.id(id++);
-    entry.name(person.scripted ? person.name : "");
-    entry.x(person.position.x());
-    entry.y(person.position.y());
-    entry.yaw(person.yaw);
-    entry.v(person.velocity.norm());
-    entry.height(person.height);
-    entry.posture(static_cast<std::uint8_t>(person.posture));
-  }
+  for (const auto& person : world_->people())
+    message.people().push_back(to_message(person, id++, person.scripted ? person.name : ""));
   truth_.publish(message);
+}
+
+void WorldComponent::publish_to_fleet() {
+  const Pose2 pose = world_->base().truth().pose;
+  FleetBody body;
+  body.header(wire::header(host_.now(), frames::kMap));
+  body.robot(host_.robot_name());
+  body.x(pose.x);
+  body.y(pose.y);
+  body.yaw(pose.yaw);
+  body.height(world_->config().robot.height);
+  for (const Point2& corner : world_->config().robot.footprint) {
+    auto& point = body.footprint().emplace_back();
+    point.x(static_cast<float>(corner.x()));
+    point.y(static_cast<float>(corner.y()));
+  }
+  bodies_.publish(body);
+  if (!people_of_.empty()) return;
+  FleetPeople message;
+  message.header(body.header());
+  message.robot(host_.robot_name());
+  const auto people = world_->people();
+  const auto movers = world_->bodies();
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    auto& entry = message.people().emplace_back();
+    entry.person(to_message(people[i], static_cast<std::uint32_t>(i), people[i].name));
+    entry.scripted(people[i].scripted);
+    entry.vx(people[i].velocity.x());
+    entry.vy(people[i].velocity.y());
+    entry.radius(people[i].radius);
+    entry.top(movers[i].top);
+    entry.stride(people[i].stride);
+  }
+  people_.publish(message);
 }
 
 }  // namespace usher::world

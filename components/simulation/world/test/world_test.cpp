@@ -238,5 +238,79 @@ TEST(World, RepeatsEveryBitOfASeed) {
   EXPECT_NE(run(4), run(5));
 }
 
+OtherRobot pioneer_at(const Pose2& pose) {
+  return {"otto", pose, {{-0.228, -0.191}, {0.228, -0.191}, {0.228, 0.191}, {-0.228, 0.191}}, 1.2};
+}
+
+TEST(TwoRobots, SeeEachOtherInTheirLasers) {
+  World world({}, hall(), {}, {3.0, 2.0, 0.0}, 1);
+  std::vector<float> ranges;
+  const auto ahead = [&] {
+    world.scan(0, ranges);
+    return static_cast<double>(ranges[ranges.size() / 2]);
+  };
+  const double wall = ahead();
+  world.show_robots({pioneer_at({6.0, 2.0, 0.0})});
+  EXPECT_GT(wall, 5.0);
+  const double laser = world.config().robot.lasers.front().mount.x;
+  EXPECT_NEAR(ahead(), 6.0 - 0.228 - 3.0 - laser, 0.1);
+  world.show_robots({pioneer_at({6.0, 4.0, 0.0})});
+  EXPECT_NEAR(ahead(), wall, 0.1);
+}
+
+TEST(TwoRobots, StopEachOtherAndThatIsAContact) {
+  World world({}, hall(), {}, {3.0, 2.0, 0.0}, 1);
+  world.show_robots({pioneer_at({6.0, 2.0, 0.0})});
+  drive(world, 0.8, 0.0, 8.0);
+  EXPECT_EQ(world.truth().contacts, 1U);
+  EXPECT_EQ(world.truth().contact_with, "otto");
+  EXPECT_LT(world.base().truth().pose.x + 0.33, 6.0 - 0.22);
+  drive(world, -0.4, 0.0, 4.0);
+  EXPECT_LT(world.base().truth().pose.x, 5.0) << "and it may drive away";
+}
+
+TEST(TwoRobots, LetGoOfEachOtherWhoEverCameTooNear) {
+  World world({}, hall(), {}, {3.0, 2.0, 0.0}, 1);
+  world.show_robots({pioneer_at({3.5, 2.0, 0.0})});  // it drove into this one
+  drive(world, -0.4, 0.0, 4.0);
+  EXPECT_LT(world.base().truth().pose.x, 2.5);
+}
+
+TEST(TwoRobots, HaveTheSamePeople) {
+  const std::vector<PersonPlan> plans{stands("ada", 6.0, 1.0)};
+  World first({.name = "iris"}, hall(), plans, {3.0, 2.0, 0.0}, 1);
+  World second({.name = "otto", .moves_people = false}, hall(), {}, {8.0, 4.5, 0.0}, 2);
+  const auto exchange = [&] {
+    first.show_robots({{"otto", second.base().truth().pose, pioneer_at({}).outline, 1.2}});
+    second.show_robots({{"iris", first.base().truth().pose, pioneer_at({}).outline, 1.2}});
+    const auto people = first.people();
+    const auto bodies = first.bodies();
+    second.show_people({people.begin(), people.end()}, {bodies.begin(), bodies.end()});
+  };
+  exchange();
+  ASSERT_EQ(second.people().size(), 1U);
+  ASSERT_TRUE(first.send_person("ada", {0, 0}, 1.2, true, "otto").ok());
+  for (int i = 0; i < 800; ++i) {
+    first.step();
+    second.step();
+    exchange();
+  }
+  const Point2 ada = second.people()[0].position;
+  EXPECT_EQ(ada, first.people()[0].position);
+  EXPECT_LT((ada - second.base().truth().pose.position()).norm(), 2.0) << "it follows otto";
+}
+
+TEST(TwoRobots, AreWatchedOneAtATime) {
+  PersonPlan plan = stands("ada", 6.0, 2.0);
+  plan.watches = true;
+  World world({.name = "iris"}, hall(), std::vector{plan}, {3.0, 2.0, 0.0}, 1);
+  world.show_robots({pioneer_at({7.5, 2.0, 0.0})});
+  drive(world, 0.0, 0.0, 3.0);
+  EXPECT_NEAR(world.people()[0].yaw, 0.0, 0.1) << "the nearer one";
+  ASSERT_TRUE(world.send_person("ada", {6.0, 2.0}, 0.0, false, "iris").ok());
+  drive(world, 0.0, 0.0, 3.0);
+  EXPECT_NEAR(std::abs(world.people()[0].yaw), geometry::kPi, 0.1) << "the one that spoke";
+}
+
 }  // namespace
 }  // namespace usher::world

@@ -23,6 +23,7 @@ constexpr std::ptrdiff_t kOfSomebody = 3;   // points of the laser
 constexpr double kInside = 0.5;             // [m] from its walls somebody is in a room
 constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
+constexpr double kFarthestRoom = 1e4;  // [m] a room without a way counts as so far
 constexpr Time kForever = Time::max();
 constexpr Time kExploredWell = std::chrono::seconds(30);  // forgives failures before
 
@@ -38,6 +39,7 @@ Meeting::Meeting(const Parameters& parameters, std::vector<RoomArea> rooms,
       phrases_(std::move(phrases)),
       language_(language),
       motion_({}, first_id),
+      team_(parameters.robot, first_id),
       track_(parameters.field_of_view),
       passing_(parameters.field_of_view),
       next_screen_(first_id) {
@@ -106,16 +108,25 @@ Status Meeting::request(const MissionRequest& request, Time now) {
   if (state_ == State::kInitialise) return refuse("not ready: " + lacks());
   if (state_ != State::kIdle)
     return refuse("mission " + std::to_string(report_.id) + " is not over");
+  begin(request,
+        now + (request.time_limit > 0.0 ? std::chrono::duration_cast<Time>(
+                                              std::chrono::duration<double>(request.time_limit))
+                                        : parameters_.limit),
+        now);
+  return {};
+}
+
+void Meeting::begin(const MissionRequest& request, Time limit, Time now) {
   reason_.clear();
   report_ = {};
   report_.id = request.id;
   report_.client = request.client;
   report_.wanted = request.persons;
   began_ = now;
-  limit_ = now + (request.time_limit > 0.0 ? std::chrono::duration_cast<Time>(
-                                                 std::chrono::duration<double>(request.time_limit))
-                                           : parameters_.limit);
+  limit_ = limit;
   people_.forget();
+  team_.begin(request.id, request.client);
+  place_.reset();
   order_.clear();
   stop_ = 0;
   second_pass_ = false;
@@ -125,7 +136,6 @@ Status Meeting::request(const MissionRequest& request, Time now) {
   lost_since_.reset();
   choose_room();
   enter(State::kToRoom, Cause::kRequest, now);
-  return {};
 }
 
 const Actions& Meeting::cancel(std::uint64_t id, Time now) {
@@ -167,9 +177,10 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
     ++report_.declined;
     // Who leaves on the way is where the robot is by then.
     const bool on_the_way = departed_ && robot_.pose && state_ != State::kInvite;
-    people_.leave_alone(on_the_way ? robot_.pose->position() : person_,
-                        on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
+    const Point2 at = on_the_way ? robot_.pose->position() : person_;
+    people_.leave_alone(at, on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
                         now);
+    met(Met::kDeclined, at, kForever);
     look_for_people(Cause::kNo, now);
   }
   return finish(now);
@@ -185,6 +196,7 @@ const Actions& Meeting::step(const Surroundings& robot, Time now) {
     enter(State::kInitialise, Cause::kNotReady, now);
   if (active(state_)) watch_robot(now);
   if (state_ == State::kGuide) trail_follower();
+  if (!parameters_.robot.empty()) follow_team(now);
   follow_motion(now);
   if (state_ == State::kScanRoom) scan(now);
   pass_time(now);
@@ -240,6 +252,9 @@ void Meeting::arrive_in(State state, Time now) {
       face_seen_ = now;
       break;
     case State::kExplore:
+      if (!place_ && robot_.pose) place_ = robot_.pose->position();
+      passing_.forget();
+      visiting_ = false;
       motion_.explore(std::exchange(anew_, false), now);
       return;
     case State::kRevisit:
@@ -261,7 +276,8 @@ void Meeting::arrive_in(State state, Time now) {
       face_to_ = follower_;
       break;
     case State::kArrived:
-      ++report_.brought;
+      met(Met::kBrought, person_, kForever);
+      report_.brought = team_.brought(report_.room);
       break;
     default:
       break;
@@ -361,10 +377,12 @@ void Meeting::drive_failed(Time now) {
       }
       break;
     case State::kRevisit:
+      met(Met::kUnreached, person_, now + parameters_.ask_again);
       look_for_people(Cause::kNoWay, now);
       break;
     case State::kApproach:
       people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again, now);
+      met(Met::kUnreached, person_, now + parameters_.ask_again);
       look_for_people(Cause::kNoWay, now);
       break;
     case State::kGuide:
@@ -396,13 +414,16 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kRevisit:
-      if (arrived_at_ && now - *arrived_at_ >= parameters_.nobody)
+      if (arrived_at_ && now - *arrived_at_ >= parameters_.nobody) {
+        met(Met::kGone, person_, now + parameters_.refused);
         look_for_people(Cause::kLost, now);
+      }
       break;
     case State::kInvite:
       if (passed >= parameters_.answer) {
         ++report_.unanswered;
         people_.leave_alone(person_, parameters_.same_person, now + parameters_.ask_again, now);
+        met(Met::kUnanswered, person_, now + parameters_.ask_again);
         look_for_people(Cause::kTimeout, now);
       }
       break;
@@ -458,6 +479,9 @@ void Meeting::choose_room() {
     order_.push_back(best);
   }
   room_ = order_[second_pass_ ? stop_ : order_.size() - 1];
+  if (robot_.pose) ways_.start_from(robot_.pose->position());
+  // With the digits that the others hear, so that all compare the same numbers.
+  room_way_ = static_cast<float>(std::min(ways_.way_to(*rooms_[room_].place), kFarthestRoom));
 }
 
 /// On to the next one.
@@ -521,13 +545,14 @@ const Actions& Meeting::see(Faces faces, Time now) {
 
 /// In a room that is looked round in: whoever is in it; else who is in no meeting room.
 bool Meeting::may_be_asked(const Face& face, Time now) const {
-  if (people_.left_alone(face.at, now)) return false;
+  if (taken_care_of(face.at, now)) return false;
   if (state_ == State::kScanRoom || state_ == State::kCheckRoom)
     return rooms_[room_].contains(face.at, parameters_.room_margin);
   return !in_a_room(face.at);
 }
 
 void Meeting::notice(const Faces& all, Time now) {
+  if (state_ == State::kExplore && !may_invite()) return remember_seen(all, now);
   Faces some = all;
   std::erase_if(some.faces, [&](const Face& face) { return !may_be_asked(face, now); });
   track_.take(some);
@@ -563,6 +588,7 @@ void Meeting::confirm(Time now) {
 void Meeting::refuse_face(Time now) {
   ++report_.faces_refused;
   people_.leave_alone(face_to_, kRefusedRadius, now + parameters_.refused, now);
+  if (visiting_) met(Met::kGone, person_, now + parameters_.refused);
   if (state_ == State::kCheckRoom)
     enter(State::kScanRoom, Cause::kLost, now);
   else
@@ -577,11 +603,161 @@ void Meeting::remember_seen(const Faces& all, Time now) {
     return;
   Faces some = all;
   std::erase_if(some.faces, [&](const Face& face) {
-    return people_.left_alone(face.at, now) || in_a_room(face.at);
+    return taken_care_of(face.at, now) || in_a_room(face.at);
   });
   passing_.take(some);
   if (passing_.successive() >= parameters_.confirmations)
     people_.remember(passing_.face().at, parameters_.seen_again);
+}
+
+// --- The other robots
+
+void Meeting::follow_team(Time now) {
+  team_.hear(robot_.team);
+  team_.place(robot_.team_at);
+  if (state_ == State::kIdle) join(now);
+  divide_work();
+  if (!active(state_)) return;
+  if (const std::string who = team_.cancelled_by(); !who.empty())
+    return end(Outcome::kCancelled, Cause::kCancelled, "given up at " + who, now);
+  if (follow_room(now)) return;
+  report_.brought = team_.brought(report_.room);
+  // Whom it guides it brings to the end.
+  const bool guides =
+      state_ == State::kGuide || state_ == State::kLookBack || state_ == State::kArrived;
+  if (report_.brought >= report_.wanted && !guides)
+    return end(Outcome::kComplete, Cause::kEnough, {}, now);
+  if (follow_person(now)) return;
+  follow_sightings(now);
+}
+
+void Meeting::divide_work() {
+  WorkShare share = active(state_) ? team_.share(place_) : WorkShare{};
+  if (share == share_) return;
+  share_ = share;
+  actions_.share = std::move(share);
+}
+
+/// What others are on and this robot did not see the end of.
+void Meeting::join(Time now) {
+  const bool left = report_.outcome != Outcome::kOpen && report_.outcome != Outcome::kFailed;
+  const TeamReport* call = team_.call(left ? report_.id : 0, left ? report_.client : "");
+  if (call == nullptr || call->limit <= now || call->wanted == 0) return;
+  begin({call->id, call->client, call->wanted, 0.0}, call->limit, now);
+}
+
+const Meeting::Room* Meeting::room_named(const std::string& name) const {
+  const auto room = std::find_if(rooms_.begin(), rooms_.end(),
+                                 [&](const Room& each) { return each.area.name == name; });
+  return room == rooms_.end() ? nullptr : &*room;
+}
+
+/// One robot looks for the room, the nearest one; the others have no room until it found one. True:
+/// the state is another one.
+bool Meeting::follow_room(Time now) {
+  const bool seeks =
+      state_ == State::kToRoom || state_ == State::kScanRoom || state_ == State::kCheckRoom;
+  const std::string room = team_.agreed_room(report_.room);
+  const bool is_there = state_ == State::kArrived || (state_ == State::kLookBack && in_the_room_);
+  if (room != report_.room && room_named(room) != nullptr && !is_there) {
+    adopt_room(room, now);
+    if (!seeks) return false;
+    anew_ = true;
+    look_for_people(Cause::kElsewhere, now);
+    return true;
+  }
+  if (seeks && team_.room_is_sought(room_way_)) {
+    if (!second_pass_) order_.pop_back();  // nobody looked at it
+    anew_ = true;
+    enter(State::kExplore, Cause::kElsewhere, now);
+    return true;
+  }
+  const bool waits = state_ == State::kExplore && report_.room.empty();
+  if (!waits || team_.room_is_sought(std::numeric_limits<double>::infinity())) return false;
+  if (!second_pass_ && order_.size() == rooms_.size()) {
+    second_pass_ = true;
+    stop_ = 0;
+    reached_ = 0;
+  }
+  choose_room();
+  enter(State::kToRoom, Cause::kElsewhere, now);
+  return true;
+}
+
+void Meeting::adopt_room(const std::string& room, Time now) {
+  if (report_.room.empty()) report_.room_time = now - began_;
+  report_.room = room;
+  if (state_ == State::kGuide && departed_) motion_.drive({0, room, {}}, now);
+}
+
+/// Where somebody is whom this robot goes to, asks or guides.
+std::optional<Point2> Meeting::claimed() const {
+  switch (state_) {
+    case State::kCheckFace:
+      return face_to_;
+    case State::kRevisit:
+    case State::kApproach:
+    case State::kInvite:
+      return person_;
+    case State::kGuide:
+    case State::kLookBack:
+    case State::kArrived:
+      return robot_.pose ? robot_.pose->position() : person_;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// There is a room, and more are wanted than others bring already.
+bool Meeting::may_invite() const {
+  return !report_.room.empty() && report_.brought + team_.underway() < report_.wanted;
+}
+
+/// Leaves somebody to another robot that is ahead, or has asked him. True: the state is another
+/// one.
+bool Meeting::follow_person(Time now) {
+  const bool may_leave = state_ == State::kCheckFace || state_ == State::kRevisit ||
+                         state_ == State::kApproach || state_ == State::kInvite;
+  if (!may_leave) return false;
+  const Point2 at = *claimed();
+  const bool of_another = team_.is_ahead(at, state_) || team_.settled_by_another(at, now);
+  if (!of_another && may_invite()) return false;
+  if (!of_another) people_.remember(at, parameters_.seen_again);
+  look_for_people(Cause::kElsewhere, now);
+  return true;
+}
+
+void Meeting::follow_sightings(Time now) {
+  for (const Point2& at : team_.seen_by_others()) {
+    if (!taken_care_of(at, now) && !in_a_room(at)) people_.remember(at, parameters_.seen_again);
+  }
+  const std::vector<Point2> remembered = people_.remembered();
+  for (const Point2& at : remembered) {
+    if (team_.visited_by_another(at, now)) people_.forget_near(at, Team::kSamePerson);
+  }
+  if (state_ == State::kExplore) visit_if_remembered(now);
+}
+
+TeamReport Meeting::tell(Time now) const {
+  TeamReport report;
+  report.state = state_;
+  report.outcome = report_.outcome;
+  report.id = report_.id;
+  report.client = report_.client;
+  report.wanted = report_.wanted;
+  report.limit = limit_;
+  if (active(state_)) report.room = report_.room;
+  if (state_ == State::kToRoom || state_ == State::kScanRoom || state_ == State::kCheckRoom)
+    report.room_way = room_way_;
+  report.place = place_;
+  report.people = team_.facts(now);
+  if (const auto at = claimed()) report.people.push_back({Met::kClaimed, team_.robot(), 0, *at});
+  if (!active(state_)) return report;
+  for (const Point2& at : people_.remembered())
+    report.people.push_back({Met::kSeen, team_.robot(), 0, at});
+  constexpr std::size_t kMostPeople = 256;
+  if (report.people.size() > kMostPeople) report.people.resize(kMostPeople);
+  return report;
 }
 
 // --- The way
@@ -591,15 +767,20 @@ void Meeting::look_for_people(Cause cause, Time now) {
   visit_if_remembered(now);
 }
 
+/// The nearest of those to whom no other robot that has time is nearer.
 void Meeting::visit_if_remembered(Time now) {
-  if (people_.remembered().empty() || !robot_.pose) return;
+  if (!robot_.pose || !may_invite()) return;
+  std::vector<Point2> all = people_.remembered();
+  std::erase_if(all,
+                [&](const Point2& at) { return team_.is_nearer(at, robot_.pose->position()); });
+  if (all.empty()) return;
   ways_.start_from(robot_.pose->position());
-  const auto& all = people_.remembered();
   const Point2 nearest = *std::min_element(
       all.begin(), all.end(),
       [&](const Point2& a, const Point2& b) { return ways_.way_to(a) < ways_.way_to(b); });
   person_ = nearest;
   people_.forget_near(nearest, parameters_.same_person);
+  visiting_ = true;
   enter(State::kRevisit, Cause::kSeenThen, now);
 }
 
@@ -625,10 +806,7 @@ void Meeting::approach(Time now) {
 void Meeting::depart(Time now) {
   departed_ = true;
   departure_ = robot_.pose ? robot_.pose->position() : person_;
-  const auto room = std::find_if(rooms_.begin(), rooms_.end(), [this](const Room& each) {
-    return each.area.name == report_.room;
-  });
-  motion_.drive({0, room->area.name, {}}, now);
+  motion_.drive({0, report_.room, {}}, now);
 }
 
 /// Nobody sees behind this robot: who follows is taken to walk where it drove.

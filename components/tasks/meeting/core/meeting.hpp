@@ -17,12 +17,14 @@
 #include "tasks/meeting/core/mission.hpp"
 #include "tasks/meeting/core/motion.hpp"
 #include "tasks/meeting/core/people.hpp"
+#include "tasks/meeting/core/team.hpp"
 #include "tasks/meeting/core/texts.hpp"
 #include "tasks/service/core/screen.hpp"
 
 namespace usher::meeting {
 
 struct Parameters {
+  std::string robot;                       ///< name in the fleet; empty: belongs to none
   Time limit = std::chrono::minutes(15);   ///< of a mission, unless its request names another
   Time answer = std::chrono::seconds(15);  ///< an invitation waits so long
   Time tone = std::chrono::seconds(1);     ///< from the tone to the first motion of a guidance
@@ -72,9 +74,6 @@ struct MissionRequest {
   double time_limit = 0.0;    ///< [s] 0: the parameter
 };
 
-/// The numbers are those on the wire.
-enum class Outcome : std::uint8_t { kOpen = 0, kComplete, kTimeOver, kFailed, kCancelled };
-
 /// What a mission has come to.
 struct Report {
   std::uint64_t id = 0;  ///< 0: there was none yet
@@ -94,12 +93,17 @@ struct Actions {
   MotionActions motion;
   bool screen_changed = false;
   bool status_changed = false;
-  std::optional<Report> report;  ///< a mission is over
+  std::optional<Report> report;    ///< a mission is over
+  std::optional<WorkShare> share;  ///< another one than before, for the explorer
 };
 
 /// Calls a meeting (meeting report III-B-5, fig. 4): finds a room where nobody is, looks for
 /// people, invites and brings them until as many are there as were asked for. mission.hpp has all
 /// edges.
+///
+/// Robots of a fleet call one meeting together (Team): one looks for the room while the others
+/// explore and remember whom they see; each looks at its own part first; nobody is asked or counted
+/// twice. A robot that has no mission joins one that it hears of.
 ///
 /// Nothing blocks: whatever the rest of the robot does, each state has a way and a time-out, and
 /// the mission a limit.
@@ -121,6 +125,10 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   /// Id 0 gives up whatever runs.
   const Actions& cancel(std::uint64_t id, Time now);
   const Actions& answer(const service::Answer& answer, Time now);
+  /// What another robot of the fleet says.
+  void hear(const TeamReport& report) { team_.take(report); }
+  /// What the others are to know, now and again; without robot and sequence.
+  TeamReport tell(Time now) const;
   /// A message of the face detector; faces that are none are left out and counted.
   const Actions& see(Faces faces, Time now);
   /// What the laser sees now, and from where, in map; heard while the robot guides somebody and
@@ -164,6 +172,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   const Actions& finish(Time now);
+  void begin(const MissionRequest& request, Time limit, Time now);
   void enter(State state, Cause cause, Time now);
   void arrive_in(State state, Time now);
   void end(Outcome outcome, Cause cause, const std::string& reason, Time now);
@@ -174,6 +183,22 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void choose_room();
   void leave_room(Cause cause, bool reached, Time now);
   void scan(Time now);
+
+  // The other robots.
+  void follow_team(Time now);
+  void join(Time now);
+  void divide_work();
+  bool follow_room(Time now);
+  bool follow_person(Time now);
+  void follow_sightings(Time now);
+  void adopt_room(const std::string& room, Time now);
+  const Room* room_named(const std::string& name) const;
+  std::optional<Point2> claimed() const;
+  bool may_invite() const;
+  bool taken_care_of(const Point2& at, Time now) const {
+    return people_.left_alone(at, now) || team_.left_alone(at, now);
+  }
+  void met(Met kind, const Point2& at, Time until) { team_.add(kind, at, until, report_.room); }
 
   // Faces.
   bool may_be_asked(const Face& face, Time now) const;
@@ -212,6 +237,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   grid::FreeSpace turning_;  ///< where it may turn round
   Motion motion_;
   People people_;
+  Team team_;
   Surroundings robot_;
   State state_ = State::kInitialise;
   Time since_{};
@@ -228,7 +254,11 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   bool second_pass_ = false;
   std::size_t reached_ = 0;  ///< rooms of this pass
   std::size_t room_ = kNone;
-  double turned_ = 0.0;  ///< [rad] in this room
+  bool visiting_ = false;        ///< person_ is whom somebody saw before
+  double room_way_ = 0.0;        ///< [m] to it, when it was chosen
+  std::optional<Point2> place_;  ///< [m] in map, where it began to look for people
+  WorkShare share_;              ///< that the explorer has
+  double turned_ = 0.0;          ///< [rad] in this room
   std::optional<double> yaw_;
   FaceTrack track_, passing_;
   Time face_seen_{};

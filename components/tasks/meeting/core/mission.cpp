@@ -10,9 +10,9 @@ constexpr std::array<std::string_view, kStates> kStateNames{
     "guide",      "look_back",  "arrived", "done",      "ended"};
 
 constexpr std::array<std::string_view, kCauses> kCauseNames{
-    "ready",   "not ready", "request", "arrived", "no way",    "face",      "lost",
-    "unseen",  "confirmed", "near",    "scanned", "seen then", "yes",       "no",
-    "timeout", "more",      "enough",  "limit",   "failure",   "cancelled", "delay"};
+    "ready",     "not ready", "request", "arrived",   "no way", "face",     "lost",    "unseen",
+    "confirmed", "near",      "scanned", "seen then", "yes",    "no",       "timeout", "more",
+    "enough",    "limit",     "failure", "cancelled", "delay",  "elsewhere"};
 
 }  // namespace
 

@@ -50,8 +50,12 @@ enum class Cause : std::uint8_t {
   kFailure,    ///< the robot cannot go on
   kCancelled,  ///< somebody gave the mission up
   kDelay,      ///< it was shown long enough
+  kElsewhere,  ///< another robot of the fleet does it, or does it no more
 };
-inline constexpr std::size_t kCauses = 21;
+inline constexpr std::size_t kCauses = 22;
+
+/// The numbers are those on the wire.
+enum class Outcome : std::uint8_t { kOpen = 0, kComplete, kTimeOver, kFailed, kCancelled };
 
 struct Edge {
   State from;
@@ -103,6 +107,23 @@ inline constexpr std::array kWay{
     Edge{State::kDone, State::kIdle, Cause::kDelay},
     Edge{State::kEnded, State::kIdle, Cause::kDelay},
 };
+/// What other robots of a fleet bring about: a room is found or looked for by one of them, a person
+/// is asked by one of them, enough are there.
+inline constexpr std::array kFleet{
+    Edge{State::kToRoom, State::kExplore, Cause::kElsewhere},
+    Edge{State::kScanRoom, State::kExplore, Cause::kElsewhere},
+    Edge{State::kCheckRoom, State::kExplore, Cause::kElsewhere},
+    Edge{State::kExplore, State::kToRoom, Cause::kElsewhere},
+    Edge{State::kCheckFace, State::kExplore, Cause::kElsewhere},
+    Edge{State::kRevisit, State::kExplore, Cause::kElsewhere},
+    Edge{State::kApproach, State::kExplore, Cause::kElsewhere},
+    Edge{State::kInvite, State::kExplore, Cause::kElsewhere},
+    Edge{State::kExplore, State::kDone, Cause::kEnough},
+    Edge{State::kCheckFace, State::kDone, Cause::kEnough},
+    Edge{State::kRevisit, State::kDone, Cause::kEnough},
+    Edge{State::kApproach, State::kDone, Cause::kEnough},
+    Edge{State::kInvite, State::kDone, Cause::kEnough},
+};
 /// What ends it from anywhere.
 inline constexpr std::array kEnds{Cause::kLimit, Cause::kFailure, Cause::kCancelled};
 inline constexpr std::size_t kActive =
@@ -111,8 +132,10 @@ inline constexpr std::size_t kActive =
 
 /// Every edge there is; to take another one is a programming error.
 inline constexpr auto kEdges = [] {
-  std::array<Edge, edges::kWay.size() + edges::kActive * edges::kEnds.size()> all{};
+  std::array<Edge, edges::kWay.size() + edges::kFleet.size() + edges::kActive * edges::kEnds.size()>
+      all{};
   auto next = std::copy(edges::kWay.begin(), edges::kWay.end(), all.begin());
+  next = std::copy(edges::kFleet.begin(), edges::kFleet.end(), next);
   for (std::size_t i = 0; i < edges::kActive; ++i) {
     const auto from = static_cast<State>(static_cast<std::size_t>(State::kToRoom) + i);
     for (const Cause cause : edges::kEnds) *next++ = {from, State::kEnded, cause};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,10 +22,12 @@ struct GoalReport {
 /// What is known of the rest of the robot.
 struct Surroundings {
   service::Supervisor supervisor = service::Supervisor::kUnknown;
-  std::optional<Pose2> pose;              ///< in map; nothing: not localized
-  std::optional<GoalReport> navigation;   ///< nothing: the navigator is silent
-  std::optional<GoalReport> exploration;  ///< nothing: the explorer is silent
-  bool sees = false;                      ///< the face detector is heard
+  std::optional<Pose2> pose;                ///< in map; nothing: not localized
+  std::optional<GoalReport> navigation;     ///< nothing: the navigator is silent
+  std::optional<GoalReport> exploration;    ///< nothing: the explorer is silent
+  bool sees = false;                        ///< the face detector is heard
+  std::vector<std::string> team{};          ///< robots of the fleet that are heard
+  std::map<std::string, Point2> team_at{};  ///< [m] in map, where they are, as far as they say
 };
 
 /// Where the navigator shall go.

@@ -29,6 +29,7 @@ constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kFacesAge = milliseconds(1000);
 constexpr auto kScanAge = milliseconds(500);
 constexpr auto kPoseAge = milliseconds(500);
+constexpr auto kTeamAge = milliseconds(3000);
 constexpr const char* kMemory = "mission";
 /// Ids of goals must not be those of another client that counts from the same clock.
 constexpr std::uint64_t kIdsApart = 500'000;
@@ -62,11 +63,88 @@ usher_msgs::msg::MeetingReport to_message(const Report& report, runtime::Time no
   return message;
 }
 
+/// What no reader would take in [s] is a day.
+Time span_of(float seconds) {
+  constexpr float kLongest = 86400.0F;
+  return runtime::from_seconds(
+      static_cast<double>(seconds > 0.0F ? std::min(seconds, kLongest) : 0.0F));
+}
+
+usher_msgs::msg::FleetMeeting to_message(const TeamReport& report, const std::string& robot,
+                                         std::uint64_t number, runtime::Time now) {
+  const auto left = [now](Time until) {
+    return until == Time::max()
+               ? std::numeric_limits<float>::infinity()
+               : static_cast<float>(runtime::seconds(until - now.time_since_epoch()));
+  };
+  usher_msgs::msg::FleetMeeting message;
+  message.header(wire::header(now, ""));
+  message.robot(robot);
+  message.number(number);
+  message.state(static_cast<std::uint8_t>(report.state));
+  message.outcome(static_cast<std::uint8_t>(report.outcome));
+  message.id(report.id);
+  message.client(report.client);
+  message.wanted(report.wanted);
+  message.time_left(active(report.state) ? std::max(0.0F, left(report.limit))
+                                         : std::numeric_limits<float>::quiet_NaN());
+  message.room(report.room);
+  message.room_way(static_cast<float>(report.room_way));
+  message.placed(report.place.has_value());
+  if (report.place) {
+    message.x(report.place->x());
+    message.y(report.place->y());
+  }
+  message.people().reserve(report.people.size());
+  for (const Encounter& each : report.people) {
+    auto& person = message.people().emplace_back();
+    person.kind(static_cast<std::uint8_t>(each.kind));
+    person.robot(each.robot);
+    person.id(each.id);
+    person.x(each.at.x());
+    person.y(each.at.y());
+    person.valid(left(each.until));
+    person.room(each.room);
+  }
+  return message;
+}
+
+/// States and outcomes that are none are those of a robot that is on no mission.
+TeamReport from_message(const usher_msgs::msg::FleetMeeting& message, Time now) {
+  TeamReport report;
+  report.robot = message.robot();
+  report.sequence = message.number();
+  report.state =
+      message.state() < kStates ? static_cast<State>(message.state()) : State::kInitialise;
+  report.outcome = message.outcome() <= static_cast<std::uint8_t>(Outcome::kCancelled)
+                       ? static_cast<Outcome>(message.outcome())
+                       : Outcome::kOpen;
+  report.id = message.id();
+  report.client = message.client();
+  report.wanted = message.wanted();
+  report.limit = now + span_of(message.time_left());
+  report.room = message.room();
+  report.room_way = static_cast<double>(message.room_way());
+  if (message.placed()) report.place = Point2(message.x(), message.y());
+  report.people.reserve(message.people().size());
+  for (const auto& person : message.people()) {
+    Encounter& each = report.people.emplace_back();
+    each.kind = static_cast<Met>(person.kind());
+    each.robot = person.robot();
+    each.id = person.id();
+    each.at = {person.x(), person.y()};
+    each.until = std::isinf(person.valid()) ? Time::max() : now + span_of(person.valid());
+    each.room = person.room();
+  }
+  return report;
+}
+
 }  // namespace
 
 Parameters MeetingComponent::read_parameters(runtime::Host& host) {
   auto& p = host.parameters();
   Parameters c;
+  c.robot = host.robot_name();
   const auto time = [&](const char* name, Time& value, const char* text) {
     value = runtime::from_seconds(p.number(name, "s", {0.1, 3600}, runtime::seconds(value), text));
   };
@@ -196,6 +274,19 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
   target_ = host.output(topics::kInteractionTarget);
   cancel_drive_ = host.output(topics::kNavigateCancel);
   cancel_exploration_ = host.output(topics::kExploreCancel);
+  team_ = host.input(topics::kFleetMeeting,
+                     {.max_age = kTeamAge,
+                      .on_loss = "does the work of the robots that are silent, too",
+                      .optional = true,
+                      .each_writer = true},
+                     [this](const auto& message, const auto&) { take_team(message); });
+  places_ = host.input(topics::kFleetLook, {.max_age = kTeamAge,
+                                            .on_loss = "does not know who is nearer to somebody",
+                                            .optional = true,
+                                            .each_writer = true});
+  team_told_ = host.output(topics::kFleetMeeting);
+  share_ = host.output(topics::kExploreShare);
+  told_ = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
   timer_ = host.timer("step", kPeriod, [this](auto) { tick(); });
   recall();
   publish_screen();
@@ -299,6 +390,18 @@ void MeetingComponent::take_request(const usher_msgs::msg::MeetingRequest& reque
   publish_status();
 }
 
+void MeetingComponent::take_team(const usher_msgs::msg::FleetMeeting& message) {
+  if (left_) return;  // the next one comes soon
+  core_.hear(from_message(message, now()));
+  step();
+}
+
+/// Twice a second, and at once when something changes.
+void MeetingComponent::tell_team() {
+  if (host_.robot_name().empty() || left_) return;
+  team_told_.publish(to_message(core_.tell(now()), host_.robot_name(), ++told_, host_.now()));
+}
+
 void MeetingComponent::take_answer(const usher_msgs::msg::DialogueAnswer& answer) {
   const auto input = static_cast<service::Input>(std::min<std::uint8_t>(answer.input(), 2));
   act(core_.answer(
@@ -328,6 +431,12 @@ Surroundings MeetingComponent::surroundings() const {
   if (const auto* status = navigation_.fresh()) s.navigation = report(*status);
   if (const auto* status = exploration_.fresh()) s.exploration = report(*status);
   s.sees = faces_.fresh() != nullptr;
+  for (const auto* told : team_.fresh_of_each()) {
+    if (!left_) s.team.push_back(told->robot());
+  }
+  for (const auto* place : places_.fresh_of_each()) {
+    if (const Point2 at(place->x(), place->y()); at.allFinite()) s.team_at[place->robot()] = at;
+  }
   return s;
 }
 
@@ -346,6 +455,7 @@ void MeetingComponent::tick() {
   if (left_ && ticks_ >= kFoundAfter) end_what_was_left();
   if (++ticks_ % kStatusEvery == 0) {
     publish_status();
+    tell_team();
     if (core_.state() == State::kGuide) publish_screen();  // the remaining way
   }
   const std::string lacking = lacks();
@@ -400,8 +510,20 @@ void MeetingComponent::act(const Actions& actions) {
     explorations_.ask(std::move(message));
   }
   if (actions.report) reports_.publish(to_message(*actions.report, host_.now()));
+  if (actions.share) {
+    usher_msgs::msg::ExploreShare message;
+    message.header(wire::header(host_.now(), frames::kMap));
+    message.own(static_cast<std::uint32_t>(actions.share->own));
+    for (const Point2& place : actions.share->places) {
+      auto& point = message.places().emplace_back();
+      point.x(place.x());
+      point.y(place.y());
+    }
+    share_.publish(message);
+  }
   if (actions.status_changed) {
     publish_status();
+    tell_team();
     remember();
   }
   if (actions.screen_changed) publish_screen();

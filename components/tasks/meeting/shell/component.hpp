@@ -31,6 +31,8 @@ class MeetingComponent final : public runtime::Component {
   void take_scan();
   void look(const sensor_msgs::msg::LaserScan& scan, const Pose2& map_T_scan);
   void take_request(const usher_msgs::msg::MeetingRequest& request);
+  void take_team(const usher_msgs::msg::FleetMeeting& message);
+  void tell_team();
   void take_answer(const usher_msgs::msg::DialogueAnswer& answer);
   void tick();
   void step() { act(core_.step(surroundings(), now())); }
@@ -51,6 +53,7 @@ class MeetingComponent final : public runtime::Component {
   std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
   std::vector<Point2> points_;
+  std::uint64_t told_ = 0;  ///< number of the last report to the fleet; above all of a life before
   std::string remembered_;
   std::optional<Report> left_;  ///< of a mission that a restart ended
 
@@ -71,6 +74,10 @@ class MeetingComponent final : public runtime::Component {
   runtime::Output<usher_msgs::msg::MeetingReport> reports_;
   runtime::Output<usher_msgs::msg::FaceTarget> target_;
   runtime::Output<usher_msgs::msg::GoalCancel> cancel_drive_, cancel_exploration_;
+  runtime::Input<usher_msgs::msg::FleetMeeting> team_;
+  runtime::Input<usher_msgs::msg::FleetLook> places_;
+  runtime::Output<usher_msgs::msg::FleetMeeting> team_told_;
+  runtime::Output<usher_msgs::msg::ExploreShare> share_;
   wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;
   wire::Repeater<usher_msgs::msg::NavigateGoal> goals_;
   wire::Repeater<usher_msgs::msg::ExploreGoal> explorations_;

@@ -93,6 +93,65 @@ const std::vector<Case>& cases() {
   return kCases;
 }
 
+/// What another robot says, and where that leads; then it falls silent.
+struct FleetCase {
+  State from;
+  void (*to)(Rig&);
+  void (*says)(const Rig&, TeamReport&);
+  State after, silent;
+};
+
+void seeks_nearby(const Rig& /*rig*/, TeamReport& report) {
+  report.state = State::kToRoom;
+  report.room_way = 0.1;
+}
+void has_a_room(const Rig& /*rig*/, TeamReport& report) {
+  report.state = State::kExplore;
+  report.room = "east";
+}
+void asks_the_same(const Rig& rig, TeamReport& report) {
+  report.state = State::kGuide;
+  const auto own = rig.meeting.tell(rig.now()).people;
+  for (const Encounter& each : own) {
+    if (each.kind == Met::kClaimed)
+      report.people.push_back({Met::kClaimed, "iris", 0, each.at, {}, {}});
+  }
+}
+void has_brought_all(const Rig& rig, TeamReport& report) {
+  report.state = State::kExplore;
+  for (std::uint32_t i = 0; i < rig.meeting.report().wanted; ++i) {
+    report.people.push_back(
+        {Met::kBrought, "iris", i + 1, Point2(i, 9.0), Time::max(), rig.meeting.report().room});
+  }
+}
+
+const std::vector<FleetCase>& fleet_cases() {
+  using enum State;
+  constexpr auto to_room = [](Rig& r) { r.to_room(); };
+  constexpr auto to_scan = [](Rig& r) { r.to_scan(); };
+  constexpr auto to_check_room = [](Rig& r) { r.to_check_room(); };
+  constexpr auto to_explore = [](Rig& r) { r.to_explore(); };
+  constexpr auto to_check_face = [](Rig& r) { r.to_check_face(); };
+  constexpr auto to_revisit = [](Rig& r) { r.to_revisit(); };
+  constexpr auto to_approach = [](Rig& r) { r.to_approach(); };
+  constexpr auto to_invite = [](Rig& r) { r.to_invite(); };
+  static const std::vector<FleetCase> kCases{
+      {kToRoom, to_room, seeks_nearby, kExplore, kToRoom},
+      {kScanRoom, to_scan, has_a_room, kExplore, kExplore},
+      {kCheckRoom, to_check_room, has_a_room, kExplore, kExplore},
+      {kCheckFace, to_check_face, asks_the_same, kExplore, kExplore},
+      {kRevisit, to_revisit, asks_the_same, kExplore, kExplore},
+      {kApproach, to_approach, asks_the_same, kExplore, kExplore},
+      {kInvite, to_invite, asks_the_same, kExplore, kExplore},
+      {kExplore, to_explore, has_brought_all, kDone, kDone},
+      {kCheckFace, to_check_face, has_brought_all, kDone, kDone},
+      {kRevisit, to_revisit, has_brought_all, kDone, kDone},
+      {kApproach, to_approach, has_brought_all, kDone, kDone},
+      {kInvite, to_invite, has_brought_all, kDone, kDone},
+  };
+  return kCases;
+}
+
 struct Begin {
   State state;
   void (*to)(Rig&);
@@ -122,6 +181,30 @@ TEST(Edges, AreAllTakenAndLeadWhereTheTableSays) {
       SCOPED_TRACE(std::string(test.name) + ", step " + std::to_string(number++));
       step.act(rig);
       ASSERT_EQ(text(rig.state()), text(step.state));
+    }
+    count(rig);
+  }
+  for (const FleetCase& test : fleet_cases()) {
+    SCOPED_TRACE(std::string(text(test.from)) + ", of a fleet");
+    Parameters parameters;
+    parameters.robot = "otto";
+    Rig rig(parameters);
+    test.to(rig);
+    ASSERT_EQ(text(rig.state()), text(test.from));
+    TeamReport report;
+    report.robot = "iris";
+    report.sequence = 1;
+    report.id = rig.meeting.report().id;
+    report.client = rig.meeting.report().client;
+    test.says(rig, report);
+    rig.meeting.hear(report);
+    rig.robot.team = {"iris"};
+    rig.wait(100);
+    EXPECT_EQ(text(rig.state()), text(test.after));
+    if (test.silent != test.after) {
+      rig.robot.team.clear();
+      rig.wait(100);
+      EXPECT_EQ(text(rig.state()), text(test.silent));
     }
     count(rig);
   }
