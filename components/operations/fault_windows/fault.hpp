@@ -52,7 +52,7 @@ struct Expectation {
   /// The base hears nobody: what it touches meanwhile no software keeps it from.
   bool deaf = false;
   double lasts = 0.0;              ///< [s] after the hit these hold
-  double read_within = 1.5;        ///< [s] after that an operator reads the reason
+  double read_within = 2.5;        ///< [s] after that an operator reads the reason
   std::vector<std::string> words;  ///< one of them is in the reason that an operator reads
 };
 

@@ -139,8 +139,10 @@ void WindowJudge::judge_expectations(double t) {
   judge_words(t);
 }
 
-/// Of several things that go wrong at once the reason names one.
+/// Of several things that go wrong at once the reason names one. A robot that has arrived stands
+/// without a reason.
 void WindowJudge::judge_words(double t) {
+  if (navigation_ == kSucceeded) return;
   const double since = t - *hit_;
   std::string missing;
   for (const Expectation& expected : expectations_) {
@@ -163,7 +165,8 @@ std::vector<std::string> WindowJudge::lines(double t) const {
 
 bool WindowJudge::reads(const Expectation& expectation, double t) const {
   if (expectation.words.empty()) return true;
-  const auto read = lines(t);
+  auto read = lines(t);
+  read.push_back(navigation_reason_);
   return std::any_of(read.begin(), read.end(), [&](const std::string& line) {
     return std::any_of(
         expectation.words.begin(), expectation.words.end(),

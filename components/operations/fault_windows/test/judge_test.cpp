@@ -251,7 +251,7 @@ TEST_F(Judge, WantsTheReasonToNameTheThing) {
   stand();
   run_for(1.0);
   lines = {"amcl: silent"};
-  run_for(0.6);
+  run_for(1.6);
   EXPECT_THAT(violation(), HasSubstr("does not read 'lms100': 'amcl: silent'"));
 }
 
@@ -261,6 +261,24 @@ TEST_F(Judge, WantsOneOfTwoThingsToBeNamed) {
                 {.zero_within = 0.2, .lasts = 9.0, .words = {"rogue"}}});
   stand();
   lines = {"foreign writer: rogue"};
+  run_for(6.0);
+  EXPECT_THAT(violation(), IsEmpty());
+}
+
+TEST_F(Judge, ReadsTheReasonOfTheNavigation) {
+  run_for(1.0);
+  judge.navigation(t, kActive, "no word from the odometry");
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"odom"}}});
+  stand();
+  run_for(6.0);
+  EXPECT_THAT(violation(), IsEmpty());
+}
+
+TEST_F(Judge, WantsNoReasonOfARobotThatArrived) {
+  run_for(1.0);
+  judge.navigation(t, kSucceeded, "");
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"odom"}}});
+  stand();
   run_for(6.0);
   EXPECT_THAT(violation(), IsEmpty());
 }
