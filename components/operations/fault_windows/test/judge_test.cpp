@@ -271,6 +271,7 @@ TEST_F(Judge, ReadsTheReasonOfTheNavigation) {
   judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"odom"}}});
   stand();
   run_for(6.0);
+  judge.navigation(t, kActive, "no word from the odometry");
   EXPECT_THAT(violation(), IsEmpty());
 }
 
