@@ -13,6 +13,7 @@ namespace usher::operations {
 /// What every experiment is given.
 struct ExperimentOptions {
   int seeds = 0;              ///< 0 = the experiment's own number
+  int windows = 0;            ///< of the fault windows; 0 = the experiment's own number
   std::string out;            ///< folder for result.json, table.md, *.csv, *.png; exists
   std::string data;           ///< folder with real data, empty = none
   std::string only;           ///< one of the experiment's inputs; empty = all
@@ -39,6 +40,7 @@ Result<ResultSheet> run_coverage_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_stopping_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_faults_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_human_detection_experiment(const ExperimentOptions& options);

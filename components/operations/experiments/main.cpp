@@ -1,5 +1,4 @@
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -10,10 +9,6 @@
 #include "operations/experiments/experiment.hpp"
 
 namespace usher::operations {
-
-void show_progress(const std::string& line) {
-  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K%s", line.c_str());
-}
 
 namespace {
 
@@ -55,6 +50,11 @@ const std::vector<Experiment>& experiments() {
        "Foreign writers on every topic that moves the robot (real processes): samples executed, "
        "time until they are named",
        run_monopoly_experiment},
+      {"faults",
+       "Seeded windows of 20 s in which something goes wrong while the robot drives, lock-step, "
+       "and a "
+       "judge of the movement chain; --windows N, goes on where it was killed; --only SEED",
+       run_faults_experiment},
       {"depth-pipeline",
        "Thesis 4.4: figures 4.11 to 4.21, table 4.2 over DDS processes, scans against the truth; "
        "--only images without processes",
@@ -131,6 +131,7 @@ int main(int argc, char** argv) {
   app.add_option("name", name, "Which one");
   app.add_flag("--list", list, "Name them all");
   app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number");
+  app.add_option("--windows", options.windows, "How many fault windows; 0 = the experiment's own");
   app.add_option("--out", options.out, "Folder for the results");
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
   app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")

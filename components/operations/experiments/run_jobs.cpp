@@ -1,5 +1,7 @@
 #include "operations/experiments/run_jobs.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <mutex>
@@ -9,6 +11,10 @@
 #include "operations/experiments/experiment.hpp"
 
 namespace usher::operations {
+
+void show_progress(const std::string& line) {
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K%s", line.c_str());
+}
 
 Status run_jobs(std::size_t count, const std::string& what,
                 const std::function<Result<std::string>(std::size_t)>& job) {

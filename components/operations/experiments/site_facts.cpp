@@ -26,13 +26,25 @@ Result<grid::OccupancyGrid> site_map(const Deployment& deployment) {
   return grid::load_map(path->yaml);
 }
 
-Result<std::vector<std::string>> site_locations(const Deployment& deployment) {
+Result<std::vector<SitePlace>> site_places(const Deployment& deployment) {
   const auto locations = fact(deployment, "site.locations");
   if (!locations) return Error{locations.error()};
+  std::vector<SitePlace> places;
+  for (const auto& location : YAML::Load(locations->yaml)) {
+    places.push_back(
+        {location["name"].as<std::string>(),
+         {location["x"].as<double>(), location["y"].as<double>(), location["yaw"].as<double>()}});
+  }
+  if (places.empty()) return Error{"the site has no locations"};
+  return places;
+}
+
+Result<std::vector<std::string>> site_locations(const Deployment& deployment) {
+  const auto places = site_places(deployment);
+  if (!places) return Error{places.error()};
   std::vector<std::string> names;
-  for (const auto& location : YAML::Load(locations->yaml))
-    names.push_back(location["name"].as<std::string>());
-  if (names.empty()) return Error{"the site has no locations"};
+  names.reserve(places->size());
+  for (const auto& place : *places) names.push_back(place.name);
   return names;
 }
 

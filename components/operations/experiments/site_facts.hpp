@@ -19,6 +19,13 @@ struct SiteRoom {
 };
 
 Result<grid::OccupancyGrid> site_map(const Deployment& deployment);
+struct SitePlace {
+  std::string name;
+  geometry::Pose2 pose;  ///< of base_footprint in map
+};
+
+/// The site's locations.
+Result<std::vector<SitePlace>> site_places(const Deployment& deployment);
 /// Names of the locations; the robot usually starts at the first one.
 Result<std::vector<std::string>> site_locations(const Deployment& deployment);
 Result<std::vector<SiteRoom>> site_meeting_rooms(const Deployment& deployment);

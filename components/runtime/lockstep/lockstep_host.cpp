@@ -241,7 +241,13 @@ void LockstepHost::end(bool politely) {
 void LockstepHost::kill() {
   if (!life_) return;
   end(false);
-  restart_later();
+  if (options_.restart_after) restart_later(*options_.restart_after);
+}
+
+void LockstepHost::kill(Duration back_after) {
+  if (!life_) return;
+  end(false);
+  restart_later(back_after);
 }
 
 void LockstepHost::stop() {
@@ -250,9 +256,8 @@ void LockstepHost::stop() {
   end(true);
 }
 
-void LockstepHost::restart_later() {
-  if (!options_.restart_after) return;
-  schedule_.add_action(schedule_.now() + *options_.restart_after, [this] {
+void LockstepHost::restart_later(Duration delay) {
+  schedule_.add_action(schedule_.now() + delay, [this] {
     if (!life_) static_cast<void>(start());  // the reason is kept in fault_reason_
   });
 }
@@ -288,7 +293,7 @@ void LockstepHost::turn() {
   if (!alive) {
     fault_reason_ = life_->engine.fault_reason();
     end(true);
-    restart_later();
+    if (options_.restart_after) restart_later(*options_.restart_after);
     return;
   }
   busy_until_ = schedule_.now() + life_->spent();

@@ -34,6 +34,8 @@ class LockstepHost {
   /// A new life. An error names the wrong parameters or says why the constructor ended it.
   Status start();
   void kill();  ///< as kill -9: the others notice when the lease ends
+  /// The same, with another time until it is restarted.
+  void kill(Duration back_after);
   void stop();  ///< as SIGTERM
   /// No turn until then, while samples go on to arrive: a handler that does not return.
   void hang(Time until);
@@ -69,7 +71,7 @@ class LockstepHost {
   Time earliest() const;
   void plan_turn(Time at);
   void end(bool politely);
-  void restart_later();
+  void restart_later(Duration delay);
 
   const std::uint32_t index_;
   Schedule& schedule_;

@@ -50,6 +50,10 @@ void LockstepWorld::kill(const std::string& name) {
   when_idle([&its_host = host(name)] { its_host.kill(); });
 }
 
+void LockstepWorld::kill(const std::string& name, Duration back_after) {
+  when_idle([&its_host = host(name), back_after] { its_host.kill(back_after); });
+}
+
 void LockstepWorld::stop(const std::string& name) {
   when_idle([&its_host = host(name)] { its_host.stop(); });
 }

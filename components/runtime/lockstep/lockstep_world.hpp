@@ -61,7 +61,9 @@ class LockstepWorld {
   }
 
   // --- What happens to it. In an observer or a handler these wait until the running turn is over.
-  void kill(const std::string& name);   ///< kill -9
+  void kill(const std::string& name);  ///< kill -9
+  /// The same; back after that time, whatever the component's own restart_after.
+  void kill(const std::string& name, Duration back_after);
   void stop(const std::string& name);   ///< SIGTERM
   void start(const std::string& name);  ///< a new life, with what was kept
   void hang(const std::string& name, Duration duration);

@@ -179,6 +179,10 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
     decision.twist = reflex(ramped, inputs);
     if (decision.twist != ramped) decision.limit = Limit::kWhisker;
+    roll_out_.drive();
+  } else {
+    decision.twist = whisker_reflex(roll_out_.stop(inputs.measured, now),
+                                    inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   }
 
   last_ = decision.twist;

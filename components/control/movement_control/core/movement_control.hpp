@@ -8,6 +8,7 @@
 #include "control/movement_control/core/whisker_reflex.hpp"
 #include "drivers/base_obedience/core/response_watch.hpp"
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/kinematics/roll_out.hpp"
 
 namespace usher::movement_control {
 
@@ -132,8 +133,9 @@ struct Decision {
 ///
 /// In this order: the highest enabled source with a fresh command; velocity limits of the
 /// situation, of a person ahead, of localization, battery and supervisor, by one factor so that the
-/// driven arc stays; acceleration limits; whisker reflex. Anything missing gives zero, and zero is
-/// a decision too: it is to be published, silence is not.
+/// driven arc stays; acceleration limits; whisker reflex. Anything missing gives zero (with the
+/// turn rate that keeps a rolling base on its arc), and zero is a decision too: it is to be
+/// published, silence is not.
 ///
 /// Call it whenever a command arrives and at the timer; the acceleration limits use the time since
 /// the last call. Deterministic, no allocation.
@@ -170,6 +172,7 @@ class MovementControl {
 
   Parameters parameters_;
   drive::ResponseWatch watch_;
+  kinematics::RollOut roll_out_;
   geometry::Twist2 last_;
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;

@@ -84,6 +84,9 @@ void Supervisor::base(const BaseReport& report, Time now) {
   }
   // What it did while nothing was heard, or while its motors were off, says nothing of obedience.
   if (!base_heard(now) || !base_->ready || !report.ready) watch_.reset(report.measured);
+  const bool refuses = !report.refusal.empty() && decision_.grant.writer != drive::kNobody;
+  if (!refuses) refused_since_.reset();
+  if (refuses && !refused_since_) refused_since_ = now;
   base_ = report;
   base_at_ = now - report.age;
   if (!report.emergency) reset_until_.reset();
@@ -97,6 +100,13 @@ void Supervisor::base(const BaseReport& report, Time now) {
     epoch_ = report.epoch;
     decision_.grant = {drive::kNobody, epoch_, drive::kNobody};
   }
+}
+
+void Supervisor::movement(const std::string& barred_by, Time now) {
+  const bool barred = !barred_by.empty() && decision_.state == State::kNavigationActive;
+  if (!barred) barred_since_.reset();
+  if (barred && !barred_since_) barred_since_ = now;
+  barred_by_ = barred_by;
 }
 
 void Supervisor::navigation(std::uint64_t id, GoalState state) {
@@ -260,6 +270,12 @@ void Supervisor::note_base(Time now) {
   }
 }
 
+std::string_view Supervisor::refusal(Time now) const {
+  if (refused_since_ && now - *refused_since_ >= parameters_.refusal_patience)
+    return base_->refusal;
+  return faults_.active(Cause::kBaseFallsShort) ? text(Cause::kBaseFallsShort) : std::string_view();
+}
+
 void Supervisor::explain(Time now) {
   if (const Fault* latched = faults_.latched()) {
     reason_.assign(text(latched->cause)).append(": ").append(latched->component);
@@ -280,6 +296,10 @@ void Supervisor::explain(Time now) {
     reason_.assign("stopped by ").append(stopped_by_.front());
     for (std::size_t i = 1; i < stopped_by_.size(); ++i)
       reason_.append(", ").append(stopped_by_[i]);
+  } else if (barred_since_ && now - *barred_since_ >= parameters_.barred_patience) {
+    reason_.assign(parameters_.names.movement).append(": ").append(barred_by_);
+  } else if (const std::string_view refused = refusal(now); !refused.empty()) {
+    reason_.assign(parameters_.names.base).append(": ").append(refused);
   } else {
     reason_.clear();
   }

@@ -50,8 +50,11 @@ struct Parameters {
   std::vector<std::string> operators{"operator", "manual_control"};
   Time claim_slack = std::chrono::milliseconds(50);      ///< see WriterRight
   Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
-  Time base_age = std::chrono::milliseconds(150);        ///< {> 0} nobody drives an older report
-  Time reset_patience = std::chrono::seconds(5);         ///< for a base that leaves its emergency
+  Time refusal_patience =
+      std::chrono::milliseconds(300);                     ///< a new right takes its way to the base
+  Time barred_patience = std::chrono::milliseconds(500);  ///< so long it may stand and not say why
+  Time base_age = std::chrono::milliseconds(150);         ///< {> 0} nobody drives an older report
+  Time reset_patience = std::chrono::seconds(5);          ///< for a base that leaves its emergency
   bool emergency_stop_when_disobeying = true;
   drive::ResponseWatch::Parameters response;
   double process_rate = 50.0;                             ///< [Hz] reported only
@@ -94,6 +97,7 @@ struct BaseReport {
   geometry::Twist2 measured;  ///< what it does
   std::uint64_t epoch = 0;    ///< the highest that it ever heard
   Time age{};                 ///< {>= 0} of the measurement when it arrived
+  std::string refusal;        ///< why it does not drive what it is told; empty when it does
 };
 
 /// What is to be published, at 50 Hz and after each event.
@@ -175,6 +179,8 @@ class Supervisor {
   /// A sample of drive/command.
   void drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now);
   void base(const BaseReport& report, Time now);
+  /// movement_control's word why it commands zero; empty when it drives, or is told to stand.
+  void movement(const std::string& barred_by, Time now);
   /// The navigator's status; `id` names the goal that it speaks of.
   void navigation(std::uint64_t id, GoalState state);
   /// The explorer's status: whether an exploration lasts that this client asked for. One that the
@@ -227,6 +233,9 @@ class Supervisor {
   bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
   void grant(bool able);
   void explain(Time now);
+  /// What the base says, or shows, of a right to drive that it does not use; empty when all is
+  /// well.
+  std::string_view refusal(Time now) const;
 
   Parameters parameters_;
   HeartbeatTable table_;
@@ -239,6 +248,9 @@ class Supervisor {
   std::vector<std::string> stopped_by_;  ///< clients that hold a stop
   std::optional<BaseReport> base_;
   Time base_at_{};  ///< when that was measured
+  std::string barred_by_;
+  std::optional<Time> barred_since_;   ///< while it should navigate
+  std::optional<Time> refused_since_;  ///< the base refuses though somebody has the right
   std::optional<Commanded> commanded_;
   std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
 

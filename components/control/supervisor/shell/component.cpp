@@ -16,6 +16,7 @@ constexpr auto kPeriod = milliseconds(20);
 constexpr int kStatusEvery = 5;        // of those periods: 10 Hz
 constexpr int kDiagnosticsEvery = 50;  // 1 Hz
 constexpr auto kBaseAge = milliseconds(150);
+constexpr auto kMovementAge = milliseconds(500);
 constexpr auto kExplorerAge = milliseconds(2000);
 constexpr const char* kMemoryKey = "supervisor";
 constexpr auto kKeeping = milliseconds(5);  // the memory on the disk, in simulation
@@ -29,6 +30,27 @@ Time time_from(double seconds) { return runtime::from_seconds(seconds); }
 /// Of a heartbeat; what is no time counts as none.
 Time handler_time(float seconds) {
   return seconds > 0.0F && seconds < 1e6F ? runtime::from_seconds(seconds) : Time::zero();
+}
+
+/// That nobody has the right, the supervisor knows by itself; a foreign command changes nothing.
+std::string refusal_of(const usher_msgs::msg::BaseStatus& status) {
+  const auto is = [&](drive::Reason reason) {
+    return status.obedience() == static_cast<std::uint8_t>(reason);
+  };
+  return is(drive::Reason::kObeyed) || is(drive::Reason::kForeignWriter) ? std::string()
+                                                                         : status.reason();
+}
+
+/// Why movement_control lets the robot not go forward; empty when it does, or nobody wants it.
+std::string bar_of(const usher_msgs::msg::MovementStatus& status) {
+  if (status.velocity_current_linear() > 0.0F) return {};
+  // The planner minds a touch, too, and then wants nothing that could be barred.
+  const bool touched =
+      status.front_left() || status.front_right() || status.back_left() || status.back_right();
+  if (touched) return "a whisker is touched";
+  return status.velocity_current_linear() == 0.0F && status.velocity_current_angular() == 0.0F
+             ? status.limit_reason()
+             : std::string();
 }
 
 Criticality criticality_from(const std::string& word) {
@@ -144,9 +166,15 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                                    message.state() == STATE_BALANCING,
                                    {message.v(), message.w()},
                                    message.epoch(),
-                                   host_.now() - info.effective},
+                                   host_.now() - info.effective,
+                                   refusal_of(message)},
                                   now());
                      });
+  movement_ = host.input(
+      topics::kMovementStatus,
+      {.max_age = kMovementAge, .on_loss = "does not tell why it stands", .optional = true},
+      [this](const auto& message, const auto&) { core_.movement(bar_of(message), now()); },
+      [this] { core_.movement({}, now()); });
   navigation_ = host.input(
       topics::kNavigateStatus, {.optional = true}, [this](const auto& message, const auto&) {
         core_.navigation(message.id(),

@@ -43,6 +43,7 @@ class SupervisorComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::Heartbeat> heartbeat_;
   runtime::Input<usher_msgs::msg::DriveCommand> command_;
   runtime::Input<usher_msgs::msg::BaseStatus> base_;
+  runtime::Input<usher_msgs::msg::MovementStatus> movement_;
   runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
   runtime::Input<usher_msgs::msg::ExploreStatus> exploration_;
   runtime::Input<usher_msgs::msg::SupervisorRequest> request_;

@@ -168,5 +168,51 @@ TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
   EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
 }
 
+TEST(Supervisor, TellsWhatTheBaseRefuses) {
+  Robot robot = guiding();
+  robot.base.refusal = "a repeated or late command";
+  robot.run(280);
+  EXPECT_EQ(robot.reason(), "") << "a new right takes its way to the base";
+  robot.run(100);
+  EXPECT_EQ(robot.reason(), "segway_rmp: a repeated or late command");
+  EXPECT_TRUE(robot.granted()) << "it may still begin to speak sense";
+  robot.base.refusal.clear();
+  robot.run(20);
+  EXPECT_EQ(robot.reason(), "");
+}
+
+TEST(Supervisor, TellsThatTheBaseFallsShort) {
+  Robot robot = guiding();
+  robot.command = {0.8, 0.0};
+  robot.run(6000);
+  EXPECT_EQ(robot.reason(), "segway_rmp: the base falls short of its command");
+}
+
+TEST(Supervisor, TellsWhatBarsANavigation) {
+  Robot robot = guiding();
+  const auto stand = [&](const char* why, int ms) {
+    for (int at = 0; at < ms; at += 100) {
+      robot.supervisor.movement(why, robot.now());
+      robot.run(100);
+    }
+  };
+  stand("a whisker is touched", 400);
+  EXPECT_EQ(robot.reason(), "") << "so long everybody may stand";
+  stand("a whisker is touched", 200);
+  EXPECT_EQ(robot.reason(), "movement_control: a whisker is touched");
+  stand("", 100);
+  EXPECT_EQ(robot.reason(), "");
+}
+
+TEST(Supervisor, NeedsNoReasonForARobotThatNobodyWantsToMove) {
+  Robot robot = ready();
+  for (int i = 0; i < 10; ++i) {
+    robot.supervisor.movement("no enabled source has a fresh command", robot.now());
+    robot.run(100);
+  }
+  EXPECT_EQ(robot.state(), State::kInteraction);
+  EXPECT_EQ(robot.reason(), "");
+}
+
 }  // namespace
 }  // namespace usher::supervisor

@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 /// Silence of command or grant is noticed within this; the base is told again in every cycle.
 constexpr auto kCycle = milliseconds(10);
 constexpr auto kSilence = milliseconds(120);
+constexpr auto kReportAge = milliseconds(100);  // an older one tells not how the base rolls
 constexpr const char* kOnLoss = "commands zero to the base";
 
 BaseObedience::Limits read_limits(runtime::Parameters& parameters) {
@@ -59,7 +60,7 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
                                           host_.now() - info.effective},
                                          host_.now().time_since_epoch());
         foreign_ = obedience_.count(Reason::kForeignWriter);
-        device_.drive(decision_.twist);
+        drive();
       },
       [this] { cycle(); });
   request_ = host.input(
@@ -75,8 +76,20 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
 
 void ObedientBase::cycle() {
   decision_ = obedience_.permitted(host_.now().time_since_epoch());
-  device_.drive(decision_.twist);
+  drive();
   cycled_();
+}
+
+void ObedientBase::drive() {
+  const Time now = host_.now().time_since_epoch();
+  // A verdict on a foreign command changes nothing, and what is driven beside it may be alive.
+  if (obedience_.permitted(now).reason == Reason::kObeyed) {
+    roll_out_.drive();
+  } else {
+    const bool known = connected() && now - report_.stamp < kReportAge;
+    decision_.twist = roll_out_.stop(known ? std::optional(report_.twist) : std::nullopt, now);
+  }
+  device_.drive(decision_.twist);
 }
 
 void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request,

@@ -7,6 +7,7 @@
 
 #include "drivers/base_obedience/core/base_obedience.hpp"
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/kinematics/roll_out.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -54,6 +55,8 @@ class ObedientBase {
 
  private:
   void cycle();
+  /// What the base gets: the permitted command, or a stop.
+  void drive();
   void take_request(const usher_msgs::msg::BaseRequest& request, const runtime::Guid& writer);
   void publish_status();
   void publish_battery();
@@ -64,6 +67,7 @@ class ObedientBase {
   BaseObedience obedience_;
   double wheel_radius_;
   Decision decision_;
+  kinematics::RollOut roll_out_;
   BaseReport report_;
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;

@@ -28,6 +28,8 @@ ScanPublisher::ScanPublisher(runtime::Host& host, const Model& model)
 }
 
 void ScanPublisher::publish(const Scan& scan) {
+  repetition_.take(scan);
+  if (repeats()) return;
   sensor_msgs::msg::LaserScan message;
   message.header(wire::header(runtime::Time(scan.stamp), kFrame));
   message.angle_min(static_cast<float>(scan.angle_min));

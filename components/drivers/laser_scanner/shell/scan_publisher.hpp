@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/laser_scanner/core/scan.hpp"
+#include "drivers/laser_scanner/core/repetition.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -18,10 +18,14 @@ struct Model {
 class ScanPublisher {
  public:
   ScanPublisher(runtime::Host& host, const Model& model);
+  /// A scanner that repeats itself is blind: its scans are kept back.
   void publish(const Scan& scan);
+  bool repeats() const { return repetition_.repeats(); }
+  static constexpr const char* kRepeats = "the scanner repeats the same scan";
 
  private:
   float range_min_, range_max_;
+  Repetition repetition_;
   runtime::Output<sensor_msgs::msg::LaserScan> scan_;
   runtime::Output<tf2_msgs::msg::TFMessage> mount_;
 };

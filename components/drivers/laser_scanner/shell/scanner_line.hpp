@@ -58,9 +58,10 @@ class ScannerLine {
     session_.tick(now());
     flush();
     count_(session_);
-    host_.health().set(
-        session_.healthy() ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
-        session_.reason());
+    const bool repeats = session_.healthy() && publisher_.repeats();
+    host_.health().set(session_.healthy() && !repeats ? runtime::HealthState::kOk
+                                                      : runtime::HealthState::kDegraded,
+                       repeats ? ScanPublisher::kRepeats : session_.reason());
   }
   void flush() {
     const auto output = session_.take_output();

@@ -20,7 +20,9 @@ void SimulatedScanner::take(const sensor_msgs::msg::LaserScan& message) {
   scan_.time_increment = message.time_increment();
   scan_.ranges = message.ranges();
   publisher_.publish(scan_);
-  host_.health().set(runtime::HealthState::kOk);
+  const bool repeats = publisher_.repeats();
+  host_.health().set(repeats ? runtime::HealthState::kDegraded : runtime::HealthState::kOk,
+                     repeats ? ScanPublisher::kRepeats : "");
 }
 
 }  // namespace usher::laser_scanner

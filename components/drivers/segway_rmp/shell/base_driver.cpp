@@ -25,9 +25,14 @@ BaseDriver::BaseDriver(runtime::Host& host, drive::BaseDevice device)
       rejected_feedback_(host.health().counter("feedback: rejected")) {}
 
 void BaseDriver::take(const SegwayFeedback& feedback) {
-  if (odometry_.update(feedback))
+  const bool understood = odometry_.update(feedback);
+  if (understood)
     base_.publish_odometry(feedback.stamp, odometry_.pose(), odometry_.twist(), feedback.pitch);
   rejected_feedback_ = odometry_.rejected();
+  if (!understood) {
+    host_.health().set(HealthState::kDegraded, "the base's measurements cannot be used");
+    return;  // nothing that anybody may drive by: its status grows stale
+  }
   base_.report({.stamp = feedback.stamp,
                 .state = static_cast<std::uint8_t>(feedback.mode),
                 .pitch = feedback.pitch,

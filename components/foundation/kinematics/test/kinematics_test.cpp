@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "foundation/kinematics/acceleration_limiter.hpp"
 #include "foundation/kinematics/differential_drive.hpp"
+#include "foundation/kinematics/roll_out.hpp"
 #include "foundation/kinematics/stopping_distance.hpp"
 #include "foundation/random/random.hpp"
 
@@ -117,6 +120,47 @@ TEST(AccelerationLimiter, BrakesOnNonsense) {
   EXPECT_LT(limited({1.0, 0.0}, {kNaN, 0.0}, limits, 0.1).v, 1.0);
   EXPECT_EQ(limited({1.0, 0.0}, {0.0, 0.0}, limits, -1.0).v, 1.0);
   EXPECT_EQ(limited({1.0, 0.0}, {0.0, 0.0}, limits, kNaN).v, 1.0);
+}
+
+using std::chrono::milliseconds;
+
+TEST(RollOut, KeepsTheArcWhileTheSpeedFalls) {
+  RollOut roll_out;
+  EXPECT_EQ(roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0)), (geometry::Twist2{0, 0.4}));
+  const auto later = roll_out.stop(geometry::Twist2{0.4, 0.1}, milliseconds(500));
+  EXPECT_EQ(later.v, 0.0);
+  EXPECT_NEAR(later.w, 0.2, 1e-12) << "the curvature of the beginning";
+  EXPECT_EQ(roll_out.stop(geometry::Twist2{0.9, 0.1}, milliseconds(600)).w, 0.4) << "never faster";
+}
+
+TEST(RollOut, IsZeroForARobotThatStandsTurnsBackOrIsUnknown) {
+  const auto stop = [](geometry::Twist2 onset, std::optional<geometry::Twist2> now, int ms) {
+    RollOut roll_out;
+    roll_out.stop(onset, milliseconds(0));
+    return roll_out.stop(now, milliseconds(ms));
+  };
+  const geometry::Twist2 arc{0.8, 0.4}, zero;
+  EXPECT_NE(stop(arc, arc, 100), zero);
+  EXPECT_EQ(stop(arc, geometry::Twist2{0.05, 0.4}, 100), zero);
+  EXPECT_EQ(stop(arc, geometry::Twist2{-0.3, 0.4}, 100), zero) << "it sways back";
+  EXPECT_EQ(stop({0.05, 0.8}, geometry::Twist2{0.05, 0.8}, 100), zero) << "it turned on the spot";
+  EXPECT_EQ(stop(arc, std::nullopt, 100), zero);
+  EXPECT_EQ(stop(arc, geometry::Twist2{kNaN, 0.4}, 100), zero);
+  EXPECT_EQ(stop({kNaN, 0.4}, arc, 100), zero);
+  EXPECT_EQ(stop(arc, arc, 2600), zero) << "measurements that hang turn it no longer";
+}
+
+TEST(RollOut, KeepsTheArcBackwards) {
+  RollOut roll_out;
+  roll_out.stop(geometry::Twist2{-0.4, 0.2}, milliseconds(0));
+  EXPECT_NEAR(roll_out.stop(geometry::Twist2{-0.2, 0.0}, milliseconds(200)).w, 0.1, 1e-12);
+}
+
+TEST(RollOut, BeginsAnewAfterADrive) {
+  RollOut roll_out;
+  roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0));
+  roll_out.drive();
+  EXPECT_EQ(roll_out.stop(geometry::Twist2{0.5, -0.2}, milliseconds(9000)).w, -0.2);
 }
 
 }  // namespace

@@ -200,6 +200,7 @@ void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::T
     stand(STATE_WAITING, missing);
     return;
   }
+  roll_out_.drive();
   const Decision decided = decision(costs, pose, *measured);
   last_command_ = decided.command;
   last_decision_ = host_.now();
@@ -300,12 +301,19 @@ void FollowerComponent::conclude(const Decision& decided, const geometry::Pose2&
 }
 
 void FollowerComponent::stand(std::uint8_t state, const std::string& reason) {
-  last_command_ = {};
+  last_command_ = roll_out_.stop(measured(), host_.now().time_since_epoch());
   last_decision_ = host_.now();
   command_.publish(wire::to_message(host_.now(), last_command_));
   publish_status(mode_ == MODE_STOP && state == STATE_WAITING ? STATE_IDLE : state, reason, 0.0,
                  std::numeric_limits<double>::infinity());
   if (state == STATE_WAITING) host_.health().set(HealthState::kDegraded, reason);
+}
+
+std::optional<geometry::Twist2> FollowerComponent::measured() const {
+  const auto* odom = odom_.fresh();
+  if (odom == nullptr) return std::nullopt;
+  const auto twist = wire::from_message(odom->twist().twist());
+  return twist.ok() ? std::optional(*twist) : std::nullopt;
 }
 
 void FollowerComponent::publish_status(std::uint8_t state, const std::string& reason,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/kinematics/roll_out.hpp"
 #include "idl/topics.hpp"
 #include "navigation/local_planner/core/dynamic_window.hpp"
 #include "runtime/api/host.hpp"
@@ -28,6 +29,7 @@ class FollowerComponent : public runtime::Component {
   void reject() { ++rejected_; }
   /// Stands, commands zero and says why.
   void stand(std::uint8_t state, const std::string& reason);
+  std::optional<geometry::Twist2> measured() const;
 
  private:
   /// What the follower misses to drive along a path; empty: nothing.
@@ -63,6 +65,7 @@ class FollowerComponent : public runtime::Component {
 
   std::vector<MovingDisc> everybody_;
   geometry::Twist2 last_command_;
+  kinematics::RollOut roll_out_;
   runtime::Time last_decision_{};
   std::optional<runtime::Time> blocked_since_;
   std::uint64_t& rejected_;

@@ -273,6 +273,22 @@ TEST(LockstepWorld, ALongOutageEndsTheMatchAndALatchedValueComesAgainOnce) {
   EXPECT_EQ(events[15].number - events[14].number, 26);
 }
 
+TEST(LockstepWorld, AKilledComponentIsBackAfterTheTimeThatItsKillerSays) {
+  LockstepWorld world;
+  ASSERT_TRUE(world
+                  .add(counter(kEvents, milliseconds(100)), file("killed"),
+                       {.restart_after = milliseconds(50)})
+                  .ok());
+  world.kill("killed", milliseconds(700));
+  world.run_for(milliseconds(699));
+  EXPECT_FALSE(world.running("killed"));
+  world.run_for(milliseconds(2));
+  EXPECT_TRUE(world.running("killed"));
+  world.kill("killed");
+  world.run_for(milliseconds(51));
+  EXPECT_TRUE(world.running("killed")) << "its own time again";
+}
+
 TEST(LockstepWorld, AKilledWriterIsNoticedAfterItsLeaseAndAStoppedOneAtOnce) {
   LockstepWorld world;
   std::vector<std::pair<std::string, Time>> writers;

@@ -1,0 +1,78 @@
+#include "operations/fault_windows/fault.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+namespace usher::operations {
+namespace {
+
+const FaultTargets kTargets{
+    {"supervisor", "lms100", "tablet"}, {"lms100", "segway_rmp"}, "segway_rmp", 40, 5};
+
+TEST(DrawWindow, GivesTheSamePlanForTheSameSeedAndAttempt) {
+  EXPECT_EQ(draw_window(7, 0, kTargets).text(), draw_window(7, 0, kTargets).text());
+  EXPECT_NE(draw_window(7, 0, kTargets).text(), draw_window(7, 1, kTargets).text());
+  EXPECT_NE(draw_window(7, 0, kTargets).text(), draw_window(8, 0, kTargets).text());
+}
+
+TEST(DrawWindow, StartsAndGoesWhereItMay) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    const auto plan = draw_window(seed, 0, kTargets);
+    EXPECT_LT(plan.start, kTargets.starts);
+    EXPECT_LT(plan.goal, kTargets.locations);
+  }
+}
+
+TEST(DrawWindow, DrawsEveryKindAndTwoAtOnce) {
+  std::map<std::string, int> counts;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed)
+    ++counts[draw_window(seed, 0, kTargets).kind()];
+  EXPECT_EQ(counts.size(), kFaultKinds + 1);
+  for (const auto& [kind, count] : counts) EXPECT_GE(count, 30) << kind;
+}
+
+TEST(DrawWindow, DrawsFaultsThatBeginAndEndInTheirWindow) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    const auto plan = draw_window(seed, 0, kTargets);
+    for (const Fault& fault : plan.faults) {
+      EXPECT_GT(fault.duration, 0.0) << plan.text();
+      EXPECT_LE(fault.duration, kWindow) << plan.text();
+    }
+  }
+}
+
+TEST(ExpectationOfAFault, ForACriticalComponentAndTheSupervisorItselfIsAStopWithinThePromise) {
+  for (const FaultKind kind : {FaultKind::kCrash, FaultKind::kHang}) {
+    for (const char* name : {"lms100", "supervisor"}) {
+      const auto expected = expectation({kind, name, "", 3.0}, kTargets);
+      EXPECT_EQ(expected.zero_within, 0.2) << name;
+      EXPECT_EQ(expected.lasts, 3.0);
+      EXPECT_EQ(expected.words, std::vector<std::string>{name});
+    }
+    EXPECT_EQ(expectation({kind, "tablet", "", 3.0}, kTargets).zero_within, Expectation::kNever);
+  }
+}
+
+TEST(ExpectationOfAFault, ForAForeignWriterLastsUntilTheEnd) {
+  EXPECT_EQ(expectation({FaultKind::kRogue, "drive/command", "rogue", 0.2}, kTargets).lasts,
+            kWindow);
+}
+
+TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
+  EXPECT_TRUE(expectation({FaultKind::kCrash, "segway_rmp", "", 3.0}, kTargets).deaf);
+  WindowPlan plan;
+  plan.faults = {{FaultKind::kBaseLink, "", "commands", 3.0},
+                 {FaultKind::kHang, "lms100", "", 3.0},
+                 {FaultKind::kFlood, "tf", "", 3.0}};
+  const auto all = expectations(plan, kTargets);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_GT(all[1].zero_within, 0.4) << "zero is said, and nobody hears it";
+  EXPECT_EQ(all[2].zero_within, Expectation::kNever);
+}
+
+}  // namespace
+}  // namespace usher::operations
