@@ -119,6 +119,17 @@ struct Setup {
   double least_speed;  ///< [s simulated per s and thread]
 };
 
+/// Whether another cascade than the robot's finds this face as small as it is at 3 m: not each
+/// photograph shows one from ahead, in daylight.
+bool is_plain(face_detector::FaceDetector& other, const cv::Mat& portrait) {
+  constexpr int kCanvas = 160, kSide = 44;  // [pixels]
+  cv::Mat canvas(kCanvas, kCanvas, CV_8UC3, cv::Scalar(128, 128, 128));
+  cv::Mat small;
+  cv::resize(portrait, small, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
+  small.copyTo(canvas(cv::Rect((kCanvas - kSide) / 2, (kCanvas - kSide) / 2, kSide, kSide)));
+  return !other.find_anywhere({kCanvas, kCanvas, {canvas.data, 3 * canvas.total()}}).empty();
+}
+
 /// Photographs where there are any; else the simulator draws faces.
 Status put_faces(Deployment& deployment, const ExperimentOptions& options) {
   if (options.data.empty()) {
@@ -129,13 +140,17 @@ Status put_faces(Deployment& deployment, const ExperimentOptions& options) {
   if (!portraits) return Error{portraits.error()};
   const std::filesystem::path folder = std::filesystem::absolute(options.out) / "faces";
   std::filesystem::create_directories(folder);
+  auto other = face_detector::FaceDetector::make(face_detector::cascade_file("default", ""), {});
+  if (!other) return Error{other.error()};
   int number = 0;
   for (const cv::Mat& rgb : *portraits) {
+    if (!is_plain(*other, rgb)) continue;
     cv::Mat bgr;
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
     const std::string file = folder / (format("%02.0f", number++) + ".png");
     if (!cv::imwrite(file, bgr)) return Error{file + ": cannot be written"};
   }
+  std::printf("%d photographed faces\n", number);
   set_value(deployment, "world", "face_pictures", folder);
   return {};
 }
