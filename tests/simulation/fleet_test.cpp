@@ -69,23 +69,5 @@ TEST_F(Together, BringTwoPeopleToOneRoomTheSameWayEachTime) {
   EXPECT_EQ(run(meeting()).digest, first.digest);
 }
 
-TEST_F(Together, OneFinishesWhenTheOtherDies) {
-  MeetingCase one = meeting();
-  one.loss = MeetingLoss{"iris", 70.0, 0.0};
-  const MeetingRun result = run(one);
-  expect_complete(result);
-  EXPECT_EQ(result.statuses.at("otto").mission().outcome(), OUTCOME_COMPLETE);
-}
-
-TEST_F(Together, OneThatDiedAndComesBackJoins) {
-  MeetingCase one = meeting();
-  one.people = {{"ada", {10.2, 10.4}, true, false}, {"boole", {13.4, 9.2}, true, false}};
-  one.loss = MeetingLoss{"otto", 30.0, 20.0};
-  const MeetingRun result = run(one);
-  expect_complete(result);
-  EXPECT_EQ(result.statuses.at("otto").mission().outcome(), OUTCOME_COMPLETE) << "it was told";
-  EXPECT_EQ(result.statuses.at("otto").mission().brought(), 2U);
-}
-
 }  // namespace
 }  // namespace usher::operations

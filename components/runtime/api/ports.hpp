@@ -122,8 +122,10 @@ class Input {
   /// Where the input was declared with `each_writer`: the newest sample of every writer that is not
   /// older than declared. The one way to notice the silence of one writer among many.
   std::vector<const Message*> fresh_of_each() const {
+    const auto samples = port_->fresh_of_each();
     std::vector<const Message*> all;
-    for (const auto* sample : port_->fresh_of_each()) all.push_back(message(sample));
+    all.reserve(samples.size());
+    for (const auto* sample : samples) all.push_back(message(sample));
     return all;
   }
   /// The newest sample, to keep beyond the handler without a copy; null before the first.

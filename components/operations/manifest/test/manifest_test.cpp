@@ -160,7 +160,7 @@ TEST_F(ManifestFile, FindsEveryUnknownKey) {
                        "robots: 3\ncomponents:\n  amcl: {host: nuc, critical: stop}\n"),
               ElementsAre("m.yaml:4: unknown key: manifest: unknown key 'robots', expected one of "
                           "name, robot, site, domain, seed, fresh_start, security, "
-                          "discovery_server, hosts, components",
+                          "discovery_server, fleet, hosts, components",
                           HasSubstr("m.yaml:6: unknown key: component 'amcl': unknown key "
                                     "'critical', expected one of type, host")));
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peer: [a]}}\n"

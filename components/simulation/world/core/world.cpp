@@ -86,6 +86,7 @@ void World::step() {
   if (config_.moves_people) {
     std::vector<RobotView> robots{
         {base_->truth().pose, footprint_at(base_->truth().pose), config_.name}};
+    robots.reserve(1 + robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i)
       robots.push_back({robots_[i].pose, robot_outlines_[i], robots_[i].name});
     crowd_.step(*scene_, robots);
@@ -233,6 +234,7 @@ void World::watch_people() {
 void World::judge_robots(const Pose2& before, double fastest) {
   if (robots_.empty()) return;
   std::vector<Point2> earlier;
+  earlier.reserve(config_.robot.footprint.size());
   for (const Point2& corner : config_.robot.footprint) earlier.push_back(before * corner);
   const Pose2 now = base_->truth().pose;
   const shapes::Polygon body(footprint_at(now));
