@@ -22,16 +22,24 @@ constexpr int kRaw = 800;
 void record(const test::Folder& folder) {
   std::string index;
   for (int i = 0; i < 10; ++i) {
-    const std::string time = "-1." + std::to_string(100 + 33 * i) + "000-" + std::to_string(i + 1);
+    std::string time = "-1.";
+    time += std::to_string(100 + 33 * i);
+    time += "000-";
+    time += std::to_string(i + 1);
     std::string depth = "P5 640 480 65535\n", color = "P6 640 480 255\n";
     for (int pixel = 0; pixel < 640 * 480; ++pixel) {
       depth += static_cast<char>(kRaw & 0xff);
       depth += static_cast<char>(kRaw >> 8);
       color += {10, 20, 30};
     }
-    folder.file("d" + time + ".pgm", depth);
-    folder.file("r" + time + ".ppm", color);
-    index += "d" + time + ".pgm\nr" + time + ".ppm\n";
+    for (const auto& [kind, bytes] : {std::pair("d", &depth), std::pair("r", &color)}) {
+      std::string name = kind;
+      name += time;
+      name += *kind == 'd' ? ".pgm" : ".ppm";
+      folder.file(name, *bytes);
+      index += name;
+      index += "\n";
+    }
   }
   folder.file("INDEX.txt", index);
 }

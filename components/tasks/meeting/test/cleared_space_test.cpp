@@ -19,7 +19,7 @@ ClearedSpace room() {
 /// A fan of beams that end 2 m ahead.
 std::vector<Point2> wall() {
   std::vector<Point2> points;
-  for (double y = -0.6; y <= 0.6; y += 0.02) points.emplace_back(2.0, y);
+  for (int i = -30; i <= 30; ++i) points.emplace_back(2.0, 0.02 * i);
   return points;
 }
 
@@ -54,7 +54,7 @@ TEST(ClearedSpace, BadInputIsNothing) {
   EXPECT_FALSE(nowhere.was_clear({1.0, 0.0})) << "without a map";
   ClearedSpace space = room();
   std::vector<Point2> bad{{kNan, 0.0}, {1e300, 1e300}, {0.0, 0.0}};
-  for (double y = 20.0; y < 110.0; y += 0.5) bad.emplace_back(50.0, y);
+  for (int i = 0; i < 180; ++i) bad.emplace_back(50.0, 20.0 + 0.5 * i);
   for (int i = 0; i < 3; ++i) space.add({0.0, 0.0}, bad);
   space.add({kNan, 0.0}, wall());
   EXPECT_TRUE(space.was_clear({0.7, 0.7})) << "on the way to what lies outside";

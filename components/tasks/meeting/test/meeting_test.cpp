@@ -237,7 +237,7 @@ TEST(Meeting, SeesWithTheLaserWhoStandsWhereNobodyWas) {
   };
   const Point2 start = rig.robot.pose->position();
   std::vector<Point2> ahead;  // a wall 4 m to the left of where it looks
-  for (double x = -1.5; x < 1.5; x += 0.01) ahead.push_back(start + Point2(x, 4.0));
+  for (int i = -150; i < 150; ++i) ahead.push_back(start + Point2(0.01 * i, 4.0));
   for (int i = 0; i < 10; ++i) {
     rig.note(rig.meeting.look(rig.robot.pose->position(), ahead, rig.now()));
     rig.robot.pose->y += 0.25;
