@@ -129,13 +129,22 @@ void Crowd::step(const Scene& scene, std::span<const RobotView> robots) {
   }
 }
 
-/// The one that spoke with him, while it is near.
+/// The one that spoke with him, while it is near; one that stands for long is no longer looked at
+/// when another one comes.
 std::size_t Crowd::watched_robot(const Person& person, const Mind& mind) const {
+  constexpr double kBoring = 20.0, kDead = 60.0;  // [s]
+  std::size_t nearest = robots_.size();
+  double least = config_.watch_within;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    const bool near = (robots_[i].pose.position() - person.position).norm() <= config_.watch_within;
-    if (near && !mind.leader.empty() && robots_[i].name == mind.leader) return i;
+    const double distance = (robots_[i].pose.position() - person.position).norm();
+    if (distance > config_.watch_within) continue;
+    const bool leads = !mind.leader.empty() && robots_[i].name == mind.leader;
+    if (leads && robots_[i].stands < kDead) return i;
+    if (distance > least || robots_[i].stands > kBoring) continue;
+    nearest = i;
+    least = distance;
   }
-  return nearest_robot(person.position);
+  return nearest < robots_.size() ? nearest : nearest_robot(person.position);
 }
 
 /// Turns the face to a robot that is near.
