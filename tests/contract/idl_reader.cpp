@@ -86,7 +86,7 @@ std::string ros_type(const std::string& idl_type) {
 
 std::string comment_breach(const std::string& comment) {
   static const std::regex kForm(
-      R"(\[[^\]]+\](?: or \[[^\]]+\])? \([^)]+\) \{.+\} (?:[A-Z]|[a-z]+_[a-z_]+ ).*\.)");
+      R"(\[[^\]]+\](?: or \[[^\]]+\])? \([^)]+\) \{.+\} (?:[A-Z]|[a-z]+_[a-z_]+ |[xyz] ).*\.)");
   if (comment.empty()) return "says nothing: ///< [unit] (frame) {range, special values} Sentence.";
   if (!std::regex_match(comment, kForm)) {
     return "must say [unit] (frame) {range, special values} Sentence. and says: " + comment;
