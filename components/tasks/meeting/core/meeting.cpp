@@ -20,6 +20,7 @@ constexpr double kFollowerInRoom = 1.9;     // [m] from the robot: farther sit t
 constexpr double kStandsNear = 1.4;         // [m] the same: what the laser sees
 constexpr double kNearest = 0.4;            // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;   // points of the laser
+constexpr double kRollsOut = 0.35;          // [m] until it stands
 constexpr double kInside = 0.5;             // [m] from its walls somebody is in a room
 constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
@@ -432,7 +433,8 @@ void Meeting::pass_time(Time now) {
       // Who stands in its way is before it, and not behind; in the room the place is good enough.
       if (passed >= parameters_.unseen && departed_ && robot_.pose &&
           (robot_.pose->position() - departure_).norm() >= kDeparted &&
-          turning_.free(robot_.pose->position())) {
+          turning_.free(robot_.pose->position()) &&
+          turning_.free(*robot_.pose * Point2(kRollsOut, 0.0))) {
         in_the_room_ = is_there();
         enter(State::kLookBack, Cause::kUnseen, now);
       }
@@ -842,8 +844,8 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
   if (state_ != State::kLookBack || !robot_.pose) return finish(now);
   const Point2 here = robot_.pose->position();
   const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
-    const double near = in_the_room_ ? (point - here).norm() : (point - follower_).norm();
-    return (point - here).norm() > kNearest && near < kStandsNear && cleared_.was_clear(point);
+    return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
+           cleared_.was_clear(point);
   });
   stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
   if (stands_there_ >= parameters_.confirmations) has_followed(now);

@@ -139,8 +139,11 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
 
   State state() const { return state_; }
   /// Where the robot shall turn now, while it stands; the bearing [rad] of kFace, the sign of
-  /// kSearch. Toward a face only where it has the room on the map.
-  Turn turn() const { return turn_ == Turn::kFace && !may_face() ? Turn::kStand : turn_; }
+  /// kSearch. Toward a face, and on the way, only where it has the room on the map.
+  Turn turn() const {
+    const bool anywhere = turn_ == Turn::kSearch && state_ == State::kScanRoom;
+    return anywhere || may_face() ? turn_ : Turn::kStand;
+  }
   double bearing() const;
   const service::Screen& screen() const { return screen_; }
   /// Of the drive that goes on, or was the last.
