@@ -30,10 +30,18 @@ std::string LockstepRun::complaints() const {
   for (const auto& [name, heartbeat] : heartbeats_) {
     std::string line = heartbeat.reason();
     for (const auto& counter : heartbeat.counters()) {
-      if (counter.count() > 0)
-        line += (line.empty() ? "" : "; ") + counter.name() + " " + std::to_string(counter.count());
+      if (counter.count() == 0) continue;
+      if (!line.empty()) line += "; ";
+      line += counter.name();
+      line += ' ';
+      line += std::to_string(counter.count());
     }
-    if (!line.empty()) out += "  " + name + ": " + line + "\n";
+    if (line.empty()) continue;
+    out += "  ";
+    out += name;
+    out += ": ";
+    out += line;
+    out += '\n';
   }
   return out;
 }

@@ -218,8 +218,9 @@ Result<std::vector<Deployment>> meeting_fleet(const ExperimentOptions& options) 
 Result<MeetingRun> run_meeting(std::vector<Deployment> fleet, const MeetingCase& one,
                                std::uint64_t seed, const std::string& folder,
                                const std::string& name, const std::string& title) {
+  const std::string stem = folder + "/" + name;
   for (std::size_t i = 0; i < fleet.size(); ++i) {
-    if (Status put = put_people(fleet[i], one, i, folder + "/" + name + "_people.yaml"); !put)
+    if (Status put = put_people(fleet[i], one, i, stem + "_people.yaml"); !put)
       return Error{put.error()};
   }
   const auto map = site_map(fleet.front());
@@ -298,7 +299,8 @@ Result<MeetingRun> run_meeting(std::vector<Deployment> fleet, const MeetingCase&
   if (title.empty()) return result;
   for (const Watched& robot : robots) {
     const RunRecord& record = run.record(robot.name);
-    const std::string path = folder + "/" + name + (robot.name.empty() ? "" : "_" + robot.name);
+    std::string path = stem;
+    if (!robot.name.empty()) (path += '_') += robot.name;
     Status saved = write_file(path + ".csv", run_csv(record));
     if (saved) saved = write_file(path + "_states.csv", robot.journal);
     if (saved) saved = draw_run(record, *map, title, path + ".png");

@@ -142,9 +142,10 @@ TEST_F(Sharing, GoesWhereItIsWantedThoughThatIsFar) {
 TEST_F(Sharing, NeedNotLookAtWhatAnotherSaw) {
   begin();
   ASSERT_TRUE(explorer->set_share({{{2, 5}, {17, 8}}, 0}));
-  for (double x = 10.4; x < 19.8; x += 0.4) {
-    for (double y = 0.4; y < 9.8; y += 0.4) {
-      for (double yaw = 0.0; yaw < 6.3; yaw += 0.9) explorer->look({x, y, yaw});
+  for (int x = 0; x < 24; ++x) {
+    for (int y = 0; y < 24; ++y) {
+      for (int turn = 0; turn < 7; ++turn)
+        explorer->look({10.4 + 0.4 * x, 0.4 + 0.4 * y, 0.9 * turn});
     }
   }
   for (int i = 0; i < 400 && explorer->active(); ++i) {
