@@ -202,7 +202,7 @@ std::vector<Guid> let_rogue_in(const Fault& fault, LockstepWorld& world) {
   const auto rogue = std::make_shared<RogueWriter>(world, fault);
   rogue->listen();
   const Time until = end_of(fault, world);
-  const auto writers = rogue->writers(fault.target);
+  auto writers = rogue->writers(fault.target);
   // Not before the caller knows its writers.
   world.at(world.now(), [&world, rogue, until, topic = fault.target] {
     repeat(world, until, kRoguePeriod, [rogue, topic] { rogue->write(topic); });
