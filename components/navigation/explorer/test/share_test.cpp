@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <chrono>
 
 #include "foundation/grid/test/rooms.hpp"
 #include "navigation/explorer/core/explorer.hpp"
@@ -73,13 +72,6 @@ TEST_F(Divided, GivesNothingToAPlaceThatIsNone) {
   const auto all = parts({{2, 2}, {-50, 0}});
   EXPECT_NEAR(all[0], 1.0, 1e-9);
   EXPECT_EQ(all[1], 0.0);
-}
-
-TEST_F(Divided, IsFastEnoughForAHandler) {
-  const auto begin = std::chrono::steady_clock::now();
-  divide(ground, area, std::vector<Point2>{{2, 2}, {17, 8}});
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  std::printf("divided in %.1f ms\n", 1e3 * took.count());
 }
 
 /// An explorer whose robot is at once where it is told.

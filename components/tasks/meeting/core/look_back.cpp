@@ -1,0 +1,71 @@
+// Whether the person follows who is guided.
+#include <algorithm>
+
+#include "tasks/meeting/core/meeting.hpp"
+
+namespace usher::meeting {
+
+namespace {
+constexpr double kFollowerNear = 1.6;      // [m] from where it should be: a face
+constexpr double kFollowerInRoom = 1.9;    // [m] from the robot: farther sit those who came before
+constexpr double kStandsNear = 1.4;        // [m] the same: what the laser sees
+constexpr double kNearest = 0.4;           // [m] nearer is the robot itself
+constexpr std::ptrdiff_t kOfSomebody = 3;  // points of the laser
+constexpr double kInside = 0.5;            // [m] from its walls somebody is in a room
+}  // namespace
+
+/// Nobody sees behind this robot: who follows is taken to walk where it drove.
+void Meeting::trail_follower() {
+  if (!robot_.pose) return;
+  const Point2 here = robot_.pose->position();
+  const Point2 behind = follower_ - here;
+  if (behind.norm() > parameters_.follows)
+    follower_ = here + parameters_.follows * behind.normalized();
+}
+
+/// A face where the follower should be; one far from there is somebody else's.
+void Meeting::look_for_follower(const Faces& all, Time now) {
+  Faces some = all;
+  std::erase_if(some.faces, [&](const Face& face) {
+    return (face.at - follower_).norm() > kFollowerNear ||
+           (in_the_room_ && face.range > kFollowerInRoom);
+  });
+  if (track_.take(some)) {
+    turn_ = Turn::kFace;
+    face_to_ = track_.face().at;
+  }
+  if (track_.successive() < parameters_.notice) return;
+  follower_ = track_.face().at;
+  has_followed(now);
+}
+
+/// Whoever stands so near that the camera does not see the face is seen by the laser, where nobody
+/// was when the robot came.
+const Actions& Meeting::look(const Point2& from, std::span<const Point2> points, Time now) {
+  actions_ = {};
+  if (state_ == State::kGuide) cleared_.add(from, points);
+  if (state_ != State::kLookBack || !robot_.pose) return finish(now);
+  const Point2 here = robot_.pose->position();
+  const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
+    return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
+           cleared_.was_clear(point);
+  });
+  stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
+  if (stands_there_ >= parameters_.confirmations) has_followed(now);
+  return finish(now);
+}
+
+void Meeting::has_followed(Time now) {
+  enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
+}
+
+/// In the room of this meeting.
+bool Meeting::is_there() const {
+  return std::any_of(rooms_.begin(), rooms_.end(), [&](const Room& room) {
+    return room.area.name == report_.room && room.contains(robot_.pose->position(), -kInside);
+  });
+}
+
+bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }
+
+}  // namespace usher::meeting
