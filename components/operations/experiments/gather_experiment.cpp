@@ -20,7 +20,6 @@ namespace {
 
 constexpr int kSeeds = 10;
 constexpr int kPixelSeeds = 5;
-constexpr double kLeastPortrait = 60.0;  // [pixels]
 constexpr std::uint32_t kPersons = 2;
 constexpr double kLimit = 900.0;  // [s]
 constexpr double kJitter = 0.3;   // [m]
@@ -119,32 +118,18 @@ struct Setup {
   double least_speed;  ///< [s simulated per s and thread]
 };
 
-/// Whether another cascade than the robot's finds this face as small as it is at 3 m: not each
-/// photograph shows one from ahead, in daylight.
-bool is_plain(face_detector::FaceDetector& other, const cv::Mat& portrait) {
-  constexpr int kCanvas = 160, kSide = 44;  // [pixels]
-  cv::Mat canvas(kCanvas, kCanvas, CV_8UC3, cv::Scalar(128, 128, 128));
-  cv::Mat small;
-  cv::resize(portrait, small, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
-  small.copyTo(canvas(cv::Rect((kCanvas - kSide) / 2, (kCanvas - kSide) / 2, kSide, kSide)));
-  return !other.find_anywhere({kCanvas, kCanvas, {canvas.data, 3 * canvas.total()}}).empty();
-}
-
 /// Photographs where there are any; else the simulator draws faces.
 Status put_faces(Deployment& deployment, const ExperimentOptions& options) {
   if (options.data.empty()) {
     std::printf("drawn faces: USHER_TEST_DATA names no folder with faces/\n");
     return {};
   }
-  const auto portraits = face_study::read_portraits(options.data + "/faces", kLeastPortrait);
+  const auto portraits = face_study::read_plain_portraits(options.data + "/faces");
   if (!portraits) return Error{portraits.error()};
   const std::filesystem::path folder = std::filesystem::absolute(options.out) / "faces";
   std::filesystem::create_directories(folder);
-  auto other = face_detector::FaceDetector::make(face_detector::cascade_file("default", ""), {});
-  if (!other) return Error{other.error()};
   int number = 0;
   for (const cv::Mat& rgb : *portraits) {
-    if (!is_plain(*other, rgb)) continue;
     cv::Mat bgr;
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
     const std::string file = folder / (format("%02.0f", number++) + ".png");
@@ -244,10 +229,10 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
              std::to_string(m.invited()) + "," + std::to_string(m.unanswered()) + "," +
              std::to_string(m.lost()) + "," + std::to_string(run.summary.contacts) + "\n";
       if (trial.failed())
-        std::printf("%s: %u brought, %u there after %s, %s; contacts %u %s\n%s",
-                    name_of(trial).c_str(), m.brought(), run.present, minutes(run.seconds).c_str(),
-                    m.reason().c_str(), run.summary.contacts, run.summary.contact_with.c_str(),
-                    run.complaints.c_str());
+        std::printf("%s: %u brought, %u there (%s) after %s, %s; contacts %u %s\n%s",
+                    name_of(trial).c_str(), m.brought(), run.present, run.whereabouts.c_str(),
+                    minutes(run.seconds).c_str(), m.reason().c_str(), run.summary.contacts,
+                    run.summary.contact_with.c_str(), run.complaints.c_str());
     }
     if (n == 0) continue;
     const Distance& d = kDistances[distance];

@@ -285,6 +285,9 @@ Result<MeetingRun> run_meeting(std::vector<Deployment> fleet, const MeetingCase&
   for (const MeetingPerson& person : one.people) {
     const auto at = run.record(first).person(person.name);
     result.present += at && room != rooms->end() && room->contains(*at) ? 1U : 0U;
+    if (!at) continue;
+    result.whereabouts += result.whereabouts.empty() ? "" : "; ";
+    result.whereabouts += person.name + format(" %.1f", at->x()) + format(" %.1f", at->y());
   }
   result.summary = run.record(first).summary();
   for (const Watched& robot : robots) {

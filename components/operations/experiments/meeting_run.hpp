@@ -50,6 +50,7 @@ struct MeetingRun {
   std::uint32_t missed = 0;   ///< times that somebody stood in view of the exploring robot for 1 s,
                               ///< and it went by; in a meeting room nobody is missed
   std::uint32_t present = 0;  ///< who really is in the meeting's room soon after the end
+  std::string whereabouts;    ///< "ada 3.1 9.8; boole ..." [m], soon after the end
   RunRecord::Summary summary;  ///< of a fleet, of its first robot, contacts and touches of all
   double wall = 0.0;           ///< [s]
   double simulated = 0.0;      ///< [s]

@@ -11,6 +11,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "simulation/rendering/core/texture.hpp"
+
 namespace usher::face_study {
 
 namespace {
@@ -89,19 +91,33 @@ Landmarks landmarks_of(const tinyxml2::XMLElement& box) {
   return marks;
 }
 
-/// Eyes and chin where drawn_face() has them.
+/// As the automatic exposure of a camera has it: the gray of a face's middle, by gain alone.
+void expose(cv::Mat& portrait) {
+  constexpr double kGray = 135.0, kMostGain = 3.0;
+  const int side = portrait.cols;
+  cv::Mat gray;
+  cv::cvtColor(portrait(cv::Rect(side / 4, side / 4, side / 2, 5 * side / 8)), gray,
+               cv::COLOR_RGB2GRAY);
+  const double mean = std::max(1.0, cv::mean(gray)[0]);
+  portrait.convertTo(portrait, -1, std::min(kMostGain, kGray / mean));
+}
+
+/// Eyes where drawn_face() has them, and the chin 0.12 m below them on a head of 0.1 m radius.
 cv::Mat portrait(const cv::Mat& rgb, const Landmarks& marks) {
-  constexpr double kSide = 128.0, kEyes = -0.12, kChin = 0.95;
+  constexpr double kSide = 128.0, kEyes = -0.12, kChin = 0.85;
   const cv::Point2d down = marks.chin - marks.eyes;
   const double scale = 0.5 * kSide * (kChin - kEyes) / cv::norm(down);
   const double turn = std::atan2(-down.x, down.y);
   const double c = scale * std::cos(turn), s = scale * std::sin(turn);
+  const double wide_c = rendering::kFaceAspect * c, wide_s = rendering::kFaceAspect * s;
   const cv::Point2d eyes(0.5 * kSide, 0.5 * kSide * (1.0 + kEyes));
-  const cv::Matx23d to_portrait(c, s, eyes.x - c * marks.eyes.x - s * marks.eyes.y,  //
+  const cv::Matx23d to_portrait(wide_c, wide_s,
+                                eyes.x - wide_c * marks.eyes.x - wide_s * marks.eyes.y,  //
                                 -s, c, eyes.y + s * marks.eyes.x - c * marks.eyes.y);
   cv::Mat upright;
   cv::warpAffine(rgb, upright, to_portrait, {static_cast<int>(kSide), static_cast<int>(kSide)},
                  cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  expose(upright);
   return upright;
 }
 
@@ -172,6 +188,25 @@ Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double le
     if (!read) return Error{read.error()};
   }
   if (portraits.empty()) return Error{folder + ": no face with landmarks is that large"};
+  return portraits;
+}
+
+Result<std::vector<cv::Mat>> read_plain_portraits(const std::string& folder) {
+  constexpr double kLeast = 60.0;           // [pixels]
+  constexpr int kCanvas = 240, kHigh = 96;  // [pixels]
+  auto portraits = read_portraits(folder, kLeast);
+  if (!portraits) return portraits;
+  auto cascade = face_detector::FaceDetector::make(face_detector::cascade_file("default", ""), {});
+  if (!cascade) return Error{cascade.error()};
+  std::erase_if(*portraits, [&](const cv::Mat& portrait) {
+    cv::Mat canvas(kCanvas, kCanvas, CV_8UC3, cv::Scalar(128, 128, 128));
+    cv::Mat small;
+    const int wide = static_cast<int>(kHigh / rendering::kFaceAspect);
+    cv::resize(portrait, small, {wide, kHigh}, 0.0, 0.0, cv::INTER_AREA);
+    small.copyTo(canvas(cv::Rect((kCanvas - wide) / 2, (kCanvas - kHigh) / 2, wide, kHigh)));
+    return cascade->find_anywhere({kCanvas, kCanvas, {canvas.data, 3 * canvas.total()}}).empty();
+  });
+  if (portraits->empty()) return Error{folder + ": none of the faces is plain to see"};
   return portraits;
 }
 

@@ -25,9 +25,13 @@ struct AnnotatedPicture {
 Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder);
 
 /// Faces of photographs as the simulator's people wear them (rendering/core/texture.hpp): upright
-/// by eyes and chin, 128 x 128 pixels. Those of dlib/*_with_face_landmarks.xml below `folder` whose
+/// by eyes and chin, exposed by the face, 128 x 128 pixels. Those of dlib/*_with_face_landmarks.xml below `folder` whose
 /// box is at least `least` pixels wide. Errors name the file.
 Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double least);
+
+/// Those of at least 60 pixels that the cascade `default`, another one than the robot's, finds: not
+/// each photograph shows a face from ahead, in daylight.
+Result<std::vector<cv::Mat>> read_plain_portraits(const std::string& folder);
 
 /// How a detector did.
 struct FaceScore {

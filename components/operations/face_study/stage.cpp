@@ -47,20 +47,20 @@ std::vector<Poster> things() {
 
 }  // namespace
 
-Stage::Stage(rendering::Renderer renderer, std::uint64_t seed)
+Stage::Stage(rendering::Renderer renderer, std::uint64_t seed,
+             std::vector<rendering::Texture> faces)
     : renderer_(std::move(renderer)),
       sensor_(rendering::kinect_v1(), seed),
-      painter_([] {
-        std::vector<rendering::Texture> faces;
-        for (std::uint64_t i = 0; i < kPeople; ++i) faces.push_back(rendering::drawn_face(i));
-        return faces;
-      }()),
+      painter_(std::move(faces)),
       room_T_camera_{{0.0, 0.0, kHeight}, geometry::from_roll_pitch_yaw(0.0, -kUp, 0.0)} {}
 
-Result<Stage> Stage::make(std::size_t features, std::uint64_t seed) {
+Result<Stage> Stage::make(std::size_t features, std::uint64_t seed,
+                          std::vector<rendering::Texture> faces) {
   auto renderer = rendering::Renderer::make(room());
   if (!renderer) return Error{renderer.error()};
-  Stage stage(std::move(renderer).value(), seed);
+  for (std::uint64_t i = faces.empty() ? 0 : kPeople; i < kPeople; ++i)
+    faces.push_back(rendering::drawn_face(i));
+  Stage stage(std::move(renderer).value(), seed, std::move(faces));
   auto posters = things();
   posters.resize(std::min(features, posters.size()));
   std::vector<rendering::Texture> pictures;

@@ -13,8 +13,9 @@ namespace usher::face_study {
 /// cascades take for faces of a size that no face has there.
 class Stage {
  public:
-  /// `features` of those things, at most 11.
-  static Result<Stage> make(std::size_t features, std::uint64_t seed);
+  /// `features` of those things, at most 11. People wear `faces` in turn; none: drawn ones.
+  static Result<Stage> make(std::size_t features, std::uint64_t seed,
+                            std::vector<rendering::Texture> faces = {});
 
   struct Shot {
     std::vector<std::uint8_t> rgb;
@@ -31,7 +32,7 @@ class Stage {
   const std::vector<Eigen::Vector3d>& features() const { return features_; }
 
  private:
-  Stage(rendering::Renderer renderer, std::uint64_t seed);
+  Stage(rendering::Renderer renderer, std::uint64_t seed, std::vector<rendering::Texture> faces);
   rendering::Renderer renderer_;
   rendering::DepthSensor sensor_;
   rendering::Painter painter_;

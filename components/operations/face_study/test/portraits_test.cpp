@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "operations/face_study/annotated.hpp"
 #include "support/data.hpp"
 #include "support/folder.hpp"
@@ -27,6 +29,20 @@ TEST(Portraits, OfPhotographsHaveTheirEyesWhereDrawnFacesHaveThem) {
   }
   EXPECT_GE(found, static_cast<int>(portraits->size()) - 2);
   EXPECT_FALSE(read_portraits(folder, 1000.0).ok()) << "none is that large";
+  const auto plain = read_plain_portraits(folder);
+  ASSERT_TRUE(plain.ok()) << plain.error();
+  EXPECT_GE(plain->size(), 8U);
+}
+
+TEST(Portraits, AreExposedByTheFace) {
+  USHER_REQUIRE_DATA(folder, "faces");
+  const auto portraits = read_portraits(folder, 60.0);
+  ASSERT_TRUE(portraits.ok()) << portraits.error();
+  for (const cv::Mat& portrait : *portraits) {
+    cv::Mat gray;
+    cv::cvtColor(portrait(cv::Rect(32, 32, 64, 80)), gray, cv::COLOR_RGB2GRAY);
+    EXPECT_NEAR(cv::mean(gray)[0], 135.0, 10.0);
+  }
 }
 
 TEST(Portraits, SayWhichFileIsMissing) {

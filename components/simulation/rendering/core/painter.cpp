@@ -9,9 +9,9 @@ namespace usher::rendering {
 
 namespace {
 
-constexpr float kHeadReach = 1.2F;     // of the radius: farther points of a body are no head
-constexpr float kFaceDown = 1.35F;     // of the radius: chin below the head's middle
-constexpr float kFaceUp = 1.05F;       // crown above it
+constexpr float kHeadReach = 1.2F;  // of the radius: farther points of a body are no head
+constexpr float kFaceDown = 1.35F;  // of the radius: chin below the head's middle
+constexpr float kFaceUp = 2.0F * static_cast<float>(kFaceAspect) - kFaceDown;  // crown above it
 constexpr float kPosterDepth = 0.03F;  // [m] off its surface
 constexpr Texture::Color kHair{48, 36, 30};
 

@@ -31,6 +31,9 @@ class Texture {
   std::vector<Level> levels_;  // the finest first
 };
 
+/// On a head the picture of a face is so much higher than wide.
+inline constexpr double kFaceAspect = 1.2;
+
 /// A face, drawn: the same number gives the same face, others differ in skin, hair, eyes and mouth.
 /// It fills [-1, 1]: temples at about 0.72, chin at 0.95, eyes at -0.12.
 Texture drawn_face(std::uint64_t number, int side = 128);

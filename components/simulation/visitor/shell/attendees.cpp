@@ -1,5 +1,6 @@
 #include "simulation/visitor/shell/attendees.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -32,6 +33,7 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
   invite("decline", "Names of those who do not.", Manner::kDeclines);
   invite("silent", "Names of those who do not answer.", Manner::kSilent);
   invite("stray", "Names of those who stay behind on the way, the first time.", Manner::kStrays);
+  rooms_ = wire::read_meeting_rooms(host);
   const auto place = [](const char* name) {
     return runtime::RecordField{name, runtime::ParameterKind::kNumber, "m", {-1e4, 1e4}, "In map."};
   };
@@ -80,6 +82,21 @@ const AttendeesComponent::Somebody* AttendeesComponent::asked() const {
   return nearest;
 }
 
+/// Who is looked at from within the room does not wait at its door.
+bool AttendeesComponent::is_called_in(const Somebody& somebody) const {
+  const auto* truth = truth_.fresh();
+  const auto room = std::find_if(rooms_.begin(), rooms_.end(),
+                                 [&](const auto& each) { return each.name == room_; });
+  if (truth == nullptr || room == rooms_.end() || shown_.state != "look_back") return false;
+  const auto inside = [&](double x, double y) {
+    return x > room->low.x() && x < room->high.x() && y > room->low.y() && y < room->high.y();
+  };
+  const auto person = std::find_if(truth->people().begin(), truth->people().end(),
+                                   [&](const auto& each) { return each.name() == somebody.name; });
+  return inside(truth->pose().position().x(), truth->pose().position().y()) &&
+         person != truth->people().end() && !inside(person->x(), person->y());
+}
+
 void AttendeesComponent::choose_seat(Somebody& somebody) {
   const auto& seats = seats_[room_];
   if (seats.empty()) return;
@@ -91,7 +108,7 @@ void AttendeesComponent::step() {
   const double now = runtime::seconds(host_.now().time_since_epoch());
   const Somebody* before = meeting_.fresh() != nullptr ? asked() : nullptr;
   for (Somebody& somebody : people_) {
-    somebody.mind.see(shown_, &somebody == before, now);
+    somebody.mind.see(shown_, &somebody == before && !is_called_in(somebody), now);
     const std::uint64_t question = somebody.mind.screen_id();
     if (const auto choice = somebody.mind.answer(now)) {
       usher_msgs::msg::DialogueAnswer message;

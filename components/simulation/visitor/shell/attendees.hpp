@@ -8,6 +8,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "simulation/visitor/core/attendee.hpp"
+#include "wire/meeting_rooms.hpp"
 #include "wire/repeater.hpp"
 
 namespace usher::visitor {
@@ -29,10 +30,12 @@ class AttendeesComponent final : public runtime::Component {
   void take(const usher_msgs::msg::DialogueScreen& screen);
   void step();
   const Somebody* asked() const;
+  bool is_called_in(const Somebody& somebody) const;
   void choose_seat(Somebody& somebody);
 
   runtime::Host& host_;
   std::vector<Somebody> people_;
+  std::vector<wire::MeetingRoom> rooms_;
   std::map<std::string, std::vector<geometry::Point2>> seats_;  ///< of each room
   std::map<std::string, std::size_t> taken_;
   double reach_;

@@ -225,6 +225,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void has_followed(Time now);
   bool calls(Time now) const;
   bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
+  bool is_inside(const Point2& point, double by) const;
   bool is_there() const;
 
   // Screens.

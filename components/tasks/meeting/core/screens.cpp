@@ -83,7 +83,9 @@ service::Screen Meeting::build(Time now) const {
       says(screen.title, Tone::kMoving);
       break;
     case State::kLookBack:
-      screen.title = say(calls(now) ? Text::kWhereAreYou : Text::kWithMe);
+      screen.title = say(calls(now)     ? Text::kWhereAreYou
+                         : in_the_room_ ? Text::kComeIn
+                                        : Text::kWithMe);
       screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
       if (calls(now)) says(screen.title, Tone::kCall);
       break;

@@ -20,6 +20,7 @@ enum class Text : std::size_t {
   kWouldYou,
   kFollowMe,
   kWithMe,
+  kComeIn,
   kWhereAreYou,
   kThankYou,
   kThere,
@@ -32,12 +33,12 @@ enum class Text : std::size_t {
   kLeave,
 };
 
-inline constexpr std::array<std::string_view, 21> kTextKeys{
-    "not_ready",  "ready",         "looks_for_room", "looks_round", "looks_for_people",
-    "one_moment", "coming",        "invitation",     "would_you",   "follow_me",
-    "with_me",    "where_are_you", "thank_you",      "there",       "count",
-    "all_there",  "ended",         "listening",      "yes",         "no",
-    "leave"};
+inline constexpr std::array<std::string_view, 22> kTextKeys{
+    "not_ready",  "ready",     "looks_for_room", "looks_round", "looks_for_people",
+    "one_moment", "coming",    "invitation",     "would_you",   "follow_me",
+    "with_me",    "come_in",   "where_are_you",  "thank_you",   "there",
+    "count",      "all_there", "ended",          "listening",   "yes",
+    "no",         "leave"};
 static_assert(static_cast<std::size_t>(Text::kLeave) + 1 == kTextKeys.size());
 
 }  // namespace usher::meeting

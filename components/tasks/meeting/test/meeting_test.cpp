@@ -209,6 +209,7 @@ TEST(Meeting, LooksBackWhereItsFollowerShouldBeAndGoesOn) {
   const Pose2 there = *rig.robot.pose;
   rig.wait(20000);
   ASSERT_EQ(rig.state(), State::kLookBack);
+  EXPECT_EQ(rig.meeting.screen().title, "Are you with me?");
   rig.wait(100);
   EXPECT_EQ(rig.meeting.turn(), Turn::kFace);
   EXPECT_NEAR(geometry::normalized(there.yaw + rig.meeting.bearing()), -geometry::kPi / 2, 0.3);
@@ -281,7 +282,7 @@ TEST(Meeting, LooksBackWhereItHasRoomToTurn) {
 TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
   Rig rig;
   rig.to_look_back(2);
-  EXPECT_EQ(rig.meeting.screen().title, "Are you with me?");
+  EXPECT_EQ(rig.meeting.screen().title, "Please come in.");
   rig.said.clear();
   rig.wait(9000);
   EXPECT_EQ(rig.said, std::vector<std::string>{"Are you there? I am waiting for you."});
@@ -290,6 +291,18 @@ TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
   EXPECT_EQ(rig.state(), State::kExplore);
   EXPECT_EQ(rig.meeting.report().lost, 1U);
   EXPECT_EQ(rig.meeting.report().brought, 0U);
+}
+
+TEST(Meeting, CountsWhoHasComeIntoTheRoom) {
+  Rig rig;
+  rig.to_look_back();
+  rig.robot.pose = Pose2{3.2, 2.0, 0.0};
+  rig.wait(100);
+  const Point2 before_the_door(4.3, 2.3), inside(3.8, 2.3);
+  rig.see({rig.face_at(before_the_door)}, 5);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  rig.see({rig.face_at(inside)}, 2);
+  EXPECT_EQ(rig.state(), State::kArrived);
 }
 
 TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
@@ -534,6 +547,11 @@ TEST(Meeting, HasNoDeadEnd) {
         rig.robot.pose =
             Pose2{20.0 * random.uniform(), 10.0 * random.uniform(), 6.28 * random.uniform() - 3.14};
         rig.robot.supervisor = Supervisor::kAvailable;
+      }
+      for (const Place& place : places()) {
+        if (rig.state() == State::kGuide && place.name == rig.meeting.report().room &&
+            random.uniform() < 0.1)
+          rig.robot.pose = Pose2{place.at.x(), place.at.y(), 0.0};
       }
       const auto any_state = [&] {
         return random.uniform() < mischief
