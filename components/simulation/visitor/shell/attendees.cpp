@@ -13,7 +13,8 @@ using std::chrono::milliseconds;
 constexpr auto kStep = milliseconds(200);
 constexpr auto kTruthAge = milliseconds(500);
 constexpr auto kDialogueAge = milliseconds(3000);
-constexpr double kBefore = 0.8;  // [rad] beside the robot's heading its screen can be read
+constexpr double kThrough = 0.4;  // [m] from the walls somebody has come through the door
+constexpr double kBefore = 0.8;   // [rad] beside the robot's heading its screen can be read
 namespace input = usher_msgs::msg::DialogueAnswer_Constants;
 }  // namespace
 
@@ -89,7 +90,9 @@ bool AttendeesComponent::is_called_in(const Somebody& somebody) const {
                                  [&](const auto& each) { return each.name == room_; });
   if (truth == nullptr || room == rooms_.end() || shown_.state != "look_back") return false;
   const auto inside = [&](double x, double y) {
-    return x > room->low.x() && x < room->high.x() && y > room->low.y() && y < room->high.y();
+    const geometry::Point2 at(x, y);
+    return (at.array() > room->low.array() + kThrough).all() &&
+           (at.array() < room->high.array() - kThrough).all();
   };
   const auto person = std::find_if(truth->people().begin(), truth->people().end(),
                                    [&](const auto& each) { return each.name() == somebody.name; });
@@ -106,9 +109,12 @@ void AttendeesComponent::choose_seat(Somebody& somebody) {
 
 void AttendeesComponent::step() {
   const double now = runtime::seconds(host_.now().time_since_epoch());
-  const Somebody* before = meeting_.fresh() != nullptr ? asked() : nullptr;
+  // Nobody follows a robot that fell silent.
+  const bool silent = meeting_.fresh() == nullptr;
+  const Screen shown = silent ? Screen{} : shown_;
+  const Somebody* before = silent ? nullptr : asked();
   for (Somebody& somebody : people_) {
-    somebody.mind.see(shown_, &somebody == before && !is_called_in(somebody), now);
+    somebody.mind.see(shown, &somebody == before && !is_called_in(somebody), now);
     const std::uint64_t question = somebody.mind.screen_id();
     if (const auto choice = somebody.mind.answer(now)) {
       usher_msgs::msg::DialogueAnswer message;
@@ -120,8 +126,9 @@ void AttendeesComponent::step() {
     }
     const Attendee::Walk walk = somebody.mind.walk();
     if (walk == Attendee::Walk::kToSeat && !somebody.has_seat) choose_seat(somebody);
+    // Told once: somebody who stands may be guided by another robot of the fleet.
     if (walk == Attendee::Walk::kStand && !somebody.moved) continue;
-    somebody.moved = true;
+    somebody.moved = walk != Attendee::Walk::kStand;
     usher_sim_msgs::msg::PersonGoal goal;
     goal.name(somebody.name);
     const bool stands =

@@ -123,7 +123,9 @@ bool Meeting::follow_person(Time now) {
 }
 
 void Meeting::follow_sightings(Time now) {
-  for (const Point2& at : team_.seen_by_others()) {
+  std::vector<Point2> seen = team_.seen_by_others();
+  for (const Point2& at : team_.take_left_behind()) seen.push_back(at);
+  for (const Point2& at : seen) {
     if (!taken_care_of(at, now) && !in_a_room(at)) people_.remember(at, parameters_.seen_again);
   }
   const std::vector<Point2> remembered = people_.remembered();

@@ -12,6 +12,7 @@ constexpr double kStandsNear = 1.4;        // [m] the same: what the laser sees
 constexpr double kNearest = 0.4;           // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;  // points of the laser
 constexpr double kInside = 0.5;            // [m] from its walls the robot is in a room
+constexpr double kThrough = 0.3;           // [m] and somebody has come through its door
 }  // namespace
 
 /// Nobody sees behind this robot: who follows is taken to walk where it drove.
@@ -28,7 +29,7 @@ void Meeting::look_for_follower(const Faces& all, Time now) {
   Faces some = all;
   std::erase_if(some.faces, [&](const Face& face) {
     return (face.at - follower_).norm() > kFollowerNear ||
-           (in_the_room_ && (face.range > kFollowerInRoom || !is_inside(face.at, 0.0)));
+           (in_the_room_ && (face.range > kFollowerInRoom || !is_inside(face.at, kThrough)));
   });
   if (track_.take(some)) {
     turn_ = Turn::kFace;
@@ -48,7 +49,7 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
   const Point2 here = robot_.pose->position();
   const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
     return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
-           (!in_the_room_ || is_inside(point, 0.0)) && cleared_.was_clear(point);
+           (!in_the_room_ || is_inside(point, kThrough)) && cleared_.was_clear(point);
   });
   stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
   if (stands_there_ >= parameters_.confirmations) has_followed(now);
@@ -66,7 +67,7 @@ bool Meeting::is_inside(const Point2& point, double by) const {
 }
 
 bool Meeting::is_there() const {
-  return is_inside(robot_.pose->position(), kInside) && is_inside(follower_, 0.0);
+  return is_inside(robot_.pose->position(), kInside) && is_inside(follower_, kThrough);
 }
 
 bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }

@@ -45,6 +45,7 @@ void Team::begin(std::uint64_t id, const std::string& client) {
   id_ = id;
   client_ = client;
   facts_.clear();
+  left_behind_.clear();
   for (const auto& [robot, report] : newest_) learn(report);
 }
 
@@ -75,6 +76,16 @@ void Team::put(const Encounter& fact) {
     facts_.erase(oldest);
   }
   facts_.emplace(key, fact);
+}
+
+void Team::hear(std::vector<std::string> robots) {
+  for (const TeamReport* mate : mates()) {
+    if (std::find(robots.begin(), robots.end(), mate->robot) != robots.end()) continue;
+    for (const Encounter& each : mate->people) {
+      if (each.kind == Met::kSeen || each.kind == Met::kClaimed) left_behind_.push_back(each.at);
+    }
+  }
+  heard_ = std::move(robots);
 }
 
 bool Team::is_heard(const std::string& robot) const {

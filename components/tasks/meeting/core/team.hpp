@@ -79,9 +79,9 @@ class Team {
   void begin(std::uint64_t id, const std::string& client);
   /// A report of another robot. False: it is late, a repetition, our own or none.
   bool take(const TeamReport& report);
-  /// Who is heard now. Others are taken for lost: what they claimed is free, what they found out
-  /// stays.
-  void hear(std::vector<std::string> robots) { heard_ = std::move(robots); }
+  /// Who is heard now. Others are taken for lost: what they claimed is free, and somebody to visit;
+  /// what they found out stays.
+  void hear(std::vector<std::string> robots);
   /// Where robots are now [m] in map, as far as that is known.
   void place(std::map<std::string, Point2> robots) { places_ = std::move(robots); }
 
@@ -116,6 +116,8 @@ class Team {
   std::uint32_t underway() const;
   /// What the others still want to visit.
   std::vector<Point2> seen_by_others() const;
+  /// Whom robots wanted to visit, asked or guided that were lost since the last call.
+  std::vector<Point2> take_left_behind() { return std::exchange(left_behind_, {}); }
   /// Everything found out by anybody that still holds.
   std::vector<Encounter> facts(Time now) const;
 
@@ -137,6 +139,7 @@ class Team {
   std::uint64_t id_ = 0;
   std::string client_;
   std::vector<std::string> heard_;
+  std::vector<Point2> left_behind_;
   std::map<std::string, Point2> places_;
   std::map<std::string, TeamReport> newest_;                          // of the others
   std::map<std::pair<std::string, std::uint64_t>, Encounter> facts_;  // by robot and id

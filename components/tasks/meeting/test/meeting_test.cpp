@@ -296,10 +296,11 @@ TEST(Meeting, CallsWhoDoesNotFollowAndLooksForOthersThen) {
 TEST(Meeting, CountsWhoHasComeIntoTheRoom) {
   Rig rig;
   rig.to_look_back();
-  rig.robot.pose = Pose2{3.2, 2.0, 0.0};
+  rig.robot.pose = Pose2{2.6, 2.0, 0.0};
   rig.wait(100);
-  const Point2 before_the_door(4.3, 2.3), inside(3.8, 2.3);
+  const Point2 before_the_door(4.3, 2.3), at_the_door(3.9, 2.3), inside(3.5, 2.3);
   rig.see({rig.face_at(before_the_door)}, 5);
+  rig.see({rig.face_at(at_the_door)}, 5);
   EXPECT_EQ(rig.state(), State::kLookBack);
   rig.see({rig.face_at(inside)}, 2);
   EXPECT_EQ(rig.state(), State::kArrived);

@@ -101,7 +101,14 @@ TEST_F(TeamOfOtto, RemembersWhatADeadRobotFoundOutAndFreesWhatItClaimed) {
   report.people = {fact(Met::kDeclined, {1, 1}, 1), claim({5, 1})};
   otto.take(report);
   EXPECT_TRUE(otto.left_alone({5, 1}, kNow));
+  otto.hear({"iris"});
+  EXPECT_THAT(otto.take_left_behind(), SizeIs(0));
   otto.hear({});
+  const auto left_behind = otto.take_left_behind();
+  ASSERT_THAT(left_behind, SizeIs(1)) << "the person stands there";
+  EXPECT_EQ(left_behind[0], Point2(5, 1));
+  otto.hear({});
+  EXPECT_THAT(otto.take_left_behind(), SizeIs(0)) << "once";
   EXPECT_FALSE(otto.left_alone({5, 1}, kNow));
   EXPECT_TRUE(otto.left_alone({1, 1}, kNow));
   EXPECT_THAT(otto.facts(kNow), SizeIs(1)) << "and tells it on";
