@@ -25,8 +25,8 @@ struct AnnotatedPicture {
 Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder);
 
 /// Faces of photographs as the simulator's people wear them (rendering/core/texture.hpp): upright
-/// by eyes and chin, exposed by the face, 128 x 128 pixels. Those of dlib/*_with_face_landmarks.xml below `folder` whose
-/// box is at least `least` pixels wide. Errors name the file.
+/// by eyes and chin, exposed by the face, 128 x 128 pixels. Those of dlib/*_with_face_landmarks.xml
+/// below `folder` whose box is at least `least` pixels wide. Errors name the file.
 Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double least);
 
 /// Those of at least 60 pixels that the cascade `default`, another one than the robot's, finds: not

@@ -113,8 +113,8 @@ class Process {
 
   bool from_driver() {
     if (entries_[0].revents == 0) return true;
-    // All that waits, so that the port gets the newest of it; and no more than that before the clock
-    // is looked at again, so that a flood cannot hold the guard.
+    // All that waits, so that the port gets the newest of it; and no more than that before the
+    // clock is looked at again, so that a flood cannot hold the guard.
     for (std::size_t i = 0; i < Outbox::kMostMessages; ++i) {
       const ssize_t count = ::recv(driver_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
       if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;

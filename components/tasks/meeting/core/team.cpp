@@ -206,7 +206,8 @@ bool Team::is_ahead(const Point2& at, State state) const {
 
 std::uint32_t Team::brought(const std::string& room) const {
   std::vector<const Encounter*> counted;
-  for (const auto& [key, fact] : facts_) {
+  for (const auto& entry : facts_) {
+    const Encounter& fact = entry.second;
     if (fact.kind != Met::kBrought || fact.room != room) continue;
     const bool again = std::any_of(counted.begin(), counted.end(), [&](const Encounter* other) {
       return other->robot != fact.robot && (other->at - fact.at).norm() < kSamePerson;
