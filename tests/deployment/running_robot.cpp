@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "support/sanitizer.hpp"
-#include "support/test_domain.hpp"
 
 namespace usher::test {
 
@@ -82,12 +81,13 @@ std::set<std::string> shared_memory_of(const std::map<std::string, pid_t>& proce
   return files;
 }
 
-RunningRobot::RunningRobot(bool secure, const std::string& base) : domain_(test_domain()) {
+RunningRobot::RunningRobot(std::uint32_t domain, bool secure, const std::string& base,
+                           const std::string& more)
+    : domain_(domain) {
   ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
-  manifest_ =
-      folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) + "/deploy/" +
-                                            base + "\ndomain: " + std::to_string(domain_) + "\n" +
-                                            (secure ? "security: keys\n" : ""));
+  manifest_ = folder_.file("deploy/robot.yaml",
+                           "extends: " + std::string(USHER_SOURCE_DIR) + "/deploy/" + base +
+                               "\ndomain: " + std::to_string(domain_) + "\n" + more);
   if (secure) {
     Process make({usher_program(), "keys", keys(), "--manifest", manifest_});
     const int code = make.wait();

@@ -16,6 +16,7 @@
 #include "idl/topics.hpp"
 #include "runtime/dds/observer.hpp"
 #include "support/process.hpp"
+#include "support/test_domain.hpp"
 
 namespace usher::test {
 
@@ -51,7 +52,11 @@ class RunningRobot {
   };
 
   /// A secure robot has keys of its own, in folder()/deploy/keys; its observer is the operator.
-  explicit RunningRobot(bool secure = false, const std::string& base = "marvin-sim.yaml");
+  explicit RunningRobot(bool secure = false, const std::string& base = "marvin-sim.yaml")
+      : RunningRobot(test_domain(), secure, base, secure ? "security: keys\n" : "") {}
+  /// A robot of a fleet, beside others of the same test; `more` is the rest of its manifest.
+  RunningRobot(std::uint32_t domain, const std::string& base, const std::string& more)
+      : RunningRobot(domain, false, base, more) {}
   ~RunningRobot();
 
   /// Launches; the former launcher must have ended. `before` is a program that becomes the
@@ -84,6 +89,8 @@ class RunningRobot {
   bool wait_for(const std::function<bool()>& condition, Seconds limit) const;
 
  private:
+  RunningRobot(std::uint32_t domain, bool secure, const std::string& base, const std::string& more);
+
   Folder folder_;
   std::uint32_t domain_;
   std::string manifest_;

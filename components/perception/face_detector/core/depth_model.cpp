@@ -72,6 +72,27 @@ SizeModel median_hyperbola(std::span<const FaceSample> samples) {
   return model;
 }
 
+/// Calls visit for each depth [mm] of the middle of a box, `share` of its side; returns how many.
+template <class Visit>
+std::size_t each_of_middle(const imaging::DepthImage& depth, const Box& box, double share,
+                           const Visit& visit) {
+  const double half = std::max(0.5, 0.5 * share * box.width);
+  const auto within = [](double value, int size) {
+    return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(size)));
+  };
+  const int left = within(box.column() - half, depth.width);
+  const int right = within(box.column() + half, depth.width - 1);
+  const int top = within(box.row() - half, depth.height);
+  const int bottom = within(box.row() + half, depth.height - 1);
+  std::size_t pixels = 0;
+  for (int row = top; row <= bottom; ++row) {
+    const std::uint16_t* line =
+        depth.millimeters.data() + static_cast<std::ptrdiff_t>(row) * depth.width;
+    for (int column = left; column <= right; ++column, ++pixels) visit(line[column]);
+  }
+  return pixels;
+}
+
 }  // namespace
 
 Status check(const SizeModel& model) {
@@ -101,23 +122,11 @@ bool DepthModel::is_center(double column, int image_width) const {
 
 std::optional<double> middle_depth(const imaging::DepthImage& depth, const Box& box,
                                    const Plausibility& rules, std::vector<std::uint16_t>& scratch) {
-  const double half = std::max(0.5, 0.5 * rules.middle * box.width);
-  const auto within = [](double value, int size) {
-    return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(size)));
-  };
-  const int left = within(box.column() - half, depth.width);
-  const int right = within(box.column() + half, depth.width - 1);
-  const int top = within(box.row() - half, depth.height);
-  const int bottom = within(box.row() + half, depth.height - 1);
   scratch.clear();
-  std::size_t pixels = 0;
-  for (int row = top; row <= bottom; ++row) {
-    const std::uint16_t* line =
-        depth.millimeters.data() + static_cast<std::ptrdiff_t>(row) * depth.width;
-    for (int column = left; column <= right; ++column, ++pixels) {
-      if (line[column] > 0) scratch.push_back(line[column]);
-    }
-  }
+  const std::size_t pixels =
+      each_of_middle(depth, box, rules.middle, [&scratch](std::uint16_t measured) {
+        if (measured > 0) scratch.push_back(measured);
+      });
   if (scratch.empty() ||
       static_cast<double>(scratch.size()) < rules.measured * static_cast<double>(pixels)) {
     return std::nullopt;
@@ -125,6 +134,15 @@ std::optional<double> middle_depth(const imaging::DepthImage& depth, const Box& 
   const auto median = scratch.begin() + static_cast<std::ptrdiff_t>((scratch.size() - 1) / 2);
   std::nth_element(scratch.begin(), median, scratch.end());
   return 1e-3 * *median;
+}
+
+double share_at(const imaging::DepthImage& depth, const Box& box, double at) {
+  constexpr double kHalf = 0.5, kThick = 150.0;  // of the box, [mm]
+  std::size_t there = 0;
+  const std::size_t pixels = each_of_middle(depth, box, kHalf, [&](std::uint16_t measured) {
+    there += measured > 0 && std::abs(measured - 1e3 * at) <= kThick ? 1 : 0;
+  });
+  return pixels > 0 ? static_cast<double>(there) / static_cast<double>(pixels) : 0.0;
 }
 
 bool plausible(const Box& box, double depth, int image_width, const DepthModel& model,

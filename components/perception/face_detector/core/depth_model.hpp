@@ -60,12 +60,18 @@ struct Plausibility {
   /// [m] by which a head stands before what is seen to its left and right, both added: a wall, a
   /// poster on it and its corner do not. Ours, not in algorithm 6; 0 takes anything.
   double relief = 0.06;
+  /// {0..1} share of the middle half of a face that lies within 0.15 m of its depth: a shoulder
+  /// before a picture on the wall is less than half of one. Ours too; 0 takes anything.
+  double whole = 0.6;
 };
 
 /// Median depth [m] of the middle of a box, of an even number the lower one; nothing where too few
 /// pixels have one or the middle lies outside. `scratch` keeps its memory.
 std::optional<double> middle_depth(const imaging::DepthImage& depth, const Box& box,
                                    const Plausibility& rules, std::vector<std::uint16_t>& scratch);
+
+/// Share of the middle half of a box that lies within 0.15 m of a depth [m].
+double share_at(const imaging::DepthImage& depth, const Box& box, double at);
 
 /// Algorithm 6 without the model of a size: `far`, then tolerance around what the size says.
 bool plausible(const Box& box, double depth, int image_width, const DepthModel& model,

@@ -126,8 +126,9 @@ Result<FaceDetector> FaceDetector::make(const std::string& cascade_file,
   if (!(rules.near > 0.0 && rules.near < rules.far && rules.far < 60.0))
     return Error{"faces must be looked for between two distances within (0, 60) m"};
   if (!(rules.tolerance > 0.0 && rules.tolerance < 1.0 && rules.middle > 0.0 &&
-        rules.middle <= 1.0 && rules.measured >= 0.0 && rules.measured <= 1.0)) {
-    return Error{"tolerance, middle and measured share must be in (0, 1)"};
+        rules.middle <= 1.0 && rules.measured >= 0.0 && rules.measured <= 1.0 &&
+        rules.whole >= 0.0 && rules.whole <= 1.0)) {
+    return Error{"tolerance, middle, measured and whole share must be in (0, 1)"};
   }
   if (!(config.step >= 1.05 && config.step <= 1.5) || config.neighbors < 1)
     return Error{"the step between sizes must be in [1.05, 1.5], neighbors at least 1"};
@@ -225,16 +226,15 @@ std::vector<Hit> FaceDetector::Search::hits() {
 }
 
 void FaceDetector::judge(const std::vector<Hit>& hits, const imaging::DepthImage& depth,
-                         double relief) {
+                         const Plausibility& rules) {
   faces_.clear();
-  const auto& rules = config_.rules;
   for (const Hit& hit : hits) {
     const auto measured = middle_depth(depth, hit.box, rules, scratch_);
     if (!measured || !plausible(hit.box, *measured, depth.width, config_.model, rules)) continue;
-    if (relief > 0.0 &&
-        search_->cells.relief(hit.box.column(), hit.box.row(), hit.box.width, *measured) < relief) {
+    if (rules.relief > 0.0 && search_->cells.relief(hit.box.column(), hit.box.row(), hit.box.width,
+                                                    *measured) < rules.relief)
       continue;
-    }
+    if (rules.whole > 0.0 && share_at(depth, hit.box, *measured) < rules.whole) continue;
     faces_.push_back({hit.box, *measured, hit.neighbors});
   }
   std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) {
@@ -272,7 +272,7 @@ Result<std::span<const Face>> FaceDetector::find(const imaging::ColorImage& colo
   s.searched /= static_cast<double>(s.gray.total() * s.sides.size());
   s.look_closely();
   drop_implausible(depth);
-  judge(s.hits(), depth, config_.rules.relief);
+  judge(s.hits(), depth, config_.rules);
   return std::span<const Face>(faces_);
 }
 
@@ -287,7 +287,9 @@ std::vector<Hit> FaceDetector::find_anywhere(const imaging::ColorImage& color) {
 Result<std::span<const Face>> FaceDetector::find_as_printed(const imaging::ColorImage& color,
                                                             const imaging::DepthImage& depth) {
   if (const auto status = check_pair(color, depth); !status) return Error{status.error()};
-  judge(find_anywhere(color), depth, 0.0);
+  Plausibility printed = config_.rules;
+  printed.relief = printed.whole = 0.0;
+  judge(find_anywhere(color), depth, printed);
   return std::span<const Face>(faces_);
 }
 

@@ -82,7 +82,8 @@ class FaceDetector {
   struct Search;
   explicit FaceDetector(std::unique_ptr<Search> search);
   void drop_implausible(const imaging::DepthImage& depth);
-  void judge(const std::vector<Hit>& hits, const imaging::DepthImage& depth, double relief);
+  void judge(const std::vector<Hit>& hits, const imaging::DepthImage& depth,
+             const Plausibility& rules);
 
   FaceDetectorConfig config_;
   std::unique_ptr<Search> search_;

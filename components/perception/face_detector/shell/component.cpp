@@ -41,6 +41,8 @@ FaceDetectorConfig read_config(runtime::Parameters& p) {
                "So far may the depth be from what the size lets expect, as a share of that.");
   c.rules.measured = p.number("measured", "-", {0, 1}, c.rules.measured,
                               "Share of a face's middle that must have a depth.");
+  c.rules.whole = p.number("whole", "-", {0, 1}, c.rules.whole,
+                           "Share of a face's middle half that lies at its depth.");
   c.rules.relief =
       p.number("relief", "m", {0, 0.5}, c.rules.relief,
                "By which a head stands before what is left and right of it, both added; 0 = any.");

@@ -127,6 +127,19 @@ TEST(FaceDetector, TakesNoPictureOnAWallForAFace) {
   EXPECT_EQ(detector("alt", config).find(scene.color(), scene.depth())->size(), 1U);
 }
 
+TEST(FaceDetector, TakesNoPictureThatAShoulderHalfHidesForAFace) {
+  DrawnScene scene;
+  scene.add_face(320, 240, 60.0, 1533);
+  for (std::size_t row = 180; row < 300; ++row) {
+    for (std::size_t column = 260; column < 320; ++column)
+      scene.millimeters()[row * DrawnScene::kWidth + column] = 4500;
+  }
+  EXPECT_TRUE(detector().find(scene.color(), scene.depth())->empty());
+  FaceDetectorConfig config;
+  config.rules.whole = 0.0;
+  EXPECT_EQ(detector("alt", config).find(scene.color(), scene.depth())->size(), 1U);
+}
+
 TEST(FaceDetector, WithoutDepthThereIsNoFace) {
   auto faces = detector();
   DrawnScene scene(0);

@@ -1,0 +1,78 @@
+// Two meeting assistants as processes, each with a domain of its own and one in common. Whole
+// missions of a fleet are tests.simulation.fleet and `usher experiment gather --robots 2`.
+#include <gtest/gtest.h>
+
+#include <mutex>
+
+#include "deployment/running_robot.hpp"
+
+namespace usher::test {
+namespace {
+
+namespace meeting = usher_msgs::msg::MeetingStatus_Constants;
+
+class FleetRobot {
+ public:
+  FleetRobot(std::size_t number, const std::string& name, const std::string& start)
+      : robot_(test_domain(number), "meeting-fleet-" + name + ".yaml",
+               "fleet: {domain: " + std::to_string(test_domain(2)) + ", robot: " + name + start +
+                   "}\n"),
+        status_(robot_.observer().reader(topics::kMeetingStatus,
+                                         [this](const auto& message, const auto&) {
+                                           const std::lock_guard lock(mutex_);
+                                           last_ = message;
+                                         })) {
+    EXPECT_TRUE(status_);
+  }
+
+  RunningRobot& robot() { return robot_; }
+  usher_msgs::msg::MeetingStatus status() const {
+    const std::lock_guard lock(mutex_);
+    return last_;
+  }
+  bool is_on_a_mission() const {
+    return status().state() >= meeting::STATE_TO_ROOM && status().state() <= meeting::STATE_ARRIVED;
+  }
+  bool is_ready() const { return status().state() == meeting::STATE_IDLE && robot_.may_drive(); }
+
+ private:
+  RunningRobot robot_;
+  mutable std::mutex mutex_;
+  usher_msgs::msg::MeetingStatus last_;
+  Result<runtime::Observer::Reader<usher_msgs::msg::MeetingStatus>> status_;
+};
+
+TEST(Fleet, OneIsCalledTheOtherJoinsAndGoesOnAlone) {
+  FleetRobot iris(0, "iris", ""), otto(1, "otto", ", start: [2.35, 1.5, 1.5708]");
+  ASSERT_TRUE(
+      iris.robot().wait_for([&] { return iris.is_ready() && otto.is_ready(); }, Seconds(90)))
+      << iris.robot().complaints() << otto.robot().complaints();
+
+  const auto call = iris.robot().command({"meet", "--persons", "2"});
+  ASSERT_TRUE(otto.robot().wait_for([&] { return otto.is_on_a_mission(); }, Seconds(60)))
+      << call->errors() << otto.robot().complaints();
+  EXPECT_TRUE(iris.is_on_a_mission());
+  EXPECT_EQ(otto.status().mission().client(), iris.status().mission().client());
+  EXPECT_EQ(otto.status().mission().wanted(), 2U);
+  const auto seeks_a_room = [](const FleetRobot& one) {
+    return one.status().state() == meeting::STATE_TO_ROOM;
+  };
+  EXPECT_TRUE(
+      iris.robot().wait_for([&] { return seeks_a_room(iris) != seeks_a_room(otto); }, Seconds(30)))
+      << "one looks for a room, the other one for people";
+
+  call->signal(SIGKILL);  // whose robot then dies, with nobody who could give the mission up
+  iris.robot().launcher().signal(SIGTERM);
+  iris.robot().launcher().wait(std::chrono::seconds(10));
+  ASSERT_TRUE(otto.robot().wait_for(
+      [&] {
+        return otto.status().state() == meeting::STATE_TO_ROOM ||
+               !otto.status().mission().room().empty();
+      },
+      Seconds(60)))
+      << "looks for the room itself";
+  EXPECT_TRUE(otto.is_on_a_mission());
+}
+
+}  // namespace
+}  // namespace usher::test
