@@ -53,6 +53,10 @@ std::string_view text(Limit limit) {
       return "the room is limited";
     case Limit::kReverse:
       return "driving backwards unseen";
+    case Limit::kObstacle:
+      return "something is in the way";
+    case Limit::kBlind:
+      return "no scan tells what is ahead";
     case Limit::kAcceleration:
       return "accelerating";
   }
@@ -62,7 +66,7 @@ std::string_view text(Limit limit) {
 MovementControl::MovementControl() : MovementControl(Parameters{}) {}
 
 MovementControl::MovementControl(const Parameters& parameters)
-    : parameters_(parameters), watch_(parameters.response) {
+    : parameters_(parameters), guard_(parameters.guard), watch_(parameters.response) {
   assert(parameters.longest_step > Time::zero() && parameters.reverse >= 0.0);
   status_.max_human = parameters.person_ahead;
   status_.max_normal = parameters.open;
@@ -135,6 +139,25 @@ geometry::Twist2 MovementControl::ramp(const geometry::Twist2& wanted, Time now)
           approach(last_.w, wanted.w, parameters_.angular, seconds)};
 }
 
+/// The planner looks ahead itself.
+bool MovementControl::guards(Source source) const {
+  return parameters_.guarded && source != Source::kNavigation;
+}
+
+/// A base that is told to be much slower rolls on with its speed and the new turn rate, off the arc
+/// that was free. Where that would lead it into something it stays on the old one.
+double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs,
+                                           Time now) {
+  const double v = inputs.measured ? inputs.measured->v : 0.0;
+  const double slower = std::max(0.0, std::abs(v) - parameters_.reflex_drop);
+  if (std::abs(v) < kinematics::RollOut::kStanding || ramped.v * v > slower * std::abs(v)) {
+    kept_arc_.drive();
+    return ramped.w;
+  }
+  const double kept = kept_arc_.stop(inputs.measured, now).w;
+  return guard_.stops({v, ramped.w}, inputs.view.points) ? ramped.w : kept;
+}
+
 /// As fast as the base can slow down, never faster than wanted before the touch.
 geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
                                          const Inputs& inputs) const {
@@ -149,7 +172,7 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
 
 Decision MovementControl::decide(const Inputs& inputs, Time now) {
   const Wish wish = choose(inputs);
-  const Bound limits = bound(inputs, wish);
+  Bound limits = bound(inputs, wish);
   Decision decision{{}, wish.source, wish.limit};
 
   if (wish.limit == Limit::kNotFinite) ++rejected_;
@@ -175,8 +198,22 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
       decision.limit = limits.angular_by;
     }
 
-    const geometry::Twist2 ramped = ramp(wanted, now);
+    // What is wished, so that the arc stays, and what is really commanded: while the robot speeds
+    // up into a turn its arc is another one, and what appears it slows down for at once.
+    const auto guard = [&](geometry::Twist2& twist) {
+      if (!guards(wish.source)) return;
+      const double room = guard_.share(twist, inputs.view, inputs.measured);
+      if (room >= 1.0) return;
+      twist = {twist.v * room, twist.w * room};
+      decision.limit = inputs.view.sees ? Limit::kObstacle : Limit::kBlind;
+      if (twist.v != 0.0) limits.limit.linear = std::abs(twist.v);
+      if (twist.w != 0.0) limits.limit.angular = std::abs(twist.w);
+    };
+    guard(wanted);
+    geometry::Twist2 ramped = ramp(wanted, now);
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
+    guard(ramped);
+    if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
     decision.twist = reflex(ramped, inputs);
     if (decision.twist != ramped) decision.limit = Limit::kWhisker;
     roll_out_.drive();

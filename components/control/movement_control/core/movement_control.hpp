@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "control/movement_control/core/guard.hpp"
 #include "control/movement_control/core/situation.hpp"
 #include "control/movement_control/core/whisker_reflex.hpp"
 #include "drivers/base_obedience/core/response_watch.hpp"
@@ -40,6 +41,8 @@ struct AccelerationLimit {
 };
 
 struct Parameters {
+  bool guarded = false;  ///< operator and interaction; the planner looks ahead itself
+  Guard::Parameters guard;
   // The thesis, section 8.1.3 and 6.1.
   VelocityLimit open{1.4, 1.0};
   VelocityLimit corridor{1.0, 1.0};
@@ -78,6 +81,7 @@ struct Inputs {
   Situation situation = Situation::kConfined;
   Localization localization = Localization::kLost;
   bool low_battery = false;
+  Guard::View view;                          ///< living through the decision
   std::optional<geometry::Twist2> measured;  ///< absent: the base is not connected
 };
 
@@ -97,6 +101,8 @@ enum class Limit : std::uint8_t {
   kSpeedFactor,  ///< something is degraded, says the supervisor
   kSituation,
   kReverse,
+  kObstacle,  ///< it could not stop before what the laser sees
+  kBlind,     ///< no scan tells what is ahead
   kAcceleration,
 };
 
@@ -133,9 +139,9 @@ struct Decision {
 ///
 /// In this order: the highest enabled source with a fresh command; velocity limits of the
 /// situation, of a person ahead, of localization, battery and supervisor, by one factor so that the
-/// driven arc stays; acceleration limits; whisker reflex. Anything missing gives zero (with the
-/// turn rate that keeps a rolling base on its arc), and zero is a decision too: it is to be
-/// published, silence is not.
+/// driven arc stays; acceleration limits; for an operator and the interaction the guard; whisker
+/// reflex. Anything missing gives zero (with the turn rate that keeps a rolling base on its arc),
+/// and zero is a decision too: it is to be published, silence is not.
 ///
 /// Call it whenever a command arrives and at the timer; the acceleration limits use the time since
 /// the last call. Deterministic, no allocation.
@@ -152,6 +158,8 @@ class MovementControl {
   /// How often a source with the right to drive sent something that is not finite.
   std::uint64_t rejected() const { return rejected_; }
 
+  const Guard& guard() const { return guard_; }
+
  private:
   struct Wish {
     Source source = Source::kNone;
@@ -167,12 +175,16 @@ class MovementControl {
   Wish choose(const Inputs& inputs) const;
   Bound bound(const Inputs& inputs, const Wish& wish) const;
   geometry::Twist2 ramp(const geometry::Twist2& wanted, Time now) const;
+  bool guards(Source source) const;
+  double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 
   Parameters parameters_;
+  Guard guard_;
   drive::ResponseWatch watch_;
   kinematics::RollOut roll_out_;
+  kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower
   geometry::Twist2 last_;
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace usher::movement_control {
 
@@ -78,30 +77,6 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
     width = std::min(width, slices[i].left + slices[i].right);
   }
   return FreeSpace{ahead, width};
-}
-
-double free_way(std::span<const float> ranges, double angle_min, double angle_increment,
-                const geometry::Twist2& twist, double front,
-                const FreeSpaceParameters& parameters) {
-  const bool arc = std::abs(twist.w) > 1e-3 * std::abs(twist.v) && twist.v != 0.0;
-  const double radius = arc ? std::abs(twist.v / twist.w) : 0.0;
-  const double forward = twist.v < 0.0 ? -1.0 : 1.0;
-  const double leftward = arc && twist.v / twist.w < 0.0 ? -1.0 : 1.0;
-  const geometry::Pose2& sensor = parameters.base_T_sensor;
-  double way = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const double range = std::max(static_cast<double>(ranges[i]), 0.0);
-    if (!(ranges[i] <= parameters.horizon)) continue;
-    const double angle = sensor.yaw + angle_min + angle_increment * static_cast<double>(i);
-    // Turned over, so that every way leads forward and to the left.
-    const double x = forward * (sensor.x + range * std::cos(angle));
-    const double y = leftward * (sensor.y + range * std::sin(angle));
-    if (x <= 0.0) continue;
-    const double off = arc ? std::hypot(x, radius - y) - radius : y;
-    if (std::abs(off) >= parameters.half_width) continue;
-    way = std::min(way, arc ? radius * std::atan2(x, radius - y) : x);
-  }
-  return std::max(0.0, way - front);
 }
 
 SituationFilter::SituationFilter() : SituationFilter(Parameters{}) {}

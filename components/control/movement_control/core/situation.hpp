@@ -42,12 +42,6 @@ struct FreeSpaceParameters {
 std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_min,
                                     double angle_increment, const FreeSpaceParameters& parameters);
 
-/// [m] How far ahead of `front` the robot's width is free along the arc of `twist`, from one
-/// horizontal scan: infinity where nothing stands in the way within the horizon. Standing, the way
-/// straight ahead. What is unknown is free here: free_space() tells how much that is.
-double free_way(std::span<const float> ranges, double angle_min, double angle_increment,
-                const geometry::Twist2& twist, double front, const FreeSpaceParameters& parameters);
-
 /// Room that a class needs: wide enough as an area, or narrower but long, as a corridor.
 struct RoomNeeded {
   double area_width = 0.0;      ///< [m]

@@ -23,17 +23,47 @@ constexpr auto kPersonAge = milliseconds(500);
 constexpr double kStanding = 0.01;  // [m/s]
 
 float single(double value) { return static_cast<float>(value); }
-double front_of(const geometry::Footprint& outline) {
-  double front = 0.0;
-  for (const auto& corner : outline.corners()) front = std::max(front, corner.x());
-  return front;
-}
 float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
 
 }  // namespace
 
-Parameters MovementControlComponent::read_parameters(runtime::Parameters& parameters) {
+FreeSpaceParameters MovementControlComponent::read_free_space(runtime::Parameters& parameters) {
+  FreeSpaceParameters p;
+  p.half_width = parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  p.base_T_sensor.x = parameters.number("robot.laser.mount_x", "m", {-2, 2}, 0.0,
+                                        "Laser ahead of the axle's middle.");
+  return p;
+}
+
+Guard::Parameters MovementControlComponent::read_guard(runtime::Host& host) {
+  auto& parameters = host.parameters();
+  Guard::Parameters g;
+  g.outline = wire::read_footprint(host);
+  g.stopping = wire::read_stopping(host);
+  g.turn_reaction = parameters.number("guard_reaction", "s", {0, 2}, g.turn_reaction,
+                                      "From a measurement of the laser to a smaller command.");
+  g.reaction = g.turn_reaction + parameters.number("robot.response.time_constant", "s", {0.05, 3},
+                                                   0.5, "Lag of the base's speed.");
+  g.turn_stop = parameters.number("robot.response.latency", "s", {0, 1}, 0.1,
+                                  "From a command to the base's first change.") +
+                parameters.number("robot.response.turn_time_constant", "s", {0.05, 3}, 0.2,
+                                  "Lag of the base's turn rate.");
+  g.margin = parameters.number("guard_margin", "m", {0, 0.5}, g.margin,
+                               "Around the outline; within it the guard lets it creep only.");
+  g.creep = parameters.number("guard_creep_v", "m/s", {0, 0.3}, g.creep,
+                              "Of the outline's fastest point, within the margin.");
+  g.blind = parameters.number("guard_blind_v", "m/s", {0, 0.8}, g.blind,
+                              "Of the outline's fastest point, while no scan is heard.");
+  return g;
+}
+
+Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
+  auto& parameters = host.parameters();
   Parameters p;
+  p.guarded = parameters.flag("guard", true,
+                              "Operator and interaction move no faster than the robot stops "
+                              "before what the laser sees.");
+  p.guard = read_guard(host);
   const auto limit = [&](VelocityLimit& value, const std::string& name, const std::string& when) {
     value.linear = parameters.number(name + "_v", "m/s", {0, 1.5}, value.linear,
                                      "Greatest speed " + when + ".");
@@ -72,15 +102,12 @@ Parameters MovementControlComponent::read_parameters(runtime::Parameters& parame
 
 MovementControlComponent::MovementControlComponent(runtime::Host& host)
     : host_(host),
-      front_(front_of(wire::read_footprint(host))),
-      stopping_(wire::read_stopping(host)),
-      core_(read_parameters(host.parameters())),
+      free_space_(read_free_space(host.parameters())),
+      parameters_(read_parameters(host)),
+      core_(parameters_),
+      surroundings_({.base_T_sensor = free_space_.base_T_sensor}),
       rejected_(host.health().counter("cmd_vel: rejected")) {
   auto& parameters = host.parameters();
-  free_space_.half_width =
-      parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
-  free_space_.base_T_sensor.x = parameters.number("robot.laser.mount_x", "m", {-2, 2}, 0.0,
-                                                  "Laser ahead of the axle's middle.");
   assume_person_ =
       parameters.flag("assume_person_ahead", true,
                       "Until a people detector is heard, drive as if a person were ahead.");
@@ -107,7 +134,11 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
   scan_ = host.input(
       topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "drives as in a confined place"},
       [this](const auto& scan, const auto&) { take_scan(scan); },
-      [this] { situation_.update(std::nullopt, host_.now().time_since_epoch()); });
+      [this] {
+        sees_ = false;
+        surroundings_.forget();
+        situation_.update(std::nullopt, host_.now().time_since_epoch());
+      });
   localization_ = host.input(topics::kLocalizationStatus,
                              {.max_age = kLocalizationAge, .on_loss = "drives as if lost"});
   person_ = host.input(
@@ -125,6 +156,13 @@ std::optional<geometry::Twist2> MovementControlComponent::velocity(
   if (message == nullptr) return std::nullopt;
   // Not checked here: the core turns what is not finite into zero and says who sent it.
   return geometry::Twist2{message->twist().linear().x(), message->twist().angular().z()};
+}
+
+std::optional<geometry::Twist2> MovementControlComponent::measured() const {
+  const auto* base = base_.fresh();
+  if (base == nullptr || base->state() != usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING)
+    return std::nullopt;
+  return geometry::Twist2{base->v(), base->w()};
 }
 
 Inputs MovementControlComponent::gather() {
@@ -145,12 +183,10 @@ Inputs MovementControlComponent::gather() {
     inputs.localization =
         static_cast<Localization>(std::min<std::uint8_t>(localization->state(), 2));
   }
-  if (const auto* base = base_.fresh()) {
+  if (const auto* base = base_.fresh())
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
-    if (base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING) {
-      inputs.measured = geometry::Twist2{base->v(), base->w()};
-    }
-  }
+  inputs.measured = measured();
+  inputs.view = {surroundings_.points(), sees_ && scan_.fresh() != nullptr};
   return inputs;
 }
 
@@ -162,14 +198,21 @@ std::optional<bool> MovementControlComponent::person_ahead() const {
 }
 
 void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan) {
+  const auto now = host_.now().time_since_epoch();
   std::optional<FreeSpace> space;
-  if (wire::check(scan))
+  if (wire::check(scan)) {
     space = free_space(scan.ranges(), scan.angle_min(), scan.angle_increment(), free_space_);
-  situation_.update(space, host_.now().time_since_epoch());
+    surroundings_.move(measured(), now);
+    surroundings_.take({scan.ranges(), scan.angle_min(), scan.angle_increment()}, now);
+  }
+  sees_ = space.has_value();
+  situation_.update(space, now);
 }
 
 void MovementControlComponent::decide() {
-  const Decision decision = core_.decide(gather(), host_.now().time_since_epoch());
+  const auto now = host_.now().time_since_epoch();
+  surroundings_.move(measured(), now);
+  const Decision decision = core_.decide(gather(), now);
   rejected_ = core_.rejected();
   const auto* enable = enable_.fresh();
   usher_msgs::msg::DriveCommand command;
@@ -216,14 +259,12 @@ void MovementControlComponent::publish_status() {
   m.source(static_cast<std::uint8_t>(s.source));
   m.situation(static_cast<std::uint8_t>(s.situation));
   m.limit_reason(std::string(text(s.limit)));
-  const auto* scan = scan_.fresh();
-  const double way = scan != nullptr && wire::check(*scan)
-                         ? free_way(scan->ranges(), scan->angle_min(), scan->angle_increment(),
-                                    s.current, front_, free_space_)
+  const double way = sees_ && scan_.fresh() != nullptr
+                         ? core_.guard().way(s.current, surroundings_.points())
                          : 0.0;  // nobody knows
   m.person_ahead(person_ahead().value_or(true));
   m.obstacle_distance(single(way));
-  m.stopping_distance(single(stopping_.distance(s.measured.v)));
+  m.stopping_distance(single(parameters_.guard.stopping.distance(s.measured.v)));
   const bool stands = std::abs(s.measured.v) < kStanding;
   m.time_to_collision(stands ? std::numeric_limits<float>::infinity()
                              : single(way / std::abs(s.measured.v)));

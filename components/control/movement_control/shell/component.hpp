@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "control/movement_control/core/movement_control.hpp"
-#include "foundation/kinematics/stopping_distance.hpp"
+#include "control/movement_control/core/surroundings.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -16,9 +16,12 @@ class MovementControlComponent final : public runtime::Component {
   explicit MovementControlComponent(runtime::Host& host);
 
  private:
-  static Parameters read_parameters(runtime::Parameters& parameters);
+  static Guard::Parameters read_guard(runtime::Host& host);
+  static Parameters read_parameters(runtime::Host& host);
+  static FreeSpaceParameters read_free_space(runtime::Parameters& parameters);
   std::optional<geometry::Twist2> velocity(
       const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
+  std::optional<geometry::Twist2> measured() const;
   Inputs gather();
   std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);
@@ -27,11 +30,12 @@ class MovementControlComponent final : public runtime::Component {
 
   runtime::Host& host_;
   FreeSpaceParameters free_space_;
-  double front_;  ///< [m] of the outline, ahead of the axle
-  kinematics::StoppingDistance stopping_;
+  Parameters parameters_;
   bool assume_person_;
   double low_battery_;
   MovementControl core_;
+  Surroundings surroundings_;
+  bool sees_ = false;  ///< the newest scan tells what is ahead
   SituationFilter situation_;
   std::uint64_t number_ = 0;
   std::uint64_t& rejected_;

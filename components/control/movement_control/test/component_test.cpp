@@ -41,6 +41,8 @@ class Component : public testing::Test {
   std::set<std::string> silent;
   std::optional<bool> clear;  ///< what the people detector says; nothing: there is none
   double wanted_v = 1.0, wanted_w = 0.0;
+  std::optional<geometry::Twist2> wanted_by_hand;
+  double measured_v = 0.5;
   double wall = 100.0;  ///< [m] ahead of the laser
 
  private:
@@ -50,7 +52,7 @@ class Component : public testing::Test {
     if (speaks("movement/enable")) {
       usher_msgs::msg::MovementEnable enable;
       enable.header(header);
-      enable.movement(true), enable.navigation(true);
+      enable.movement(true), enable.navigation(true), enable.manual(true);
       enable.speed_factor(1.0F);
       enable.epoch(7);
       host.publish(topics::kMovementEnable, enable, "supervisor");
@@ -64,7 +66,7 @@ class Component : public testing::Test {
       usher_msgs::msg::BaseStatus base;
       base.header(header);
       base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
-      base.v(0.5);
+      base.v(measured_v);
       base.battery_percent(80.0F);
       host.publish(topics::kBaseStatus, base);
     }
@@ -92,6 +94,13 @@ class Component : public testing::Test {
       wanted.twist().linear().x(wanted_v);
       wanted.twist().angular().z(wanted_w);
       host.publish(topics::kCmdVelNavigation, wanted, "local_planner");
+    }
+    if (wanted_by_hand) {
+      geometry_msgs::msg::TwistStamped wanted;
+      wanted.header(header);
+      wanted.twist().linear().x(wanted_by_hand->v);
+      wanted.twist().angular().z(wanted_by_hand->w);
+      host.publish(topics::kCmdVelManual, wanted, "manual_control");
     }
     if (clear && speaks("people/ahead")) {
       usher_msgs::msg::PersonAhead person;
@@ -164,6 +173,36 @@ TEST_F(Component, APersonAheadLimitsTheSpeedAndSoDoesASilentDetector) {
   run(2000);
   EXPECT_NEAR(commanded(), 1.0, 1e-6);
   EXPECT_TRUE(status().person_ahead());
+}
+
+TEST_F(Component, AnOperatorDrivesNoFasterThanItStops) {
+  wanted_by_hand = {0.8, 0.0};
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6);
+  measured_v = 0.0;
+  wall = 0.54;  // half a metre before the outline's margin
+  run(200);
+  EXPECT_NEAR(commanded(), 0.5 / 1.48, 0.02);
+  EXPECT_EQ(status().limit_reason(), "something is in the way");
+  EXPECT_NEAR(status().velocity_current_linear_max(), commanded(), 1e-6);
+  wall = 0.03;
+  run(200);
+  EXPECT_EQ(commanded(), 0.0);
+  wanted_by_hand = {-0.3, 0.0};
+  run(2000);
+  EXPECT_NEAR(commanded(), -0.3, 1e-6) << "and gets away from it";
+  wanted_by_hand.reset();
+  run(2000);
+  EXPECT_GT(commanded(), 0.7) << "the navigation looks ahead itself";
+}
+
+TEST_F(Component, WithoutAScanAnOperatorCreeps) {
+  wanted_by_hand = {0.8, 0.0};
+  run(2000);
+  silent.insert("scan/filtered");
+  run(400);
+  EXPECT_NEAR(commanded(), 0.1, 1e-6);
+  EXPECT_EQ(status().limit_reason(), "no scan tells what is ahead");
 }
 
 TEST_F(Component, TheStatusTellsWhatIsAhead) {

@@ -322,8 +322,8 @@ TEST(WhiskerReflex, BarsPerCornerAndDirection) {
 
 TEST(WhiskerReflex, AnArcWhoseTurnIsBarredIsNotDrivenStraightAtSpeed) {
   const Whiskers back_right{.back_right = true};
-  EXPECT_EQ(whisker_reflex({0.5, 0.5}, back_right, 0.1), Twist2(0.1, 0.0));
-  EXPECT_EQ(whisker_reflex({0.5, -0.5}, back_right, 0.1), Twist2(0.5, -0.5));
+  EXPECT_EQ(whisker_reflex({0.5, 0.5}, back_right, 0.1), (Twist2{0.1, 0.0}));
+  EXPECT_EQ(whisker_reflex({0.5, -0.5}, back_right, 0.1), (Twist2{0.5, -0.5}));
 }
 
 TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
@@ -358,6 +358,72 @@ TEST(WhiskerReflex, BrakesABalancingBaseAsFastAsItFollows) {
   inputs.measured.reset();
   EXPECT_EQ(control.decide(inputs, milliseconds(now += 20)).twist.v, 0.0);
   EXPECT_EQ(MovementControl().decide(inputs, milliseconds(0)).twist.v, 0.0);
+}
+
+/// MARVIN with its guard, half a metre before a wall.
+class Guarded : public testing::Test {
+ protected:
+  Guarded() {
+    parameters.guarded = true;
+    parameters.reflex_drop = 0.25;
+    inputs = all_well();
+    for (int i = -100; i <= 100; ++i) points.emplace_back(0.305 + 0.5, 0.01 * i);
+    inputs.view = {points, true};
+  }
+  Parameters parameters;
+  std::vector<geometry::Point2> points;
+  Inputs inputs;
+};
+
+TEST_F(Guarded, WhoDoesNotLookAheadDrivesNoFasterThanItStops) {
+  inputs.manual = Twist2{0.8, 0.0};
+  const Decision decision = settled(inputs, parameters);
+  EXPECT_NEAR(decision.twist.v, (0.5 - 0.02) / 1.48, 1e-9);
+  EXPECT_EQ(decision.limit, Limit::kObstacle);
+  inputs.manual = Twist2{0.8, 0.1};
+  const Twist2 arc = settled(inputs, parameters).twist;
+  EXPECT_NEAR(arc.w / arc.v, 0.1 / 0.8, 1e-9) << "the arc stays";
+  inputs.manual.reset();
+  inputs.interaction = Twist2{0.8, 0.0};
+  EXPECT_NEAR(settled(inputs, parameters).twist.v, (0.5 - 0.02) / 1.48, 1e-9);
+  inputs.navigation = inputs.interaction;
+  inputs.interaction.reset();
+  EXPECT_EQ(settled(inputs, parameters).twist.v, 0.8) << "the planner looks ahead itself";
+}
+
+TEST_F(Guarded, SlowsDownAtOnceForWhatAppears) {
+  MovementControl control(parameters);
+  inputs.manual = Twist2{0.8, 0.0};
+  inputs.view = {{}, true};
+  int ms = 0;
+  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.view = {points, true};
+  EXPECT_NEAR(control.decide(inputs, milliseconds(ms)).twist.v, (0.5 - 0.02) / 1.48, 1e-9);
+}
+
+TEST_F(Guarded, WithoutAScanItCreeps) {
+  inputs.manual = Twist2{0.8, 0.0};
+  inputs.view = {};
+  const Decision decision = settled(inputs, parameters);
+  EXPECT_NEAR(decision.twist.v, 0.1, 1e-9);
+  EXPECT_EQ(decision.limit, Limit::kBlind);
+}
+
+// In a bend along a wall the stick is let go: straight on the robot would roll into the wall.
+TEST_F(Guarded, RollsOutOnTheArcWhereItWouldMeetSomethingElse) {
+  MovementControl control(parameters);
+  inputs.measured = Twist2{0.6, 0.5};
+  inputs.manual = Twist2{0.6, 0.5};
+  inputs.view = {{}, true};
+  int ms = 0;
+  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  for (const double wish : {0.0, -0.3}) {
+    inputs.manual = Twist2{wish, 0.0};
+    inputs.view = {points, true};
+    EXPECT_NEAR(control.decide(inputs, milliseconds(ms += 20)).twist.w, 0.5, 1e-9) << wish;
+  }
+  inputs.view = {{}, true};
+  EXPECT_LT(control.decide(inputs, milliseconds(ms += 20)).twist.w, 0.5) << "room enough";
 }
 
 TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
