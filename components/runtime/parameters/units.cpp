@@ -34,6 +34,8 @@ constexpr std::array kUnits{
     Unit{"m/s2", "m/s2"},
     Unit{"rad/s2", "rad/s2"},
     Unit{"deg/s2", "rad/s2", std::numbers::pi, 180},
+    Unit{"m/s3", "m/s3"},
+    Unit{"rad/s3", "rad/s3"},
     Unit{"m2", "m2"},
     Unit{"kg", "kg"},
     Unit{"V", "V"},

@@ -12,8 +12,8 @@ namespace usher::runtime {
 /// are exact up to their rounding.
 std::optional<double> to_si(double value, std::string_view unit, std::string_view si);
 
-/// Whether parameters may be declared in it: m, rad, s, Hz, m/s, rad/s, m/s2, rad/s2, m2, kg, V, %
-/// and - for none.
+/// Whether parameters may be declared in it: m, rad, s, Hz, m/s, rad/s, m/s2, rad/s2, m/s3, rad/s3,
+/// m2, kg, V, % and - for none.
 bool is_si(std::string_view unit);
 
 /// "m, mm, cm, km" for m: what may be written where `si` is declared.

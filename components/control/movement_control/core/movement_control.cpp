@@ -8,17 +8,35 @@ namespace usher::movement_control {
 
 namespace {
 
-/// The next value on the way from `from` to `to`, through zero when the sign changes.
-double approach(double from, double to, const AccelerationLimit& limit, double seconds) {
+/// The next value on the way from `from` to `to`, through zero when the sign changes. With a jerk
+/// the acceleration, which is kept in `acceleration`, builds up and fades no faster; a change of
+/// mind and a stop are not delayed by what was wanted before.
+double approach(double from, double to, const AccelerationLimit& limit, double jerk, double seconds,
+                double& acceleration) {
+  if (from == to || from * to < 0.0 || to == 0.0) acceleration = 0.0;
   if (from == to) return to;
   const bool through_zero = from * to < 0.0;
   const double goal = through_zero ? 0.0 : to;
-  const double rate = std::abs(goal) > std::abs(from) ? limit.speed_up
-                      : goal == 0.0                   ? limit.stop
-                                                      : limit.slow_down;
-  if (rate == 0.0) return through_zero ? approach(0.0, to, limit, seconds) : goal;
+  double rate = std::abs(goal) > std::abs(from) ? limit.speed_up
+                : goal == 0.0                   ? limit.stop
+                                                : limit.slow_down;
+  if (rate == 0.0)
+    return through_zero ? approach(0.0, to, limit, jerk, seconds, acceleration) : goal;
+  const double way = goal - from;
+  if (jerk > 0.0 && goal != 0.0) {
+    if (acceleration * way < 0.0) acceleration = 0.0;
+    rate = std::min(
+        {rate, std::sqrt(2.0 * jerk * std::abs(way)), std::abs(acceleration) + jerk * seconds});
+    acceleration = std::copysign(rate, way);
+  }
   const double step = rate * seconds;
-  return from < goal ? std::min(from + step, goal) : std::max(from - step, goal);
+  return way > 0.0 ? std::min(from + step, goal) : std::max(from - step, goal);
+}
+
+/// Told to turn back while it still rolls the other way, a balancing base leans for both at once.
+bool rolls_against(double wanted, const std::optional<geometry::Twist2>& measured) {
+  constexpr double kRolling = 0.1;  // [m/s]
+  return measured && wanted * measured->v < 0.0 && std::abs(measured->v) > kRolling;
 }
 
 }  // namespace
@@ -131,12 +149,20 @@ MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& 
   return bound;
 }
 
-geometry::Twist2 MovementControl::ramp(const geometry::Twist2& wanted, Time now) const {
+geometry::Twist2 MovementControl::ramp(const geometry::Twist2& wanted, Source source, Time now) {
   const Time step =
       last_at_ ? std::clamp(now - *last_at_, Time::zero(), parameters_.longest_step) : Time::zero();
   const double seconds = std::chrono::duration<double>(step).count();
-  return {approach(last_.v, wanted.v, parameters_.linear, seconds),
-          approach(last_.w, wanted.w, parameters_.angular, seconds)};
+  // The planner's commands are smooth already.
+  const geometry::Twist2 jerk =
+      source == Source::kNavigation ? geometry::Twist2{} : parameters_.jerk;
+  return {approach(last_.v, wanted.v, parameters_.linear, jerk.v, seconds, acceleration_.v),
+          approach(last_.w, wanted.w, parameters_.angular, jerk.w, seconds, acceleration_.w)};
+}
+
+/// Of a source whose wishes may be as sudden as they like. The planner's commands are smooth.
+bool MovementControl::smooth(Source source) const {
+  return parameters_.jerk.v > 0.0 && source != Source::kNavigation;
 }
 
 /// The planner looks ahead itself.
@@ -210,14 +236,20 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
       if (twist.w != 0.0) limits.limit.angular = std::abs(twist.w);
     };
     guard(wanted);
-    geometry::Twist2 ramped = ramp(wanted, now);
+    if (smooth(wish.source) && rolls_against(wanted.v, inputs.measured)) wanted.v = 0.0;
+    geometry::Twist2 ramped = ramp(wanted, wish.source, now);
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
+    const geometry::Twist2 uncut = ramped;
     guard(ramped);
     if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
     decision.twist = reflex(ramped, inputs);
     if (decision.twist != ramped) decision.limit = Limit::kWhisker;
+    // What was cut short speeds up anew.
+    if (decision.twist.v != uncut.v) acceleration_.v = 0.0;
+    if (decision.twist.w != uncut.w) acceleration_.w = 0.0;
     roll_out_.drive();
   } else {
+    acceleration_ = {};
     decision.twist = whisker_reflex(roll_out_.stop(inputs.measured, now),
                                     inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   }

@@ -61,6 +61,10 @@ struct Parameters {
   /// The Segway's own acceleration; a stop passes at once, as the stopping distances were measured.
   AccelerationLimit linear{0.7, 1.4, 0.0};
   AccelerationLimit angular{1.5, 3.0, 0.0};
+  /// [m/s^3] [rad/s^3] {>= 0, 0 = at once} How fast these accelerations build up and fade for an
+  /// operator and the interaction; with a linear one they turn back only when the base stands. A
+  /// stop is not delayed.
+  geometry::Twist2 jerk;
   /// A longer pause between two decisions counts as this one for the acceleration. {> 0}
   Time longest_step = std::chrono::milliseconds(40);
 
@@ -174,7 +178,8 @@ class MovementControl {
 
   Wish choose(const Inputs& inputs) const;
   Bound bound(const Inputs& inputs, const Wish& wish) const;
-  geometry::Twist2 ramp(const geometry::Twist2& wanted, Time now) const;
+  geometry::Twist2 ramp(const geometry::Twist2& wanted, Source source, Time now);
+  bool smooth(Source source) const;
   bool guards(Source source) const;
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
@@ -186,6 +191,7 @@ class MovementControl {
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower
   geometry::Twist2 last_;
+  geometry::Twist2 acceleration_;  ///< [m/s^2] [rad/s^2] of the command
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;
   MovementStatus status_;

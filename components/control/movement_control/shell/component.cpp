@@ -95,6 +95,12 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
   };
   acceleration(p.linear, "linear", "m/s2");
   acceleration(p.angular, "angular", "rad/s2");
+  p.jerk.v = parameters.number("linear_jerk", "m/s3", {0, 100}, p.jerk.v,
+                               "How fast the acceleration of an operator and the interaction "
+                               "builds up, and they turn back only when the base stands; 0 = at "
+                               "once.");
+  p.jerk.w = parameters.number("angular_jerk", "rad/s3", {0, 100}, p.jerk.w,
+                               "Likewise when turning; 0 = at once.");
   p.whiskers_required =
       parameters.flag("whiskers_required", p.whiskers_required, "Without whiskers nothing moves.");
   return p;

@@ -442,6 +442,75 @@ TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
   EXPECT_EQ(control.decide(inputs, milliseconds(3001)).twist, (Twist2{0.0, 0.0}));
 }
 
+/// For an operator.
+Parameters with_jerk() {
+  Parameters parameters;
+  parameters.jerk = {1.0, 4.0};
+  return parameters;
+}
+
+TEST(Jerk, BoundsHowFastTheAccelerationChanges) {
+  MovementControl control(with_jerk());
+  Inputs inputs = all_well();
+  inputs.manual = Twist2{0.8, 0.8};
+  Twist2 last, acceleration;
+  double fastest = 0.0;
+  for (int ms = 0; ms < 4000; ms += 20) {
+    if (ms == 2400) inputs.manual = Twist2{0.4, 0.2};
+    const Twist2 now = control.decide(inputs, milliseconds(ms)).twist;
+    const Twist2 gain{(now.v - last.v) / 0.02, (now.w - last.w) / 0.02};
+    if (std::abs(gain.v) > std::abs(acceleration.v)) {
+      EXPECT_LE(std::abs(gain.v - acceleration.v), 1.0 * 0.02 + 1e-9) << ms;
+    }
+    if (std::abs(gain.w) > std::abs(acceleration.w)) {
+      EXPECT_LE(std::abs(gain.w - acceleration.w), 4.0 * 0.02 + 1e-9) << ms;
+    }
+    fastest = std::max(fastest, gain.v);
+    last = now, acceleration = gain;
+    if (ms == 2380) {
+      EXPECT_EQ(now, (Twist2{0.8, 0.8})) << "it gets there";
+    }
+  }
+  EXPECT_EQ(last, (Twist2{0.4, 0.2}));
+  EXPECT_NEAR(fastest, 0.7, 1e-9) << "and the acceleration is reached";
+}
+
+TEST(Jerk, DelaysNoStopNoWhiskerAndNoNavigation) {
+  Inputs inputs = all_well();
+  inputs.manual = Twist2{0.8, 0.0};
+  MovementControl control(with_jerk());
+  int ms = 0;
+  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.manual = Twist2{0.0, 0.0};
+  EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist.v, 0.0);
+  inputs.manual = Twist2{0.8, 0.0};
+  for (const int until = ms + 3000; ms < until; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.whiskers->front_left = true;
+  EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist.v, 0.0);
+  inputs.whiskers->front_left = false;
+  EXPECT_LE(control.decide(inputs, milliseconds(ms += 20)).twist.v, 1.0 * 0.02 * 0.02 + 1e-9)
+      << "after that it builds up anew";
+
+  inputs.navigation = inputs.manual;
+  inputs.manual.reset();
+  MovementControl planned(with_jerk()), plain;
+  for (ms = 0; ms < 1000; ms += 20)
+    EXPECT_EQ(planned.decide(inputs, milliseconds(ms)).twist,
+              plain.decide(inputs, milliseconds(ms)).twist);
+}
+
+TEST(Jerk, TurnsBackOnlyWhenTheBaseStands) {
+  MovementControl control(with_jerk());
+  Inputs inputs = all_well();
+  inputs.manual = Twist2{-0.3, 0.0};
+  inputs.measured = Twist2{0.5, 0.0};
+  int ms = 0;
+  for (; ms < 1000; ms += 20) EXPECT_EQ(control.decide(inputs, milliseconds(ms)).twist.v, 0.0);
+  inputs.measured = Twist2{0.05, 0.0};
+  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  EXPECT_NEAR(control.decide(inputs, milliseconds(ms)).twist.v, -0.3, 1e-9);
+}
+
 TEST(MovementControl, ReversesThroughZero) {
   MovementControl control;
   Inputs inputs = all_well();
@@ -538,7 +607,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
     return Twist2{random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
   };
   for (int run = 0; run < 200; ++run) {
-    MovementControl control;
+    MovementControl control(run % 2 == 0 ? Parameters{} : with_jerk());
     Time now{};
     double last = 0.0;
     for (int i = 0; i < 200; ++i) {
