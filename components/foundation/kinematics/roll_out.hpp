@@ -13,31 +13,50 @@ namespace usher::kinematics {
 /// balancing base that is told zero leans back first and rolls on for 1.48 s x v (thesis, table
 /// 8.1) while its turn rate is gone after 0.2 s: straight on, off the arc that was free, into the
 /// door post. So the forward velocity is zero at once, and the turn rate falls with the measured
-/// speed.
+/// speed. Where nothing measures, the base does what it was last told, and goes on turning for a
+/// while: it rolls out all the same.
 class RollOut {
  public:
   static constexpr double kStanding = 0.08;                          ///< [m/s] slower it stands
   static constexpr auto kLongest = std::chrono::milliseconds(2500);  ///< no stop takes longer
+  static constexpr auto kBlind = std::chrono::milliseconds(1000);    ///< turns so long unmeasured
 
-  /// It must stand, and does so much now. Nothing and what is not finite give zero.
+  /// It must stand, and does so much now; nothing and what is not finite are unmeasured.
   geometry::Twist2 stop(const std::optional<geometry::Twist2>& measured,
                         std::chrono::nanoseconds now) {
     const bool known = measured && measured->finite();
     if (!since_) {
       since_ = now;
-      onset_ = known ? *measured : geometry::Twist2{};
+      measured_at_ = known ? now : rolled_at_;
+      onset_ = known ? *measured : driven_;
+      share_ = 1.0;
     }
-    const bool rolls = known && std::abs(onset_.v) > kStanding && now - *since_ < kLongest &&
-                       measured->v * onset_.v > 0.0 && std::abs(measured->v) > kStanding;
-    if (!rolls) return {};
-    return {0.0, onset_.w * std::min(1.0, measured->v / onset_.v)};
+    if (known) {
+      measured_at_ = now;
+      const bool rolls = measured->v * onset_.v > 0.0 && std::abs(measured->v) > kStanding;
+      share_ = rolls ? std::min(1.0, measured->v / onset_.v) : 0.0;
+    }
+    if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *since_ >= kLongest ||
+        now - measured_at_ >= kBlind)
+      return {};
+    return {0.0, onset_.w * share_};
   }
-  /// It may drive: the next stop begins anew.
-  void drive() { since_.reset(); }
+  /// It may drive, and is told so: the next stop begins anew.
+  void drive(const geometry::Twist2& told, std::chrono::nanoseconds now) {
+    since_.reset();
+    driven_.w = told.w;
+    if (told.v == 0.0) return;  // it rolls out for somebody else, who keeps the arc
+    driven_.v = told.v;
+    rolled_at_ = now;
+  }
 
  private:
   std::optional<std::chrono::nanoseconds> since_;
+  std::chrono::nanoseconds measured_at_{};
+  geometry::Twist2 driven_;               ///< what it was last told that made it roll
+  std::chrono::nanoseconds rolled_at_{};  ///< when
   geometry::Twist2 onset_;
+  double share_ = 0.0;  ///< of the onset's turn rate
 };
 
 }  // namespace usher::kinematics

@@ -177,7 +177,7 @@ double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const
   const double v = inputs.measured ? inputs.measured->v : 0.0;
   const double slower = std::max(0.0, std::abs(v) - parameters_.reflex_drop);
   if (std::abs(v) < kinematics::RollOut::kStanding || ramped.v * v > slower * std::abs(v)) {
-    kept_arc_.drive();
+    kept_arc_.drive(ramped, now);
     return ramped.w;
   }
   const double kept = kept_arc_.stop(inputs.measured, now).w;
@@ -247,7 +247,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     // What was cut short speeds up anew.
     if (decision.twist.v != uncut.v) acceleration_.v = 0.0;
     if (decision.twist.w != uncut.w) acceleration_.w = 0.0;
-    roll_out_.drive();
+    roll_out_.drive(decision.twist, now);
   } else {
     acceleration_ = {};
     decision.twist = whisker_reflex(roll_out_.stop(inputs.measured, now),

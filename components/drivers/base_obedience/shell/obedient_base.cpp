@@ -84,7 +84,7 @@ void ObedientBase::drive() {
   const Time now = host_.now().time_since_epoch();
   // A verdict on a foreign command changes nothing, and what is driven beside it may be alive.
   if (obedience_.permitted(now).reason == Reason::kObeyed) {
-    roll_out_.drive();
+    roll_out_.drive(decision_.twist, now);
   } else {
     const bool known = connected() && now - report_.stamp < kReportAge;
     decision_.twist = roll_out_.stop(known ? std::optional(report_.twist) : std::nullopt, now);

@@ -147,10 +147,34 @@ TEST(RollOut, IsZeroForARobotThatStandsTurnsBackOrIsUnknown) {
   EXPECT_EQ(stop(arc, geometry::Twist2{0.05, 0.4}, 100), zero);
   EXPECT_EQ(stop(arc, geometry::Twist2{-0.3, 0.4}, 100), zero) << "it sways back";
   EXPECT_EQ(stop({0.05, 0.8}, geometry::Twist2{0.05, 0.8}, 100), zero) << "it turned on the spot";
-  EXPECT_EQ(stop(arc, std::nullopt, 100), zero);
-  EXPECT_EQ(stop(arc, geometry::Twist2{kNaN, 0.4}, 100), zero);
-  EXPECT_EQ(stop({kNaN, 0.4}, arc, 100), zero);
+  EXPECT_EQ(stop({kNaN, 0.4}, arc, 100), zero) << "nobody knows how it moved";
   EXPECT_EQ(stop(arc, arc, 2600), zero) << "measurements that hang turn it no longer";
+}
+
+TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
+  const geometry::Twist2 arc{0.8, 0.4}, slower{0.4, 0.1}, zero;
+  RollOut lost;
+  lost.stop(arc, milliseconds(0));
+  lost.stop(slower, milliseconds(500));
+  EXPECT_NEAR(lost.stop(std::nullopt, milliseconds(600)).w, 0.2, 1e-12) << "as it was last";
+  EXPECT_NEAR(lost.stop(geometry::Twist2{kNaN, 0.1}, milliseconds(1400)).w, 0.2, 1e-12);
+  EXPECT_EQ(lost.stop(std::nullopt, milliseconds(1500)), zero);
+  RollOut blind;
+  blind.drive(arc, milliseconds(4990));
+  EXPECT_EQ(blind.stop(std::nullopt, milliseconds(5000)).w, 0.4) << "as it was told";
+  EXPECT_EQ(blind.stop(std::nullopt, milliseconds(5980)).w, 0.4);
+  EXPECT_NEAR(blind.stop(slower, milliseconds(5995)).w, 0.2, 1e-12) << "measured again";
+  EXPECT_EQ(blind.stop(geometry::Twist2{0.0, 0.4}, milliseconds(6000)), zero);
+  EXPECT_EQ(blind.stop(std::nullopt, milliseconds(6010)), zero) << "it stood";
+  RollOut turning;
+  turning.drive({0.0, 0.8}, milliseconds(0));
+  EXPECT_EQ(turning.stop(std::nullopt, milliseconds(20)), zero) << "on the spot";
+  RollOut led;  // by somebody who already keeps the arc
+  led.drive(arc, milliseconds(3000));
+  led.drive({0.0, 0.3}, milliseconds(3500));
+  EXPECT_EQ(led.stop(std::nullopt, milliseconds(3600)), (geometry::Twist2{0.0, 0.3}));
+  EXPECT_EQ(led.stop(std::nullopt, milliseconds(4000)), zero);
+  EXPECT_EQ(RollOut().stop(std::nullopt, milliseconds(0)), zero);
 }
 
 TEST(RollOut, KeepsTheArcBackwards) {
@@ -162,7 +186,7 @@ TEST(RollOut, KeepsTheArcBackwards) {
 TEST(RollOut, BeginsAnewAfterADrive) {
   RollOut roll_out;
   roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0));
-  roll_out.drive();
+  roll_out.drive({0.8, 0.4}, milliseconds(20));
   EXPECT_EQ(roll_out.stop(geometry::Twist2{0.5, -0.2}, milliseconds(9000)).w, -0.2);
 }
 

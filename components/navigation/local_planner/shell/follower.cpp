@@ -200,9 +200,9 @@ void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::T
     stand(STATE_WAITING, missing);
     return;
   }
-  roll_out_.drive();
   const Decision decided = decision(costs, pose, *measured);
   last_command_ = decided.command;
+  roll_out_.drive(last_command_, host_.now().time_since_epoch());
   last_decision_ = host_.now();
   command_.publish(wire::to_message(stamp, decided.command));
   if (view_.reader_count() > 0)
