@@ -19,7 +19,7 @@ constexpr double kWaySlack = 0.15;       // [m]
 constexpr double kWayShare = 1.1;        // of the stopping distance: the spread of table 8.1
 constexpr double kUnheard = 1.0;         // [s] after which an operator sees that nobody speaks
 constexpr double kLastSeconds = 5.0;     // [s] in which a robot on its way has moved
-constexpr double kMoved = 0.1;           // [m]
+constexpr double kMoved = 0.15;          // [m] more than a balancing base sways meanwhile
 constexpr double kTurned = 0.15;         // [rad]
 constexpr double kHullSlack = 0.03;      // [m/s]
 constexpr double kTurnHullSlack = 0.07;  // [rad/s]
@@ -281,11 +281,18 @@ Judgement WindowJudge::judgement(double t) const {
   Judgement judgement;
   judgement.violation = violation_;
   judgement.deaf_contacts = deaf_contacts_;
-  double way = 0.0, turn = 0.0;
-  for (std::size_t i = 1; i < places_.size(); ++i) {
+  // From where it was: a balancing base that stands sways to and fro.
+  const Place* from = nullptr;
+  double way = 0.0, turn = 0.0, yaw = 0.0;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
     if (places_[i].t < t - kLastSeconds) continue;
-    way += geometry::distance(places_[i - 1].pose, places_[i].pose);
-    turn += std::abs(geometry::shortest_turn(places_[i - 1].pose.yaw, places_[i].pose.yaw));
+    if (from == nullptr) {
+      from = &places_[i];
+      continue;
+    }
+    yaw += geometry::shortest_turn(places_[i - 1].pose.yaw, places_[i].pose.yaw);
+    way = std::max(way, geometry::distance(from->pose, places_[i].pose));
+    turn = std::max(turn, std::abs(yaw));
   }
   const bool active = navigation_ == kActive || navigation_ == kWaiting;
   if (navigation_ == kSucceeded) {

@@ -70,6 +70,17 @@ TEST_F(Judge, FindsNothingWrongWithARobotThatDrives) {
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kDrives);
 }
 
+TEST_F(Judge, SwayingInOnePlaceIsNotDriving) {
+  run_for(2.0);
+  command(0.0);
+  for (int i = 0; i < 16; ++i) {
+    speed = i % 2 == 0 ? 0.04 : -0.04;  // 20 cm of way in five seconds, 2 cm from place to place
+    run_for(0.5);
+  }
+  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
+  EXPECT_THAT(violation(), HasSubstr("nobody says why"));
+}
+
 TEST_F(Judge, SeesAContact) {
   run_for(1.0);
   contacts = 1;
