@@ -484,7 +484,7 @@ TEST(Jerk, DelaysNoStopNoWhiskerAndNoNavigation) {
   inputs.manual = Twist2{0.0, 0.0};
   EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist.v, 0.0);
   inputs.manual = Twist2{0.8, 0.0};
-  for (const int until = ms + 3000; ms < until; ms += 20) control.decide(inputs, milliseconds(ms));
+  for (const int until = ms + 600; ms < until; ms += 20) control.decide(inputs, milliseconds(ms));
   inputs.whiskers->front_left = true;
   EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist.v, 0.0);
   inputs.whiskers->front_left = false;
