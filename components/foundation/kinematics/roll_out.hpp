@@ -17,17 +17,25 @@ namespace usher::kinematics {
 /// while: it rolls out all the same.
 class RollOut {
  public:
-  static constexpr double kStanding = 0.08;                          ///< [m/s] slower it stands
-  static constexpr auto kLongest = std::chrono::milliseconds(2500);  ///< no stop takes longer
-  static constexpr auto kBlind = std::chrono::milliseconds(1000);    ///< turns so long unmeasured
+  static constexpr double kStanding = 0.08;                        ///< [m/s] slower it stands
+  static constexpr auto kBlind = std::chrono::milliseconds(1000);  ///< turns so long unmeasured
+
+  /// [m/s] No stop from this speed takes longer: MARVIN's, the slower of the bases. What hangs or
+  /// is not measured turns a robot no longer.
+  static std::chrono::nanoseconds longest(double speed) {
+    const std::chrono::duration<double> time(std::min(2.5, 0.4 + 1.6 * std::abs(speed)));
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(time);
+  }
 
   /// It must stand, and does so much now; nothing and what is not finite are unmeasured.
   geometry::Twist2 stop(const std::optional<geometry::Twist2>& measured,
                         std::chrono::nanoseconds now) {
     const bool known = measured && measured->finite();
-    if (!since_) {
-      since_ = now;
-      measured_at_ = known ? now : rolled_at_;
+    if (!stops_) {
+      stops_ = true;
+      // Who begins while the base rolls, after a restart, knows that from the measurement alone.
+      if (!rolled_at_) rolled_at_ = now;
+      measured_at_ = known ? now : *rolled_at_;
       onset_ = known ? *measured : driven_;
       share_ = 1.0;
     }
@@ -36,14 +44,15 @@ class RollOut {
       const bool rolls = measured->v * onset_.v > 0.0 && std::abs(measured->v) > kStanding;
       share_ = rolls ? std::min(1.0, measured->v / onset_.v) : 0.0;
     }
-    if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *since_ >= kLongest ||
+    const std::chrono::nanoseconds most = longest(onset_.v);
+    if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *rolled_at_ >= most ||
         now - measured_at_ >= kBlind)
       return {};
     return {0.0, onset_.w * share_};
   }
   /// It may drive, and is told so: the next stop begins anew.
   void drive(const geometry::Twist2& told, std::chrono::nanoseconds now) {
-    since_.reset();
+    stops_ = false;
     driven_.w = told.w;
     if (told.v == 0.0) return;  // it rolls out for somebody else, who keeps the arc
     driven_.v = told.v;
@@ -51,10 +60,10 @@ class RollOut {
   }
 
  private:
-  std::optional<std::chrono::nanoseconds> since_;
+  bool stops_ = false;
+  geometry::Twist2 driven_;                            ///< what it was last told that made it roll
+  std::optional<std::chrono::nanoseconds> rolled_at_;  ///< when
   std::chrono::nanoseconds measured_at_{};
-  geometry::Twist2 driven_;               ///< what it was last told that made it roll
-  std::chrono::nanoseconds rolled_at_{};  ///< when
   geometry::Twist2 onset_;
   double share_ = 0.0;  ///< of the onset's turn rate
 };

@@ -148,7 +148,19 @@ TEST(RollOut, IsZeroForARobotThatStandsTurnsBackOrIsUnknown) {
   EXPECT_EQ(stop(arc, geometry::Twist2{-0.3, 0.4}, 100), zero) << "it sways back";
   EXPECT_EQ(stop({0.05, 0.8}, geometry::Twist2{0.05, 0.8}, 100), zero) << "it turned on the spot";
   EXPECT_EQ(stop({kNaN, 0.4}, arc, 100), zero) << "nobody knows how it moved";
-  EXPECT_EQ(stop(arc, arc, 2600), zero) << "measurements that hang turn it no longer";
+  EXPECT_NE(stop(arc, arc, 1600), zero);
+  EXPECT_EQ(stop(arc, arc, 1700), zero) << "measurements that hang turn it no longer";
+  EXPECT_EQ(stop({0.3, 0.4}, geometry::Twist2{0.3, 0.4}, 900), zero) << "a slow one stands sooner";
+}
+
+TEST(RollOut, BelievesNoMeasurementOfARobotThatMustStandByNow) {
+  const geometry::Twist2 arc{0.8, 0.4}, zero;
+  RollOut roll_out;
+  roll_out.drive(arc, milliseconds(0));
+  roll_out.drive({0.0, 0.4}, milliseconds(20));
+  EXPECT_EQ(roll_out.stop(arc, milliseconds(1600)).w, 0.4);
+  roll_out.drive({0.0, 0.0}, milliseconds(1620));
+  EXPECT_EQ(roll_out.stop(arc, milliseconds(1700)), zero) << "it hangs";
 }
 
 TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
@@ -166,6 +178,12 @@ TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
   EXPECT_NEAR(blind.stop(slower, milliseconds(5995)).w, 0.2, 1e-12) << "measured again";
   EXPECT_EQ(blind.stop(geometry::Twist2{0.0, 0.4}, milliseconds(6000)), zero);
   EXPECT_EQ(blind.stop(std::nullopt, milliseconds(6010)), zero) << "it stood";
+  RollOut slow;
+  slow.drive({0.2, 0.4}, milliseconds(0));
+  EXPECT_EQ(slow.stop(std::nullopt, milliseconds(730)), zero) << "a slow one stands sooner";
+  slow.drive({0.2, 0.4}, milliseconds(1000));
+  EXPECT_EQ(slow.stop(std::nullopt, milliseconds(1700)).w, 0.4);
+  EXPECT_EQ(slow.stop(std::nullopt, milliseconds(1800)), zero);
   RollOut turning;
   turning.drive({0.0, 0.8}, milliseconds(0));
   EXPECT_EQ(turning.stop(std::nullopt, milliseconds(20)), zero) << "on the spot";
@@ -186,7 +204,7 @@ TEST(RollOut, KeepsTheArcBackwards) {
 TEST(RollOut, BeginsAnewAfterADrive) {
   RollOut roll_out;
   roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0));
-  roll_out.drive({0.8, 0.4}, milliseconds(20));
+  roll_out.drive({0.8, 0.4}, milliseconds(8990));
   EXPECT_EQ(roll_out.stop(geometry::Twist2{0.5, -0.2}, milliseconds(9000)).w, -0.2);
 }
 
