@@ -224,10 +224,15 @@ Result<Deployment> deploy_hall(const ExperimentOptions& options, double speed) {
   auto manifest = read_manifest(path, config_directories(path, options.installation));
   if (!manifest) return Error{manifest.error()};
   manifest->site_file = folder + "/site.yaml";
-  // As in the thesis, the stick's step reaches the base: no limit of acceleration before it.
+  // As in the thesis, the stick's step reaches the base: nothing bounds it before, whatever is
+  // ahead, and also while it leans to start and its laser sees the floor instead of the hall.
   return resolve(*manifest, *contracts,
                  {{"manual_control", "linear", format("%.2f m/s", speed)},
-                  {"movement_control", "linear_speed_up", "0 m/s2"}});
+                  {"movement_control", "linear_speed_up", "0 m/s2"},
+                  {"movement_control", "linear_jerk", "0 m/s3"},
+                  {"movement_control", "corridor_v", "1.4 m/s"},
+                  {"movement_control", "confined_v", "1.4 m/s"},
+                  {"movement_control", "guard", "false"}});
 }
 
 struct Figures {

@@ -34,6 +34,7 @@ double approach(double from, double to, const AccelerationLimit& limit, double j
 }
 
 /// Told to turn back while it still rolls the other way, a balancing base leans for both at once.
+/// (One that leans to start seems to roll back, to its encoders: only who was driving turns back.)
 bool rolls_against(double wanted, const std::optional<geometry::Twist2>& measured) {
   constexpr double kRolling = 0.1;  // [m/s]
   return measured && wanted * measured->v < 0.0 && std::abs(measured->v) > kRolling;
@@ -236,7 +237,9 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
       if (twist.w != 0.0) limits.limit.angular = std::abs(twist.w);
     };
     guard(wanted);
-    if (smooth(wish.source) && rolls_against(wanted.v, inputs.measured)) wanted.v = 0.0;
+    if (smooth(wish.source) && wanted.v * direction_ < 0.0 &&
+        rolls_against(wanted.v, inputs.measured))
+      wanted.v = 0.0;
     geometry::Twist2 ramped = ramp(wanted, wish.source, now);
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
     const geometry::Twist2 uncut = ramped;
@@ -255,6 +258,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
   }
 
   last_ = decision.twist;
+  if (last_.v != 0.0) direction_ = last_.v;
   last_at_ = now;
   report(inputs, decision, limits, now);
   return decision;

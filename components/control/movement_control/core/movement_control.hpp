@@ -191,6 +191,7 @@ class MovementControl {
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower
   geometry::Twist2 last_;
+  double direction_ = 0.0;         ///< [m/s] the last velocity that was not zero
   geometry::Twist2 acceleration_;  ///< [m/s^2] [rad/s^2] of the command
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;

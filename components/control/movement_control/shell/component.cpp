@@ -20,7 +20,8 @@ constexpr auto kSensorAge = milliseconds(300);
 constexpr auto kBaseAge = milliseconds(150);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kPersonAge = milliseconds(500);
-constexpr double kStanding = 0.01;  // [m/s]
+constexpr auto kLeaning = milliseconds(2500);  // at a start
+constexpr double kStanding = 0.01;             // [m/s]
 
 float single(double value) { return static_cast<float>(value); }
 float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
@@ -141,7 +142,7 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "drives as in a confined place"},
       [this](const auto& scan, const auto&) { take_scan(scan); },
       [this] {
-        sees_ = false;
+        seen_at_.reset();
         surroundings_.forget();
         situation_.update(std::nullopt, host_.now().time_since_epoch());
       });
@@ -171,6 +172,12 @@ std::optional<geometry::Twist2> MovementControlComponent::measured() const {
   return geometry::Twist2{base->v(), base->w()};
 }
 
+/// While MARVIN leans forward to speed up, most beams that look ahead may end on the floor; what is
+/// near they still meet.
+bool MovementControlComponent::sees() const {
+  return seen_at_ && host_.now().time_since_epoch() - *seen_at_ < kLeaning;
+}
+
 Inputs MovementControlComponent::gather() {
   Inputs inputs;
   if (const auto* enable = enable_.fresh()) {
@@ -192,7 +199,7 @@ Inputs MovementControlComponent::gather() {
   if (const auto* base = base_.fresh())
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
   inputs.measured = measured();
-  inputs.view = {surroundings_.points(), sees_ && scan_.fresh() != nullptr};
+  inputs.view = {surroundings_.points(), sees()};
   return inputs;
 }
 
@@ -211,7 +218,8 @@ void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan
     surroundings_.move(measured(), now);
     surroundings_.take({scan.ranges(), scan.angle_min(), scan.angle_increment()}, now);
   }
-  sees_ = space.has_value();
+  if (space) seen_at_ = now;
+  if (!wire::check(scan)) seen_at_.reset();
   situation_.update(space, now);
 }
 
@@ -265,9 +273,8 @@ void MovementControlComponent::publish_status() {
   m.source(static_cast<std::uint8_t>(s.source));
   m.situation(static_cast<std::uint8_t>(s.situation));
   m.limit_reason(std::string(text(s.limit)));
-  const double way = sees_ && scan_.fresh() != nullptr
-                         ? core_.guard().way(s.current, surroundings_.points())
-                         : 0.0;  // nobody knows
+  const double way =
+      sees() ? core_.guard().way(s.current, surroundings_.points()) : 0.0;  // nobody knows
   m.person_ahead(person_ahead().value_or(true));
   m.obstacle_distance(single(way));
   m.stopping_distance(single(parameters_.guard.stopping.distance(s.measured.v)));

@@ -22,6 +22,7 @@ class MovementControlComponent final : public runtime::Component {
   std::optional<geometry::Twist2> velocity(
       const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
   std::optional<geometry::Twist2> measured() const;
+  bool sees() const;
   Inputs gather();
   std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);
@@ -35,7 +36,7 @@ class MovementControlComponent final : public runtime::Component {
   double low_battery_;
   MovementControl core_;
   Surroundings surroundings_;
-  bool sees_ = false;  ///< the newest scan tells what is ahead
+  std::optional<Time> seen_at_;  ///< when a scan last told what is ahead; none: no scan comes
   SituationFilter situation_;
   std::uint64_t number_ = 0;
   std::uint64_t& rejected_;

@@ -44,6 +44,7 @@ class Component : public testing::Test {
   std::optional<geometry::Twist2> wanted_by_hand;
   double measured_v = 0.5;
   double wall = 100.0;  ///< [m] ahead of the laser
+  bool floor = false;   ///< every beam ends on it
 
  private:
   void speak() {
@@ -83,8 +84,9 @@ class Component : public testing::Test {
       scan.range_min(0.05F), scan.range_max(20.0F);
       for (int i = 0; i <= 200; ++i) {
         const double range = wall / std::cos(-1.0 + 0.01 * i);
-        scan.ranges().push_back(range > 20.0 ? std::numeric_limits<float>::infinity()
-                                             : static_cast<float>(range));
+        scan.ranges().push_back(floor          ? std::numeric_limits<float>::quiet_NaN()
+                                : range > 20.0 ? std::numeric_limits<float>::infinity()
+                                               : static_cast<float>(range));
       }
       host.publish(topics::kScanFiltered, scan);
     }
@@ -203,6 +205,19 @@ TEST_F(Component, WithoutAScanAnOperatorCreeps) {
   run(400);
   EXPECT_NEAR(commanded(), 0.1, 1e-6);
   EXPECT_EQ(status().limit_reason(), "no scan tells what is ahead");
+}
+
+TEST_F(Component, AnOperatorCreepsOnceTheScansHaveToldNothingForLongerThanAStartLeans) {
+  wanted_by_hand = {0.8, 0.0};
+  run(2000);
+  floor = true;
+  run(2300);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6);
+  run(400);
+  EXPECT_NEAR(commanded(), 0.1, 1e-6);
+  floor = false;
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6);
 }
 
 TEST_F(Component, TheStatusTellsWhatIsAhead) {

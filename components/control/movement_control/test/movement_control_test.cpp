@@ -502,12 +502,16 @@ TEST(Jerk, DelaysNoStopNoWhiskerAndNoNavigation) {
 TEST(Jerk, TurnsBackOnlyWhenTheBaseStands) {
   MovementControl control(with_jerk());
   Inputs inputs = all_well();
+  inputs.manual = Twist2{0.5, 0.0};
+  int ms = 0;
+  inputs.measured = Twist2{-0.2, 0.0};  // it leans to start
+  for (; ms < 2000; ms += 20) control.decide(inputs, milliseconds(ms));
+  EXPECT_EQ(control.decide(inputs, milliseconds(ms)).twist.v, 0.5);
   inputs.manual = Twist2{-0.3, 0.0};
   inputs.measured = Twist2{0.5, 0.0};
-  int ms = 0;
-  for (; ms < 1000; ms += 20) EXPECT_EQ(control.decide(inputs, milliseconds(ms)).twist.v, 0.0);
+  for (; ms < 3000; ms += 20) EXPECT_EQ(control.decide(inputs, milliseconds(ms)).twist.v, 0.0);
   inputs.measured = Twist2{0.05, 0.0};
-  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  for (; ms < 5000; ms += 20) control.decide(inputs, milliseconds(ms));
   EXPECT_NEAR(control.decide(inputs, milliseconds(ms)).twist.v, -0.3, 1e-9);
 }
 
