@@ -17,7 +17,8 @@ namespace usher::kinematics {
 /// while: it rolls out all the same.
 class RollOut {
  public:
-  static constexpr double kStanding = 0.08;                        ///< [m/s] slower it stands
+  static constexpr double kStanding = 0.08;  ///< [m/s] slower it stands
+  static constexpr double kStraight = 0.03;  ///< [rad/s] slower turns are a balancing base's sway
   static constexpr auto kBlind = std::chrono::milliseconds(1000);  ///< turns so long unmeasured
 
   /// [m/s] No stop from this speed takes longer: MARVIN's, the slower of the bases. What hangs or
@@ -37,6 +38,7 @@ class RollOut {
       if (!rolled_at_) rolled_at_ = now;
       measured_at_ = known ? now : *rolled_at_;
       onset_ = known ? *measured : driven_;
+      if (std::abs(onset_.w) < kStraight) onset_.w = 0.0;
       share_ = 1.0;
     }
     if (known) {

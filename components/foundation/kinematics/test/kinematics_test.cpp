@@ -195,6 +195,11 @@ TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
   EXPECT_EQ(RollOut().stop(std::nullopt, milliseconds(0)), zero);
 }
 
+TEST(RollOut, TakesSwayForStraightOn) {
+  RollOut roll_out;
+  EXPECT_EQ(roll_out.stop(geometry::Twist2{0.8, -0.02}, milliseconds(0)), geometry::Twist2{});
+}
+
 TEST(RollOut, KeepsTheArcBackwards) {
   RollOut roll_out;
   roll_out.stop(geometry::Twist2{-0.4, 0.2}, milliseconds(0));
