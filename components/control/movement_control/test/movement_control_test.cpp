@@ -292,25 +292,25 @@ TEST(MovementControl, WorksWithoutWhiskersWhereThereAreNone) {
 
 TEST(WhiskerReflex, BarsPerCornerAndDirection) {
   struct Row {
-    Whiskers whiskers;
     double forward, backward;  ///< [m/s] of 0.5
-    bool left, right;          ///< what stays possible
+    Whiskers whiskers;
+    bool left, right;  ///< what stays possible
   };
   const Row rows[] = {
-      {{false, false, false, false}, 0.5, 0.5, true, true},
-      {{true, false, false, false}, 0.0, 0.5, false, true},
-      {{false, true, false, false}, 0.0, 0.5, true, false},
-      {{true, true, false, false}, 0.0, 0.5, false, false},
-      {{false, false, true, false}, 0.5, 0.0, true, false},
-      {{false, false, false, true}, 0.5, 0.0, false, true},
-      {{false, false, true, true}, 0.5, 0.0, false, false},
-      {{true, false, false, true}, 0.0, 0.0, false, true},
-      {{false, true, true, false}, 0.0, 0.0, true, false},
+      {0.5, 0.5, {false, false, false, false}, true, true},
+      {0.0, 0.5, {true, false, false, false}, false, true},
+      {0.0, 0.5, {false, true, false, false}, true, false},
+      {0.0, 0.5, {true, true, false, false}, false, false},
+      {0.5, 0.0, {false, false, true, false}, true, false},
+      {0.5, 0.0, {false, false, false, true}, false, true},
+      {0.5, 0.0, {false, false, true, true}, false, false},
+      {0.0, 0.0, {true, false, false, true}, false, true},
+      {0.0, 0.0, {false, true, true, false}, true, false},
       // Beside a wall: creeps along.
-      {{true, false, true, false}, 0.1, 0.1, false, false},
-      {{true, true, true, false}, 0.0, 0.1, false, false},
-      {{true, false, true, true}, 0.1, 0.0, false, false},
-      {{true, true, true, true}, 0.0, 0.0, false, false},
+      {0.1, 0.1, {true, false, true, false}, false, false},
+      {0.0, 0.1, {true, true, true, false}, false, false},
+      {0.1, 0.0, {true, false, true, true}, false, false},
+      {0.0, 0.0, {true, true, true, true}, false, false},
   };
   for (const Row& row : rows) {
     EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers, 0.1).v, row.forward);
