@@ -191,25 +191,6 @@ Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double le
   return portraits;
 }
 
-Result<std::vector<cv::Mat>> read_plain_portraits(const std::string& folder) {
-  constexpr double kLeast = 60.0;           // [pixels]
-  constexpr int kCanvas = 240, kHigh = 96;  // [pixels]
-  auto portraits = read_portraits(folder, kLeast);
-  if (!portraits) return portraits;
-  auto cascade = face_detector::FaceDetector::make(face_detector::cascade_file("default", ""), {});
-  if (!cascade) return Error{cascade.error()};
-  std::erase_if(*portraits, [&](const cv::Mat& portrait) {
-    cv::Mat canvas(kCanvas, kCanvas, CV_8UC3, cv::Scalar(128, 128, 128));
-    cv::Mat small;
-    const int wide = static_cast<int>(kHigh / rendering::kFaceAspect);
-    cv::resize(portrait, small, {wide, kHigh}, 0.0, 0.0, cv::INTER_AREA);
-    small.copyTo(canvas(cv::Rect((kCanvas - wide) / 2, (kCanvas - kHigh) / 2, wide, kHigh)));
-    return cascade->find_anywhere({kCanvas, kCanvas, {canvas.data, 3 * canvas.total()}}).empty();
-  });
-  if (portraits->empty()) return Error{folder + ": none of the faces is plain to see"};
-  return portraits;
-}
-
 FaceScore& FaceScore::operator+=(const FaceScore& other) {
   faces += other.faces, found += other.found;
   false_positives += other.false_positives, pictures += other.pictures;

@@ -29,10 +29,6 @@ Result<std::vector<AnnotatedPicture>> read_annotated(const std::string& folder);
 /// below `folder` whose box is at least `least` pixels wide. Errors name the file.
 Result<std::vector<cv::Mat>> read_portraits(const std::string& folder, double least);
 
-/// Those of at least 60 pixels that the cascade `default`, another one than the robot's, finds: not
-/// each photograph shows a face from ahead, in daylight.
-Result<std::vector<cv::Mat>> read_plain_portraits(const std::string& folder);
-
 /// How a detector did.
 struct FaceScore {
   int faces = 0, found = 0, false_positives = 0, pictures = 0;

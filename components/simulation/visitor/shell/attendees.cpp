@@ -49,8 +49,8 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
   screen_ = host.input(topics::kDialogueScreen, {},
                        [this](const auto& screen, const auto&) { take(screen); });
   truth_ = host.input(topics::kSimGroundTruth, {.max_age = kTruthAge, .on_loss = "nobody answers"});
-  meeting_ =
-      host.input(topics::kMeetingStatus, {.max_age = kDialogueAge, .on_loss = "nobody answers"});
+  meeting_ = host.input(topics::kMeetingStatus,
+                        {.max_age = kDialogueAge, .on_loss = "nobody answers or follows"});
   walk_ = host.output(topics::kSimPersonGoal);
   timer_ = host.timer("step", kStep, [this](auto) { step(); });
   host.health().set(runtime::HealthState::kOk);
@@ -103,7 +103,9 @@ bool AttendeesComponent::is_called_in(const Somebody& somebody) const {
 void AttendeesComponent::choose_seat(Somebody& somebody) {
   const auto& seats = seats_[room_];
   if (seats.empty()) return;
-  somebody.seat = seats[taken_[room_]++ % seats.size()];
+  // By the place in the list, which is the same on all robots of a fleet.
+  const auto which = static_cast<std::size_t>(&somebody - people_.data());
+  somebody.seat = seats[which % seats.size()];
   somebody.has_seat = true;
 }
 

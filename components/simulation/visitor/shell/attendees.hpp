@@ -37,7 +37,6 @@ class AttendeesComponent final : public runtime::Component {
   std::vector<Somebody> people_;
   std::vector<wire::MeetingRoom> rooms_;
   std::map<std::string, std::vector<geometry::Point2>> seats_;  ///< of each room
-  std::map<std::string, std::size_t> taken_;
   double reach_;
   double speed_;
   Screen shown_;

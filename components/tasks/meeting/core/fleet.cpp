@@ -53,8 +53,8 @@ bool Meeting::follow_room(Time now) {
   const bool seeks =
       state_ == State::kToRoom || state_ == State::kScanRoom || state_ == State::kCheckRoom;
   const std::string room = team_.agreed_room(report_.room);
-  const bool is_there = state_ == State::kArrived || (state_ == State::kLookBack && in_the_room_);
-  if (room != report_.room && room_named(room) != nullptr && !is_there) {
+  const bool counts = state_ == State::kArrived || (state_ == State::kLookBack && in_the_room_);
+  if (room != report_.room && room_named(room) != nullptr && !counts) {
     adopt_room(room, now);
     if (!seeks) return false;
     anew_ = true;

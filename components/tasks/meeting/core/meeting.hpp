@@ -184,7 +184,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
 
   // Rooms.
   void choose_room();
-  void leave_room(Cause cause, bool reached, Time now);
+  void leave_room(Cause cause, bool occupied, Time now);
   void scan(Time now);
 
   // The other robots.
@@ -268,7 +268,6 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   Time face_seen_{};
   bool anew_ = false;  ///< the exploration begins
   int failures_ = 0;
-  std::optional<Time> failed_at_;
   Point2 person_{0, 0};     ///< [m] in map, who is approached, asked, guided
   Point2 departure_{0, 0};  ///< [m] in map, of the guidance
   int tries_ = 0;

@@ -54,6 +54,10 @@ bool Team::take(const TeamReport& report) {
   const auto known = newest_.find(report.robot);
   if (known != newest_.end() && report.sequence <= known->second.sequence) return false;
   if (known == newest_.end() && newest_.size() == kMostRobots) return false;
+  const bool fails = report.outcome != Outcome::kComplete && !active(report.state);
+  if (fails && known != newest_.end() && active(known->second.state) &&
+      of_this_mission(known->second))
+    leave_behind(known->second);
   learn(newest_[report.robot] = report);
   return true;
 }
@@ -69,23 +73,26 @@ void Team::learn(const TeamReport& report) {
 void Team::put(const Encounter& fact) {
   const std::pair key(fact.robot, fact.id);
   if (facts_.count(key) == 0 && facts_.size() == kMostFacts) {
-    const auto oldest = std::find_if(facts_.begin(), facts_.end(), [](const auto& entry) {
+    const auto other = std::find_if(facts_.begin(), facts_.end(), [](const auto& entry) {
       return entry.second.kind != Met::kBrought;
     });
-    if (oldest == facts_.end()) return;
-    facts_.erase(oldest);
+    if (other == facts_.end()) return;
+    facts_.erase(other);
   }
   facts_.emplace(key, fact);
 }
 
 void Team::hear(std::vector<std::string> robots) {
   for (const TeamReport* mate : mates()) {
-    if (std::find(robots.begin(), robots.end(), mate->robot) != robots.end()) continue;
-    for (const Encounter& each : mate->people) {
-      if (each.kind == Met::kSeen || each.kind == Met::kClaimed) left_behind_.push_back(each.at);
-    }
+    if (std::find(robots.begin(), robots.end(), mate->robot) == robots.end()) leave_behind(*mate);
   }
   heard_ = std::move(robots);
+}
+
+void Team::leave_behind(const TeamReport& report) {
+  for (const Encounter& each : report.people) {
+    if (each.kind == Met::kSeen || each.kind == Met::kClaimed) left_behind_.push_back(each.at);
+  }
 }
 
 bool Team::is_heard(const std::string& robot) const {

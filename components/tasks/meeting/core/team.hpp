@@ -79,8 +79,8 @@ class Team {
   void begin(std::uint64_t id, const std::string& client);
   /// A report of another robot. False: it is late, a repetition, our own or none.
   bool take(const TeamReport& report);
-  /// Who is heard now. Others are taken for lost: what they claimed is free, and somebody to visit;
-  /// what they found out stays.
+  /// Who is heard now. Others are taken for lost, as those whose mission failed: what they claimed
+  /// is free, and somebody to visit; what they found out stays.
   void hear(std::vector<std::string> robots);
   /// Where robots are now [m] in map, as far as that is known.
   void place(std::map<std::string, Point2> robots) { places_ = std::move(robots); }
@@ -131,6 +131,7 @@ class Team {
   }
   bool is_heard(const std::string& robot) const;
   void learn(const TeamReport& report);
+  void leave_behind(const TeamReport& report);
   void put(const Encounter& fact);
   static bool is_settled(const Encounter& fact, const Point2& at, Time now);
 

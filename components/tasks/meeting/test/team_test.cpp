@@ -114,6 +114,22 @@ TEST_F(TeamOfOtto, RemembersWhatADeadRobotFoundOutAndFreesWhatItClaimed) {
   EXPECT_THAT(otto.facts(kNow), SizeIs(1)) << "and tells it on";
 }
 
+TEST_F(TeamOfOtto, VisitsWhomARobotLeavesThatFails) {
+  TeamReport report = says(State::kGuide);
+  report.people = {claim({5, 1})};
+  otto.take(report);
+  TeamReport ended = says(State::kEnded);
+  ended.outcome = Outcome::kFailed;
+  ended.sequence = report.sequence + 1;
+  otto.take(ended);
+  const auto left_behind = otto.take_left_behind();
+  ASSERT_THAT(left_behind, SizeIs(1));
+  EXPECT_EQ(left_behind[0], Point2(5, 1));
+  ended.sequence += 1;
+  otto.take(ended);
+  EXPECT_THAT(otto.take_left_behind(), SizeIs(0)) << "once";
+}
+
 TEST_F(TeamOfOtto, KeepsWhoIsNearToAGuideForItsFollower) {
   TeamReport report = says(State::kGuide);
   report.people = {claim({5, 1})};  // where the robot is
