@@ -231,10 +231,11 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
              std::to_string(m.invited()) + "," + std::to_string(m.unanswered()) + "," +
              std::to_string(m.lost()) + "," + std::to_string(run.summary.contacts) + "\n";
       if (trial.failed())
-        std::printf("%s: %u brought, %u there (%s) after %s, %s; contacts %u %s\n%s",
-                    name_of(trial).c_str(), m.brought(), run.present, run.whereabouts.c_str(),
-                    minutes(run.seconds).c_str(), m.reason().c_str(), run.summary.contacts,
-                    run.summary.contact_with.c_str(), run.complaints.c_str());
+        std::printf(
+            "%s: %u brought, %u there (%s) after %s, %s; contacts %u %s, localized to %.2f m\n%s",
+            name_of(trial).c_str(), m.brought(), run.present, run.whereabouts.c_str(),
+            minutes(run.seconds).c_str(), m.reason().c_str(), run.summary.contacts,
+            run.summary.contact_with.c_str(), run.summary.localization_max, run.complaints.c_str());
     }
     if (n == 0) continue;
     const Distance& d = kDistances[distance];

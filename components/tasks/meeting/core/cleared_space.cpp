@@ -12,6 +12,7 @@ constexpr double kLongest = 6.0;      // [m]
 constexpr std::uint32_t kOften = 3;   // scans
 constexpr std::uint32_t kSeldom = 3;  // times more looked through than met something
 constexpr int kAround = 3;            // [cells]
+constexpr int kBody = 5;              // [cells]
 
 bool near(const Point2& point) { return point.allFinite() && point.cwiseAbs().maxCoeff() < 1e6; }
 }  // namespace
@@ -59,6 +60,19 @@ bool ClearedSpace::was_clear(const Point2& point) const {
     }
   }
   return true;
+}
+
+bool ClearedSpace::was_taken(const Point2& point) const {
+  if (cells_.empty() || !near(point)) return false;
+  const grid::Cell middle = cells_.geometry().cell_at(point);
+  std::uint32_t met = 0;
+  for (int y = -kBody; y <= kBody; ++y) {
+    for (int x = -kBody; x <= kBody; ++x) {
+      if (x * x + y * y <= kBody * kBody)
+        met += cells_.value_or({middle.x + x, middle.y + y}, {}).met;
+    }
+  }
+  return met >= kOften;
 }
 
 }  // namespace usher::meeting

@@ -24,6 +24,8 @@ class ClearedSpace {
   /// Three scans or more looked through there and through what lies 0.15 m around it (no wall is so
   /// thin), and few met something there.
   bool was_clear(const Point2& point) const;
+  /// Three scan points or more lay within 0.25 m of it: who stands there has stood there before.
+  bool was_taken(const Point2& point) const;
 
  private:
   struct Looked {

@@ -29,7 +29,8 @@ void Meeting::look_for_follower(const Faces& all, Time now) {
   Faces some = all;
   std::erase_if(some.faces, [&](const Face& face) {
     return (face.at - follower_).norm() > kFollowerNear ||
-           (in_the_room_ && (face.range > kFollowerInRoom || !is_inside(face.at, kThrough)));
+           (in_the_room_ && (face.range > kFollowerInRoom || !is_inside(face.at, kThrough) ||
+                             cleared_.was_taken(face.at)));
   });
   if (track_.take(some)) {
     turn_ = Turn::kFace;

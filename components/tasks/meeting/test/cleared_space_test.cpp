@@ -38,6 +38,20 @@ TEST(ClearedSpace, IsWhereThreeScansLookedThrough) {
   EXPECT_FALSE(space.was_clear({1.0, 0.0}));
 }
 
+TEST(ClearedSpace, IsTakenWhereThreePointsLay) {
+  ClearedSpace space = room();
+  const std::vector<Point2> legs{{1.5, 0.0}};
+  space.add({0.0, 0.0}, legs);
+  space.add({0.0, 0.0}, legs);
+  EXPECT_FALSE(space.was_taken({1.6, 0.1})) << "twice may be noise";
+  space.add({0.0, 0.0}, legs);
+  EXPECT_TRUE(space.was_taken({1.6, 0.1}));
+  EXPECT_FALSE(space.was_taken({1.0, 0.0}));
+  EXPECT_FALSE(space.was_taken({kNan, 0.0}));
+  space.forget();
+  EXPECT_FALSE(space.was_taken({1.6, 0.1}));
+}
+
 TEST(ClearedSpace, IsNoWallThatFewBeamsMissed) {
   ClearedSpace space = room();
   std::vector<Point2> beyond;

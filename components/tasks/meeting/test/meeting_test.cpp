@@ -306,6 +306,23 @@ TEST(Meeting, CountsWhoHasComeIntoTheRoom) {
   EXPECT_EQ(rig.state(), State::kArrived);
 }
 
+TEST(Meeting, CountsNobodyWhoWasInTheRoomBefore) {
+  Rig rig;
+  rig.to_guide();
+  rig.wait(1000);
+  const Point2 sits(3.1, 2.0);
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<Point2> legs{sits + Point2(0.1, 0.0)};
+    rig.note(rig.meeting.look({5.0, 2.0}, legs, rig.now()));
+  }
+  rig.arrive();
+  ASSERT_EQ(rig.state(), State::kLookBack);
+  rig.see({rig.face_at(sits)}, 5);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  rig.see({rig.face_at({2.9, 2.5})}, 2);
+  EXPECT_EQ(rig.state(), State::kArrived);
+}
+
 TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
   Rig rig;
   rig.to_look_back();
