@@ -633,20 +633,31 @@ void Meeting::visit_if_remembered(Time now) {
 /// To just in front of the person: on the straight line to him where that is free, else on the way.
 void Meeting::approach(Time now) {
   arrived_at_.reset();
+  const Point2 goal = place_to_talk();
+  const Point2 look = person_ - goal;
+  motion_.drive({0, {}, {goal.x(), goal.y(), std::atan2(look.y(), look.x())}}, now);
+}
+
+/// Straight before the person, a little farther off where it could not turn round to guide him; or
+/// where its way there comes so near.
+Point2 Meeting::place_to_talk() {
+  constexpr double kStep = 0.1;  // [m]
   const Point2 robot = robot_.pose ? robot_.pose->position() : person_ + Point2(1.0, 0.0);
   Point2 from = robot - person_;
   from = from.norm() > 0.01 ? Point2(from.normalized()) : Point2(1.0, 0.0);
-  Point2 goal = person_ + parameters_.stand_off * from;
-  if (!ways_.passing().line_free(robot, goal) && ways_.start_from(robot)) {
-    std::vector<Point2> way;
-    ways_.trace(person_, way);
-    const auto last = std::find_if(way.rbegin(), way.rend(), [&](const Point2& point) {
-      return (point - person_).norm() >= parameters_.stand_off;
-    });
-    if (last != way.rend()) goal = *last;
+  const auto straight = [&](double off) { return Point2(person_ + off * from); };
+  if (ways_.passing().line_free(robot, straight(parameters_.stand_off))) {
+    for (double off = parameters_.stand_off; off < parameters_.near + 0.5 * kStep; off += kStep) {
+      if (turning_.free(straight(off))) return straight(off);
+    }
+    return straight(parameters_.stand_off);
   }
-  const Point2 look = person_ - goal;
-  motion_.drive({0, {}, {goal.x(), goal.y(), std::atan2(look.y(), look.x())}}, now);
+  std::vector<Point2> way;
+  if (ways_.start_from(robot)) ways_.trace(person_, way);
+  const auto last = std::find_if(way.rbegin(), way.rend(), [&](const Point2& point) {
+    return (point - person_).norm() >= parameters_.stand_off;
+  });
+  return last != way.rend() ? *last : straight(parameters_.stand_off);
 }
 
 void Meeting::depart(Time now) {

@@ -219,6 +219,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void look_for_people(Cause cause, Time now);
   void visit_if_remembered(Time now);
   void approach(Time now);
+  Point2 place_to_talk();
   void depart(Time now);
   void trail_follower();
   void look_for_follower(const Faces& all, Time now);

@@ -150,6 +150,20 @@ TEST(Meeting, GoesToJustInFrontOfThePersonAndFacesHim) {
             (person - rig.robot.pose->position()).norm());
 }
 
+TEST(Meeting, TalksWhereItCanTurnRoundToGuide) {
+  Rig rig;
+  grid::OccupancyGrid map = hall();
+  map.at({95, 43}) = grid::kOccupied;  // 0.35 m beside the place at 1 m
+  ASSERT_TRUE(rig.meeting.set_map(map).ok());
+  rig.to_explore();
+  rig.robot.pose = Pose2{8.0, 4.0, 0.0};
+  rig.see({rig.face_at({10.5, 4.0})}, 4);
+  ASSERT_EQ(rig.state(), State::kApproach);
+  rig.depart();
+  EXPECT_NEAR(rig.goal_pose.x, 9.25, 0.15);
+  EXPECT_NEAR(rig.goal_pose.y, 4.0, 0.01);
+}
+
 TEST(Meeting, ApproachesOnTheWayWhereTheStraightLineIsBarred) {
   Rig rig;
   grid::OccupancyGrid map = hall();
