@@ -41,7 +41,8 @@ struct MeetingCase {
 };
 
 struct MeetingRun {
-  usher_msgs::msg::MeetingStatus status;  ///< the last one; of a fleet, of its first robot that is not lost
+  usher_msgs::msg::MeetingStatus
+      status;  ///< the last one; of a fleet, of its first robot that is not lost
   std::map<std::string, usher_msgs::msg::MeetingStatus> statuses;  ///< of every robot, by name
   std::uint32_t robot_contacts = 0;  ///< with another robot, in `summary` too
   std::uint32_t robot_touches = 0;   ///< likewise, slow or unforeseeable ones
