@@ -23,10 +23,11 @@ constexpr int kLeastSearch = 10;        // ... after so many updates
 constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
 
 // Beams that end this much [m] before the map's wall, seen from where the robot must be, met
-// something unmapped and tell nothing about the place. When most beams do, the place is wrong, not
-// the map.
+// something unmapped and tell nothing about the place. When most beams do and the others do not fit
+// either, or for several metres, the place is wrong, not the map.
 constexpr double kUnmappedMargin = 0.5;
 constexpr double kMostUnmapped = 0.6;
+constexpr double kUnmappedGain = 0.05;  // of the share lately, in an update
 
 // Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
 constexpr double kLostRatio = 0.6;  // the short-term mean, anywhere on the map [gutmann2002]
@@ -102,6 +103,7 @@ Status Amcl::set_initial_pose(const geometry::Pose2& map_T_base,
   search_updates_ = 0;
   force_update_ = true;
   fast_likelihood_ = 0.0;
+  unmapped_lately_ = 0.0;
   estimate_ = Estimate{map_T_base, last_odom_T_base_.value_or(geometry::Pose2{}), covariance, {}};
   return {};
 }
@@ -182,7 +184,10 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
                false, dense_beams_);
 
   const double unmapped =
-      estimate_ && search_updates_ == 0 ? drop_unmapped(scan, odom_T_base) : 0.0;
+      estimate_ && search_updates_ == 0 && !result.odometry_restarted
+          ? drop_unmapped(scan, odom_T_base)
+          : 0.0;
+  if (beams_.size() < kLeastBeams) return result;
   if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
   const double log_likelihood =
@@ -191,7 +196,7 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   const Cluster cluster = heaviest_cluster();
   make_estimate(cluster, odom_T_base, unmapped);
   end_search(cluster);
-  const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - unmapped));
+  const Recovery recovery = this->recovery(std::exp(log_likelihood) * (1.0 - unmapped_lately_));
   result.injected = recovery.share;
   if (++updates_since_resampling_ >= config_.resample_interval || recovery.share > 0.0) {
     resample(scan, recovery, cluster);
@@ -205,7 +210,8 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
 }
 
 /// Takes beams out of both sets that met people or moved furniture [fox1999dynamic]; returns their
-/// share. Leaves all when they are too many, or nobody knows where the robot is.
+/// share. Somebody close before the robot may leave few: when those fit, it stands where it
+/// believes. Leaves all when that is not so, or they were most of the beams for long.
 double Amcl::drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T_base) {
   const geometry::Pose2 map_T_base = estimate_->map_T_odom() * odom_T_base;
   const geometry::Point2 laser = (map_T_base * scan.base_T_laser).position();
@@ -219,13 +225,25 @@ double Amcl::drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T
                mapped);
   const double share = 1.0 - static_cast<double>(kept_dense_beams_.size()) /
                                  static_cast<double>(dense_beams_.size());
-  if (share > kMostUnmapped) return 0.0;
+  unmapped_lately_ += kUnmappedGain * (share - unmapped_lately_);
+  if (share > kMostUnmapped && (unmapped_lately_ > kMostUnmapped || !fits(map_T_base))) return 0.0;
   kept_beams_.clear();
   std::copy_if(beams_.begin(), beams_.end(), std::back_inserter(kept_beams_), mapped);
-  if (kept_beams_.size() < kLeastBeams) return 0.0;
   std::swap(dense_beams_, kept_dense_beams_);
   std::swap(beams_, kept_beams_);
   return share;
+}
+
+/// Whether the beams that are kept end at the map's walls.
+bool Amcl::fits(const geometry::Pose2& map_T_base) const {
+  const auto explained = std::count_if(
+      kept_dense_beams_.begin(), kept_dense_beams_.end(), [&](const Beam& beam) {
+        const geometry::Point2 end = map_T_base * geometry::Point2(beam.x, beam.y);
+        return field_.distances().interpolated(end).distance <
+               config_.confidence.explained_distance;
+      });
+  return static_cast<double>(explained) >=
+         config_.confidence.good_explained * static_cast<double>(kept_dense_beams_.size());
 }
 
 void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {
@@ -263,7 +281,7 @@ void Amcl::end_search(const Cluster& cluster) {
   const bool won = search_updates_ >= kLeastSearch && cluster.weight >= kWonWeight &&
                    estimate_->quality.explained >= config_.confidence.good_explained;
   search_updates_ = won ? 0 : search_updates_ + 1;
-  fast_likelihood_ = 0.0;
+  fast_likelihood_ = unmapped_lately_ = 0.0;
   estimate_->quality.confidence = confidence_of(estimate_->quality);
 }
 

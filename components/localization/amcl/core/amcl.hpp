@@ -132,6 +132,7 @@ class Amcl {
   geometry::Pose2 random_free_pose();
   geometry::Pose2 random_nearby_pose();
   double drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T_base);
+  bool fits(const geometry::Pose2& map_T_base) const;
   void scan_likelihood(const LaserBeams& scan, const Particles& particles);
   double weigh(Particles& particles, double evidence) const;
   void end_search(const Cluster& cluster);
@@ -168,6 +169,7 @@ class Amcl {
   int updates_since_resampling_ = 0;
   int idle_scans_ = 0;                                    // since the last update, while lost
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;  // 0: none yet
+  double unmapped_lately_ = 0.0;  ///< [0, 1] share of beams
   double range_offset_ = 0.0;  ///< [m] that all beams are too short by, learnt while tracking
   std::optional<Estimate> estimate_;
 };

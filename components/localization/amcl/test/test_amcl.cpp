@@ -93,6 +93,28 @@ TEST(Amcl, TracksThroughACrowd) {
   }
 }
 
+TEST(Amcl, TurnsBeforeSomebodyWhoFillsItsView) {
+  AmclConfig config;
+  config.sensor.max_range = 3.95;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    World world(seed, config);
+    world.robot.kidnap({6.5, 1.0, 0.6 * static_cast<double>(seed)});  // in the middle of a room
+    ASSERT_TRUE(world.amcl.set_initial_pose(world.robot.pose(), spread(0.05, 0.05)).ok());
+    for (int i = 0; i < 20; ++i) {
+      world.robot.move({0.0, 0.0, 0.11});
+      world.amcl.update(world.robot.odometry(), world.robot.scan());
+    }
+    for (int i = 0; i < 24; ++i) {  // to and fro; somebody stays where the robot looks
+      world.robot.move({0.0, 0.0, i % 12 < 6 ? 0.11 : -0.11});
+      const auto scan = world.robot.scan();
+      std::fill_n(world.robot.ranges().begin() + 30, 121, 0.4F);
+      world.amcl.update(world.robot.odometry(), scan);
+      ASSERT_LT(error(world.amcl, world.robot), 0.2) << "seed " << seed << " step " << i;
+      ASSERT_NE(world.amcl.estimate()->quality.confidence, Confidence::kLost);
+    }
+  }
+}
+
 TEST(Amcl, SurvivesOdometryThatCountsBackwardsAsForwards) {
   World world(5);
   const Pose2 start{-1.5, 2.9, 0.0};
