@@ -111,6 +111,26 @@ std::string name_of(const Trial& trial) {
   return row_of(trial.distance, trial.robots) + "_" + std::to_string(trial.seed);
 }
 
+/// Of a distance ("short"), one of them ("short_7"), or all.
+std::vector<Trial> trials_of(const std::string& only, int seeds, int most_robots) {
+  const std::size_t end = only.find_last_not_of("0123456789") + 1;
+  const bool one = end < only.size();
+  const std::string row = one ? only.substr(0, end - 1) : only;
+  const int first = one ? std::atoi(only.c_str() + end) : 1;
+  const int last = one ? first : seeds;
+  std::vector<Trial> trials;
+  for (int robots = 1; robots <= most_robots; ++robots) {
+    for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
+      const bool chosen =
+          row == row_of(distance, robots) || (!one && row == kDistances[distance].name);
+      if (!row.empty() && !chosen) continue;
+      for (int seed = first; seed <= last; ++seed)
+        trials.push_back({distance, static_cast<std::uint64_t>(seed), robots, {}});
+    }
+  }
+  return trials;
+}
+
 /// With the detector's fitted model, or with pixels and the detector itself.
 struct Setup {
   const char* name;
@@ -158,15 +178,8 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
     if (!read) return Error{read.error()};
     fleet = std::move(read).value();
   }
-  std::vector<Trial> trials;
-  for (int robots = 1; robots <= options.robots; ++robots) {
-    for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
-      if (!only.empty() && only != kDistances[distance].name) continue;
-      for (int seed = 1; seed <= seeds; ++seed)
-        trials.push_back({distance, static_cast<std::uint64_t>(seed), robots, {}});
-    }
-  }
-  if (trials.empty()) return Error{"no such distance: " + only};
+  std::vector<Trial> trials = trials_of(only, seeds, options.robots);
+  if (trials.empty()) return Error{"neither a distance nor a meeting: " + only};
   const auto run_one = [&](const Trial& trial, const std::string& name, const std::string& title) {
     return run_meeting(trial.robots > 1 ? fleet : std::vector{*deployment}, case_of(trial, limit),
                        trial.seed, options.out, name, title);
@@ -232,10 +245,13 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
              std::to_string(m.lost()) + "," + std::to_string(run.summary.contacts) + "\n";
       if (trial.failed())
         std::printf(
-            "%s: %u brought, %u there (%s) after %s, %s; contacts %u %s, localized to %.2f m\n%s",
+            "%s: %u brought, %u there (%s) after %s, %s; contacts %u %s, localized to %.2f m\n%s"
+            "replay: usher experiment %s --only %s%s\n",
             name_of(trial).c_str(), m.brought(), run.present, run.whereabouts.c_str(),
             minutes(run.seconds).c_str(), m.reason().c_str(), run.summary.contacts,
-            run.summary.contact_with.c_str(), run.summary.localization_max, run.complaints.c_str());
+            run.summary.contact_with.c_str(), run.summary.localization_max, run.complaints.c_str(),
+            setup.name, name_of(trial).c_str(),
+            robots > 1 ? (" --robots " + std::to_string(robots)).c_str() : "");
     }
     if (n == 0) continue;
     const Distance& d = kDistances[distance];

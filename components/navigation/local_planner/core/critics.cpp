@@ -235,17 +235,23 @@ CriticScores DynamicWindow::score(const Input& input, std::size_t index, double 
   const double end_y = rollout_.y()[3 * index + 2];
   CriticScores s;
   const double line = tight_ ? kTightPath : lane_.keeps_aside() ? kLanePath : 1.0;
-  s.path = line * weights.path / 3.0 *
-           (static_cast<double>(point_distances_[3 * index]) +
-            static_cast<double>(point_distances_[3 * index + 1]) +
-            static_cast<double>(point_distances_[3 * index + 2]));
-  s.goal = weights.goal * way_left(goal_lengths_, input, end_x, end_y);
-  if (aligned_) {
-    s.alignment =
-        line * weights.alignment * static_cast<double>(point_distances_[3 * count + index]);
-    s.goal_front = weights.goal_front * way_left(front_lengths_, input,
-                                                 static_cast<double>(points_x_[3 * count + index]),
-                                                 static_cast<double>(points_y_[3 * count + index]));
+  if (turns_to_) {
+    const double yaw = std::atan2(rollout_.end_sine()[index], rollout_.end_cosine()[index]);
+    s.goal = weights.goal * std::abs(geometry::shortest_turn(yaw, *turns_to_));
+  } else {
+    s.path = line * weights.path / 3.0 *
+             (static_cast<double>(point_distances_[3 * index]) +
+              static_cast<double>(point_distances_[3 * index + 1]) +
+              static_cast<double>(point_distances_[3 * index + 2]));
+    s.goal = weights.goal * way_left(goal_lengths_, input, end_x, end_y);
+    if (aligned_) {
+      s.alignment =
+          line * weights.alignment * static_cast<double>(point_distances_[3 * count + index]);
+      s.goal_front =
+          weights.goal_front * way_left(front_lengths_, input,
+                                        static_cast<double>(points_x_[3 * count + index]),
+                                        static_cast<double>(points_y_[3 * count + index]));
+    }
   }
   const double cut =
       trajectory.contact

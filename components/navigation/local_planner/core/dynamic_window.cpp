@@ -32,6 +32,8 @@ constexpr double kPolite = 6.0;      // [s] that it gives way
 constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
 constexpr double kSamePlace = 0.3;   // [m]
 constexpr int kMostToAndFro = 3;     // moves that free one corner and touch with the other
+constexpr double kWayOut = 1.0;      // [m] that arcs may take to turn it by kGain
+constexpr double kGain = 0.3;        // [rad]
 constexpr double kSoon = 0.65;       // [rad] of a turn whose room bounds its rate now
 
 Status check(const DynamicWindowConfig& c) {
@@ -350,6 +352,15 @@ bool DynamicWindow::is_given_up(const geometry::Point2& position, int sense) {
   return barred_.left >= 2 && barred_.right >= 2;
 }
 
+/// Whether arcs still may lead out of where there is no room to turn: along a wall, away from a
+/// path that lies behind, they lead ever farther from it.
+bool DynamicWindow::leads_out(const Input& input, double error) {
+  const double gone = (input.pose.position() - way_out_.at).norm();
+  if (gone > 2.0 * kWayOut || error < way_out_.error - kGain)
+    way_out_ = {input.pose.position(), error};
+  return (input.pose.position() - way_out_.at).norm() <= kWayOut;
+}
+
 Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   if (std::abs(input.measured.v) > kSlowEnoughToTurn) {
     return halt(input, reason, config_.limits.deceleration);
@@ -445,10 +456,13 @@ Decision DynamicWindow::follow(const Input& input) {
   if (touches(input, center_, input.pose))
     return with_obstacle(halt(input, Reason::kTouching, config_.braking));
   double heading = input.pose.yaw;
+  turns_to_.reset();
   if (must_turn_first(input, heading)) {
     const Decision decision = turn_to(input, heading, Reason::kTurning);
-    if (!decision.blocked) return with_obstacle(decision);
-    turning_ = 0;  // no room to turn: perhaps an arc leads out
+    turning_ = decision.blocked ? 0 : turning_;
+    const double error = std::abs(geometry::shortest_turn(input.pose.yaw, heading));
+    if (!decision.blocked || !leads_out(input, error)) return with_obstacle(decision);
+    turns_to_ = heading;  // no room to turn in place: on an arc, if any leads out
   }
   choose_local_goal(input);
   lane_.choose(path_, input.costs, input.walkers, input.seconds);

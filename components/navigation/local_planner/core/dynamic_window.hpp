@@ -167,6 +167,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   int turn_of_tail() const;
   bool must_turn_first(const Input& input, double& heading);
   bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
+  bool leads_out(const Input& input, double error);
   bool is_given_up(const geometry::Point2& position, int sense);
   void forget_other_places(const geometry::Point2& position);
   double turn_rate(const Input& input, double angle) const;
@@ -206,6 +207,11 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
     int freeing = 0;  // +1, -1: the last corner was freed forward, back
     int to_and_fro = 0;
   } barred_;  // how often a turn at a place could not go on in a sense
+  struct {
+    geometry::Point2 at = geometry::Point2::Constant(1e9);
+    double error = 0.0;  // [rad]
+  } way_out_;  // where it began to look for room to turn, and how far from its path's direction
+  std::optional<double> turns_to_;  // [rad] on an arc, since there is no room to turn in place
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
   Trail trail_;

@@ -149,6 +149,27 @@ TEST(Doors, BesideACorridorArePassedBothWays) {
   }
 }
 
+TEST(BesideAWall, ARobotThatCannotTurnThereTurnsOnAnArc) {
+  DynamicWindowConfig config;  // the Pioneer, whose rear corners would meet the wall
+  config.footprint = Footprint::rectangle(0.455, 0.381);
+  config.pace = 0.7;
+  config.fastest_turn = config.spot_turn = 0.4;
+  for (const double room : {0.08, 0.1, 0.12}) {
+    World world(-6, -4, 10, 1);
+    world.add(Box{-6, 0.1905 + room, 10, 1});
+    world.finish(config.footprint.inscribed_radius());
+    const Pose2 goal{-4, -0.5, kPi};
+    DynamicWindow planner = planner_for(config, {{0, 0, 0}, goal});
+    Base base;
+    const Drive result = drive(planner, world, base, 60);
+    print("path behind, wall beside", result);
+    expect_arrival(result, goal, config);
+    double farthest = 0.0;
+    for (const Pose2& pose : result.trace) farthest = std::max(farthest, pose.x);
+    EXPECT_LT(farthest, 1.5);
+  }
+}
+
 World corner(double width) {
   World world(-2, -2, 8, 8);
   const double half = 0.5 * width;

@@ -236,6 +236,9 @@ void Navigator::start(const Situation& s) {
   route_.clear();
   advanced_ = recovered_at_ = 0.0;
   recoveries_in_a_row_ = 0;
+  if (!s.pose || !s.pose->finite() ||
+      geometry::distance(*s.pose, stuck_at_) >= config_.recovery_progress)
+    tried_here_ = 0;
   speed_kept_ =
       goal_max_speed_ > 0.0 ? std::min(goal_max_speed_, config_.usual_speed) : config_.usual_speed;
   set_motion(MotionMode::kStop);
@@ -354,7 +357,8 @@ void Navigator::track(const Situation& s) {
     ++turns_counted_;
   }
   recovered_at_ = std::min(recovered_at_, advanced_);
-  if (advanced_ - recovered_at_ >= config_.recovery_progress) recoveries_in_a_row_ = 0;
+  if (advanced_ - recovered_at_ >= config_.recovery_progress)
+    recoveries_in_a_row_ = tried_here_ = 0;
 }
 
 bool Navigator::arrived(const Situation& s) {
@@ -436,8 +440,11 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   route_.track(*s.pose);
   longest_ = std::max(longest_, advanced_ + route_.length());
   nearest_ = route_.remaining();
-  restart_stall_clock(s);
-  turns_counted_ = 0;
+  // A path that is new only because the robot is elsewhere by now is no progress.
+  if (cause != PlanCause::kPeriodic && cause != PlanCause::kOffPath) {
+    restart_stall_clock(s);
+    turns_counted_ = 0;
+  }
   standing_since_.reset();
   obstacle_since_.reset();
   state_ = State::kActive;
@@ -530,8 +537,10 @@ void Navigator::recover(const Situation& s, Failure failure, const std::string& 
   }
   if (recoveries_in_a_row_ >= config_.most_recoveries)
     return finish(GoalState::kFailed, failure, reason);
-  const int kind = recoveries_in_a_row_++ % kRecoveryKinds;
-  const int round = recoveries_in_a_row_ / kRecoveryKinds;
+  ++recoveries_in_a_row_;
+  const int kind = tried_here_++ % kRecoveryKinds;
+  const int round = tried_here_ / kRecoveryKinds;
+  if (s.pose) stuck_at_ = *s.pose;
   const bool left = round % 2 == 1;
   ++status_.recoveries;
   recovered_at_ = advanced_;

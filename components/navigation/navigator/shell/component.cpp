@@ -48,6 +48,7 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
   number("recovery_patience", "s", 0.1, 120, c.recovery_patience,
          "Still blocked after the new path: recover.");
   number("stall_time", "s", 1, 120, c.stall_time, "Without getting nearer it counts as blocked.");
+  number("recovery_timeout", "s", 0.5, 120, c.recovery_timeout, "For one motion that recovers.");
   number("hold_timeout", "s", 1, 3600, c.hold_timeout,
          "How long a robot that may not drive is waited for.");
   number("pause_timeout", "s", 1, 600, c.pause_timeout,

@@ -277,6 +277,41 @@ TEST(NavigatorInTrouble, StopsBackingOffWhenSomebodyIsBehind) {
   EXPECT_NE(rig.navigator.motion().mode, MotionMode::kBackOff);
 }
 
+TEST(NavigatorInTrouble, BacksOffFartherForTheNextGoalUntilItGotAway) {
+  const auto first_way_back = [](Rig& rig, std::uint64_t id) {
+    rig.motions.clear();
+    rig.go(8.0, id);
+    rig.run_to_end(300.0);
+    EXPECT_EQ(rig.status().failure, Failure::kBlocked);
+    for (const Motion& motion : rig.motions)
+      if (motion.mode == MotionMode::kBackOff) return motion.amount;
+    return 0.0;
+  };
+  Rig rig;
+  rig.s.rear_clearance = 2.0;
+  rig.drive = Rig::stand_blocked;
+  EXPECT_NEAR(first_way_back(rig, 1), 0.3, 1e-9);
+  EXPECT_NEAR(first_way_back(rig, 2), 0.9, 1e-9);
+  rig.s.pose->x += 1.1;
+  EXPECT_NEAR(first_way_back(rig, 3), 0.3, 1e-9);
+}
+
+TEST(NavigatorInTrouble, NoNewPathHidesThatItGetsNoNearer) {
+  Rig rig;
+  rig.go();
+  rig.run(0.5);
+  rig.drive = [](Rig& r) {  // away from the goal: each path that is planned anew is longer
+    if (r.navigator.motion().mode != MotionMode::kFollow) return Rig::stand_blocked(r);
+    r.s.pose->x -= 0.01;
+    r.s.velocity.v = -0.1;
+    r.s.follow.state = GoalState::kActive;
+  };
+  const double began = rig.s.time;
+  while (rig.status().recoveries == 0 && rig.s.time - began < 60.0) rig.step();
+  EXPECT_LT(rig.s.time - began, 17.0);
+  EXPECT_GE(rig.plans.size(), 3u);
+}
+
 TEST(NavigatorInTrouble, ForgivesRecoveriesAfterProgress) {
   Rig rig;
   rig.go(100.0);
