@@ -11,19 +11,40 @@ namespace {
 constexpr double kEscape = 0.5;            // [m] to a place where the robot can pass
 constexpr std::int8_t kOccupiedFrom = 65;  // percent, as map_server's default
 constexpr std::uint8_t kBlocked = 254;
+constexpr int kMostCells = 4 * Wavefront::kLargestSide;  // a side
+
+/// `factor` x `factor` cells in one: the most occupied of them; else unknown when one is.
+OccupancyGrid coarser(const OccupancyGrid& map, int factor) {
+  if (factor == 1) return map;
+  GridGeometry geometry = map.geometry();
+  geometry.width = (map.width() + factor - 1) / factor;
+  geometry.height = (map.height() + factor - 1) / factor;
+  geometry.resolution *= factor;
+  OccupancyGrid coarse(geometry, kFree);
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      auto& cell = coarse.at({x / factor, y / factor});
+      const auto value = map.at({x, y});
+      const bool worse = value >= kOccupiedFrom ? value > cell : value < 0 && cell < kOccupiedFrom;
+      if (worse) cell = value;
+    }
+  }
+  return coarse;
+}
 
 }  // namespace
 
 Status WayLengths::set_map(const OccupancyGrid& map, double room) {
   if (map.empty() || !(map.resolution() > 0.0)) return Error{"the map is empty"};
-  if (std::max(map.width(), map.height()) > Wavefront::kLargestSide)
-    return Error{"the map may have " + std::to_string(Wavefront::kLargestSide) +
-                 " cells a side, it has " + std::to_string(std::max(map.width(), map.height()))};
-  OccupancyGrid obstacles = map;
+  const int side = std::max(map.width(), map.height());
+  if (side > kMostCells)
+    return Error{"the map may have " + std::to_string(kMostCells) + " cells a side, it has " +
+                 std::to_string(side)};
+  OccupancyGrid obstacles = coarser(map, (side - 1) / Wavefront::kLargestSide + 1);
   for (auto& value : obstacles) value = value >= kOccupiedFrom ? kOccupied : value;
   passing_.build(obstacles, room);
-  Grid<std::uint8_t> costs(map.geometry(), 0);
-  for (std::size_t i = 0; i < map.size(); ++i) costs[i] = passing_.free_at(i) ? 0 : kBlocked;
+  Grid<std::uint8_t> costs(obstacles.geometry(), 0);
+  for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = passing_.free_at(i) ? 0 : kBlocked;
   wavefront_.set_obstacles(costs, kBlocked, true);
   lengths_.clear();
   return {};

@@ -13,7 +13,9 @@ namespace usher::grid {
 class WayLengths {
  public:
   /// Takes a map (occupied: from 65 % on); `room` [m] from obstacles is enough to drive through.
-  /// An error says that the map is too large, or empty, and leaves what was there.
+  /// Maps of more than 2000
+  /// cells a side are measured on cells that are 2 to 4 times as large. An error says that the map
+  /// is larger still, or empty, and leaves what was there.
   Status set_map(const OccupancyGrid& map, double room);
 
   bool empty() const { return passing_.empty(); }

@@ -24,13 +24,14 @@ std::vector<std::string> config_directories(const std::string& manifest_path,
 
 Result<Deployment> load_deployment(const std::string& manifest_path,
                                    const Installation& installation,
-                                   const std::vector<Override>& overrides,
-                                   const std::string& keys) {
+                                   const std::vector<Override>& overrides, const std::string& keys,
+                                   const std::string& site) {
   const auto contracts = read_contracts(installation.contracts);
   if (!contracts) return Error{contracts.error()};
   auto manifest = read_manifest(manifest_path, config_directories(manifest_path, installation));
   if (!manifest) return Error{manifest.error()};
   if (!keys.empty()) manifest->keys = keys;
+  if (!site.empty()) manifest->site_file = site;
   auto deployment = resolve(*manifest, *contracts, overrides);
   judge_keys(*manifest, *contracts, deployment.findings);
   return deployment;

@@ -24,11 +24,11 @@ std::vector<std::string> config_directories(const std::string& manifest_path,
                                             const Installation& installation);
 
 /// Reads, resolves and judges. Fails only when there is no manifest to judge. `keys` stands for the
-/// manifest's `security:` where it is not empty.
+/// manifest's `security:`, the file `site` for its site, where they are not empty.
 Result<Deployment> load_deployment(const std::string& manifest_path,
                                    const Installation& installation,
                                    const std::vector<Override>& overrides,
-                                   const std::string& keys = {});
+                                   const std::string& keys = {}, const std::string& site = {});
 
 /// `amcl.max_beams=60`
 Result<Override> parse_override(const std::string& text);

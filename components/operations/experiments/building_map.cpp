@@ -123,6 +123,21 @@ Result<std::vector<BuildingMap>> find_building_maps(const std::string& folder) {
   return buildings;
 }
 
+Result<std::vector<BuildingMap>> choose_buildings(const std::string& data,
+                                                  const std::string& only) {
+  if (data.empty()) return Error{"USHER_TEST_DATA names no folder with maps"};
+  auto buildings = find_building_maps(data + "/maps");
+  if (!buildings || only.empty()) return buildings;
+  std::string names;
+  for (const auto& building : *buildings) names += " " + building.name;
+  std::erase_if(*buildings, [&](const BuildingMap& building) {
+    return building.name != only && !building.name.starts_with(only + "/") &&
+           !building.name.ends_with("/" + only);
+  });
+  if (buildings->empty()) return Error{"no building '" + only + "'; there are" + names};
+  return buildings;
+}
+
 Result<grid::OccupancyGrid> load_building_map(const BuildingMap& building) {
   auto map = grid::load_map(building.file);
   if (!map || building.resolution == 0.0) return map;

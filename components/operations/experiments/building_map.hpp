@@ -22,6 +22,9 @@ struct BuildingMap {
 /// out.
 Result<std::vector<BuildingMap>> find_building_maps(const std::string& folder);
 
+/// Those below `data`/maps that were asked for: a name, its folder, its file's stem; empty: all.
+Result<std::vector<BuildingMap>> choose_buildings(const std::string& data, const std::string& only);
+
 /// Reads the map, with the true resolution.
 Result<grid::OccupancyGrid> load_building_map(const BuildingMap& building);
 

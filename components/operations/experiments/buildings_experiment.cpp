@@ -66,15 +66,11 @@ Status write_site(const std::string& path, const std::string& map, const geometr
 
 /// The robot's deployment in a building, standing at a place.
 Result<Deployment> deploy(const ExperimentOptions& options, const std::string& site) {
-  const auto contracts = read_contracts(options.installation.contracts);
-  if (!contracts) return Error{contracts.error()};
-  const std::string path = options.installation.share + "/deploy/marvin-sim.yaml";
-  auto manifest = read_manifest(path, config_directories(path, options.installation));
-  if (!manifest) return Error{manifest.error()};
-  manifest->site_file = site;
-  Deployment deployment = resolve(*manifest, *contracts, {});
-  if (!deployment.findings.empty()) {
-    const auto& first = deployment.findings.front();
+  auto deployment = load_deployment(options.installation.share + "/deploy/marvin-sim.yaml",
+                                    options.installation, {}, {}, site);
+  if (!deployment) return deployment;
+  if (!deployment->findings.empty()) {
+    const auto& first = deployment->findings.front();
     return Error{to_string(first.verdict) + ": " + first.text + " (" + first.origin + ")"};
   }
   return deployment;
@@ -267,25 +263,10 @@ Result<ResultSheet> report(const ExperimentOptions& options, const std::vector<T
   return sheet;
 }
 
-/// The buildings that were asked for: a name, its folder, or its file's stem.
-Result<std::vector<BuildingMap>> chosen(const ExperimentOptions& options, const std::string& only) {
-  if (options.data.empty()) return Error{"USHER_TEST_DATA names no folder with maps"};
-  auto buildings = find_building_maps(options.data + "/maps");
-  if (!buildings || only.empty()) return buildings;
-  std::string names;
-  for (const auto& building : *buildings) names += " " + building.name;
-  std::erase_if(*buildings, [&](const BuildingMap& building) {
-    return building.name != only && !building.name.starts_with(only + "/") &&
-           !building.name.ends_with("/" + only);
-  });
-  if (buildings->empty()) return Error{"no building '" + only + "'; there are" + names};
-  return buildings;
-}
-
 }  // namespace
 
 Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options) {
-  const auto buildings = chosen(options, options.only);
+  const auto buildings = choose_buildings(options.data, options.only);
   if (!buildings) return Error{buildings.error()};
   const auto seeds = static_cast<std::size_t>(std::max(1, options.seeds));
   std::vector<std::optional<Tour>> tours(buildings->size() * seeds);
@@ -310,7 +291,8 @@ Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options) {
 }
 
 Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& options) {
-  const auto buildings = chosen(options, options.only.empty() ? kDdsBuilding : options.only);
+  const auto buildings =
+      choose_buildings(options.data, options.only.empty() ? kDdsBuilding : options.only);
   if (!buildings) return Error{buildings.error()};
   std::vector<Tour> tours;
   for (const auto& building : *buildings) {

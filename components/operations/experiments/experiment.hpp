@@ -49,6 +49,7 @@ Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options)
 Result<ResultSheet> run_tracking_error_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_gather_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_pixels_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);
 

@@ -82,8 +82,12 @@ const std::vector<Experiment>& experiments() {
        run_find_room_experiment},
       {"gather",
        "The meeting assistant brings two persons from short, medium and long distances, lock-step: "
-       "times, misses and failures beside figure 15 of the meeting report; --only DISTANCE",
+       "times, misses and failures beside figure 15 of the meeting report; --only DISTANCE, or one "
+       "meeting: medium_72",
        run_gather_experiment},
+      {"gather-buildings",
+       "The same in maps of real buildings, with rooms and people put into them; --only NAME",
+       run_gather_buildings_experiment},
       {"gather-pixels",
        "The same with rendered images, photographed faces and the face detector itself; --only "
        "DISTANCE",

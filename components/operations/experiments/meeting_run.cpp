@@ -196,13 +196,14 @@ std::string minutes(double seconds) {
   return std::to_string(whole / 60) + (whole % 60 < 10 ? ":0" : ":") + std::to_string(whole % 60);
 }
 
-Result<Deployment> meeting_deployment(const ExperimentOptions& options,
-                                      const std::string& manifest) {
+Result<Deployment> meeting_deployment(const ExperimentOptions& options, const std::string& manifest,
+                                      const std::string& site) {
   return load_deployment(options.installation.share + "/deploy/" + manifest, options.installation,
                          {{"local_planner", "fastest_turn", kTurnRate},
                           {"local_planner", "spot_turn", kTurnRate},
                           {"local_planner", "recovery_turn_rate", kTurnRate},
-                          {"explorer", "turn_rate", kTurnRate}});
+                          {"explorer", "turn_rate", kTurnRate}},
+                         {}, site);
 }
 
 Result<std::vector<Deployment>> meeting_fleet(const ExperimentOptions& options) {

@@ -59,9 +59,11 @@ struct MeetingRun {
   std::string complaints;
 };
 
-/// The meeting assistant in the arena, at the pace of its report: 0.7 m/s and 0.4 rad/s.
+/// The meeting assistant at the pace of its report, 0.7 m/s and 0.4 rad/s: in the arena, or where
+/// the site's file says.
 Result<Deployment> meeting_deployment(const ExperimentOptions& options,
-                                      const std::string& manifest = "meeting-demo.yaml");
+                                      const std::string& manifest = "meeting-demo.yaml",
+                                      const std::string& site = {});
 
 /// Two robots in the arena that call one meeting together, at the same pace.
 Result<std::vector<Deployment>> meeting_fleet(const ExperimentOptions& options);

@@ -1,5 +1,6 @@
 // Whether the person follows who is guided.
 #include <algorithm>
+#include <cmath>
 
 #include "tasks/meeting/core/meeting.hpp"
 
@@ -13,6 +14,9 @@ constexpr double kNearest = 0.4;           // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;  // points of the laser
 constexpr double kInside = 0.5;            // [m] from its walls the robot is in a room
 constexpr double kThrough = 0.3;           // [m] and somebody has come through its door
+constexpr Time kStuck = std::chrono::seconds(4);  // that it is told to turn and does not
+constexpr double kToTurn = 0.5;                   // [rad] what is left then,
+constexpr double kTurned = 0.1;                   // [rad] and what it has turned
 }  // namespace
 
 /// Nobody sees behind this robot: who follows is taken to walk where it drove.
@@ -69,6 +73,16 @@ bool Meeting::is_inside(const Point2& point, double by) const {
 
 bool Meeting::is_there() const {
   return is_inside(robot_.pose->position(), kInside) && is_inside(follower_, kThrough);
+}
+
+/// Something that the map does not have, or has a little farther off, bars its turn on the way: it
+/// looks later.
+bool Meeting::cannot_turn(Time now) const {
+  if (in_the_room_ || !robot_.pose || now - since_ < kStuck) return false;
+  const Point2 to = face_to_ - robot_.pose->position();
+  const double off = geometry::shortest_turn(robot_.pose->yaw, std::atan2(to.y(), to.x()));
+  const double turned = geometry::shortest_turn(looked_from_, robot_.pose->yaw);
+  return std::abs(off) > kToTurn && std::abs(turned) < kTurned;
 }
 
 bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }

@@ -267,6 +267,7 @@ void Meeting::arrive_in(State state, Time now) {
       break;
     case State::kLookBack:
       stands_there_ = 0;
+      looked_from_ = robot_.pose ? robot_.pose->yaw : 0.0;
       turn_ = Turn::kFace;
       face_to_ = follower_;
       break;
@@ -435,6 +436,10 @@ void Meeting::pass_time(Time now) {
       break;
     case State::kLookBack:
       if (!motion_.may_turn(robot_)) since_ = now;  // held meanwhile: it cannot look
+      if (cannot_turn(now)) {
+        enter(State::kGuide, Cause::kNoWay, now);
+        break;
+      }
       if (calls(now) && track_.successive() == 0) turn_ = Turn::kSearch;
       if (now - since_ < parameters_.look_back) break;
       ++report_.lost;

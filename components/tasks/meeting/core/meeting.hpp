@@ -225,6 +225,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void look_for_follower(const Faces& all, Time now);
   void has_followed(Time now);
   bool calls(Time now) const;
+  bool cannot_turn(Time now) const;
   bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
   bool is_inside(const Point2& point, double by) const;
   bool is_there() const;
@@ -245,6 +246,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   Team team_;
   Surroundings robot_;
   State state_ = State::kInitialise;
+  double looked_from_ = 0.0;  ///< [rad] in map: where it looked when it began to look back
   Time since_{};
   Actions actions_;
   Turn turn_ = Turn::kStand;

@@ -33,7 +33,7 @@ enum class Cause : std::uint8_t {
   kNotReady,   ///< it cannot
   kRequest,    ///< a meeting is called
   kArrived,    ///< the navigator reached the place
-  kNoWay,      ///< it did not
+  kNoWay,      ///< it did not, or has no room to turn
   kFace,       ///< a face is seen
   kLost,       ///< it was none, nobody is there, or nobody follows
   kUnseen,     ///< the person was not seen for a while
@@ -99,6 +99,7 @@ inline constexpr std::array kWay{
     Edge{State::kGuide, State::kExplore, Cause::kNoWay},
     Edge{State::kGuide, State::kExplore, Cause::kNo},
     Edge{State::kLookBack, State::kGuide, Cause::kConfirmed},
+    Edge{State::kLookBack, State::kGuide, Cause::kNoWay},
     Edge{State::kLookBack, State::kArrived, Cause::kConfirmed},
     Edge{State::kLookBack, State::kExplore, Cause::kLost},
     Edge{State::kLookBack, State::kExplore, Cause::kNo},

@@ -221,7 +221,7 @@ TEST(Meeting, LooksBackWhereItsFollowerShouldBeAndGoesOn) {
     rig.wait(100);
   }
   const Pose2 there = *rig.robot.pose;
-  rig.wait(20000);
+  rig.wait(17000);
   ASSERT_EQ(rig.state(), State::kLookBack);
   EXPECT_EQ(rig.meeting.screen().title, "Are you with me?");
   rig.wait(100);
