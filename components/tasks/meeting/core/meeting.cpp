@@ -171,7 +171,8 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
   } else {
     ++report_.declined;
     // Who leaves on the way is where the robot is by then.
-    const bool on_the_way = departed_ && robot_.pose && state_ != State::kInvite;
+    const bool on_the_way = robot_.pose && state_ != State::kInvite &&
+                            (follower_ - person_).norm() > parameters_.same_person;
     const Point2 at = on_the_way ? robot_.pose->position() : person_;
     people_.leave_alone(at, on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
                         now);

@@ -497,16 +497,26 @@ TEST(Meeting, TurnsToNobodyWithoutAPose) {
 }
 
 TEST(Meeting, AsksNobodyAgainWhoLeftOnTheWay) {
-  Rig rig;
-  rig.to_guide(2);
-  rig.wait(1500);
-  rig.robot.pose = Pose2{6.0, 5.0, 3.0};
-  rig.wait(100);
-  rig.press("leave");
-  EXPECT_EQ(rig.state(), State::kExplore);
-  rig.depart();
-  rig.see({rig.face_at({5.2, 5.1})}, 6);
-  EXPECT_EQ(rig.state(), State::kExplore) << "he stands beside the robot";
+  for (const bool looked_back : {false, true}) {
+    Rig rig;
+    rig.to_guide(2);
+    rig.wait(1500);
+    rig.robot.pose = Pose2{6.0, 5.0, 3.0};
+    rig.wait(100);
+    if (looked_back) {
+      rig.wait(20000);
+      ASSERT_EQ(rig.state(), State::kLookBack);
+      rig.robot.pose->yaw = 0.0;
+      rig.see(1.1, 0.0, 2);
+      ASSERT_EQ(rig.state(), State::kGuide);
+      rig.robot.pose->yaw = 3.0;
+    }
+    rig.press("leave");
+    EXPECT_EQ(rig.state(), State::kExplore);
+    rig.depart();
+    rig.see({rig.face_at({5.2, 5.1})}, 6);
+    EXPECT_EQ(rig.state(), State::kExplore) << "he stands beside the robot";
+  }
 }
 
 TEST(Meeting, WaitsForARobotThatMayNotMoveAndFailsAfterAWhile) {
