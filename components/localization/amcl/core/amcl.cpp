@@ -183,10 +183,9 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   choose_beams(scan, std::max<std::size_t>(config_.refine_beams, 2), config_.sensor.max_range,
                false, dense_beams_);
 
-  const double unmapped =
-      estimate_ && search_updates_ == 0 && !result.odometry_restarted
-          ? drop_unmapped(scan, odom_T_base)
-          : 0.0;
+  const double unmapped = estimate_ && search_updates_ == 0 && !result.odometry_restarted
+                              ? drop_unmapped(scan, odom_T_base)
+                              : 0.0;
   if (beams_.size() < kLeastBeams) return result;
   if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
@@ -236,8 +235,8 @@ double Amcl::drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T
 
 /// Whether the beams that are kept end at the map's walls.
 bool Amcl::fits(const geometry::Pose2& map_T_base) const {
-  const auto explained = std::count_if(
-      kept_dense_beams_.begin(), kept_dense_beams_.end(), [&](const Beam& beam) {
+  const auto explained =
+      std::count_if(kept_dense_beams_.begin(), kept_dense_beams_.end(), [&](const Beam& beam) {
         const geometry::Point2 end = map_T_base * geometry::Point2(beam.x, beam.y);
         return field_.distances().interpolated(end).distance <
                config_.confidence.explained_distance;

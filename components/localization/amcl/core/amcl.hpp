@@ -169,7 +169,7 @@ class Amcl {
   int updates_since_resampling_ = 0;
   int idle_scans_ = 0;                                    // since the last update, while lost
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;  // 0: none yet
-  double unmapped_lately_ = 0.0;  ///< [0, 1] share of beams
+  double unmapped_lately_ = 0.0;                          ///< [0, 1] share of beams
   double range_offset_ = 0.0;  ///< [m] that all beams are too short by, learnt while tracking
   std::optional<Estimate> estimate_;
 };
