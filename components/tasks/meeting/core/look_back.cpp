@@ -49,7 +49,8 @@ void Meeting::look_for_follower(const Faces& all, Time now) {
 /// was when the robot came.
 const Actions& Meeting::look(const Point2& from, std::span<const Point2> points, Time now) {
   actions_ = {};
-  if (state_ == State::kGuide) cleared_.add(from, points);
+  // Who comes in behind the robot is seen from within: he was not there before.
+  if (state_ == State::kGuide && !is_inside(from, kInside)) cleared_.add(from, points);
   if (state_ != State::kLookBack || !robot_.pose) return finish(now);
   const Point2 here = robot_.pose->position();
   const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {

@@ -337,6 +337,22 @@ TEST(Meeting, CountsNobodyWhoWasInTheRoomBefore) {
   EXPECT_EQ(rig.state(), State::kArrived);
 }
 
+TEST(Meeting, CountsWhomItSawComeInBehindIt) {
+  Rig rig;
+  rig.to_guide();
+  rig.wait(1000);
+  rig.robot.pose = Pose2{2.6, 2.0, 0.0};
+  const Point2 came(3.1, 2.0);
+  for (int i = 0; i < 5; ++i) {  // it turns to its goal's yaw, and the laser meets the follower
+    const std::vector<Point2> legs{came + Point2(0.1, 0.0)};
+    rig.note(rig.meeting.look(rig.robot.pose->position(), legs, rig.now()));
+  }
+  rig.arrive();
+  ASSERT_EQ(rig.state(), State::kLookBack);
+  rig.see({rig.face_at(came)}, 2);
+  EXPECT_EQ(rig.state(), State::kArrived);
+}
+
 TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
   Rig rig;
   rig.to_look_back();
