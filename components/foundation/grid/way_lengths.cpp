@@ -11,7 +11,7 @@ namespace {
 constexpr double kEscape = 0.5;            // [m] to a place where the robot can pass
 constexpr std::int8_t kOccupiedFrom = 65;  // percent, as map_server's default
 constexpr std::uint8_t kBlocked = 254;
-constexpr int kMostCells = 4 * Wavefront::kLargestSide;  // a side
+constexpr int kMostCells = 2 * Wavefront::kLargestSide;  // a side
 
 /// `factor` x `factor` cells in one: the most occupied of them; else unknown when one is.
 OccupancyGrid coarser(const OccupancyGrid& map, int factor) {

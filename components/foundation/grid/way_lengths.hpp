@@ -13,9 +13,9 @@ namespace usher::grid {
 class WayLengths {
  public:
   /// Takes a map (occupied: from 65 % on); `room` [m] from obstacles is enough to drive through.
-  /// Maps of more than 2000
-  /// cells a side are measured on cells that are 2 to 4 times as large. An error says that the map
-  /// is larger still, or empty, and leaves what was there.
+  /// A map of more than 2000 cells a side is measured on cells twice as large: a passage must be up
+  /// to one of its own cells wider there. An error says that it has more than 4000, or none, and
+  /// leaves what was there.
   Status set_map(const OccupancyGrid& map, double room);
 
   bool empty() const { return passing_.empty(); }
@@ -24,7 +24,8 @@ class WayLengths {
   /// Measures all ways anew, from `start`, or from the nearest place within 0.5 m where the robot
   /// can pass. False: there is none, and nothing is reachable.
   bool start_from(const Point2& start);
-  /// [m] of the way to a point, at most 8 % longer than the shortest; infinite when there is none.
+  /// [m] of the way to a point, at most 8 % longer than the shortest, and two cells; infinite when
+  /// there is none.
   double way_to(const Point2& point) const;
   /// Middles of the cells of that way, from the start to the point; empty when there is none.
   void trace(const Point2& point, std::vector<Point2>& way) const;

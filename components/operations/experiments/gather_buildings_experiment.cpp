@@ -28,7 +28,6 @@ constexpr double kRoomClearance = 1.2;               // [m] ... whose middle kee
 constexpr double kSeat = 0.9;                        // [m] from the middle, to both sides
 constexpr double kStartFrom = 3.0, kStartTo = 12.0;  // [m] of way from the room to the start,
 constexpr double kNearest = 4.0, kFarthest = 15.0;   // ... to people, as in the arena
-constexpr double kBetweenRooms = 5.0;                // [m] and between the two rooms at least
 constexpr double kFromWall = 0.4;                    // [m] people stand beside ways, not on them
 constexpr double kPassage = 0.36;                    // [m] from obstacles, for the roadmap
 constexpr double kLeastOpen = 1.1;                   // [m] round who stands, so that he bars no way
@@ -61,6 +60,12 @@ struct Venue {
   std::vector<Point2> rooms;  ///< their middles, the nearer to the start first
   std::vector<Point2> people;
 };
+
+/// Within `half` a side of the middle of one of its rooms.
+bool in_room(const Venue& venue, const Point2& at, double half) {
+  return std::any_of(venue.rooms.begin(), venue.rooms.end(),
+                     [&](const Point2& room) { return (at - room).cwiseAbs().maxCoeff() < half; });
+}
 
 /// Whether there are walls in nearly every direction: some maps hold what lies outside for free.
 bool is_indoors(const grid::DistanceField& distances, const Point2& at) {
@@ -100,32 +105,32 @@ Result<Venue> choose_venue(const BuildingMap& building, const grid::OccupancyGri
     if (!is_roomy(first) || !ways.start_from(first.pose.position())) continue;
     Venue venue;
     venue.rooms.push_back(first.pose.position());
+    const auto second = std::find_if(places->begin(), places->end(), [&](const Place& place) {
+      return is_roomy(place) && !in_room(venue, place.pose.position(), 2.0 * kHalfRoom) &&
+             std::isfinite(ways.way_to(place.pose.position()));
+    });
+    if (second == places->end()) continue;
+    venue.rooms.push_back(second->pose.position());
     std::optional<geometry::Pose2> start;
     for (const Place& place : *places) {
       const Point2 at = place.pose.position();
       const double way = ways.way_to(at);
-      if (!std::isfinite(way)) continue;
+      if (!std::isfinite(way) || in_room(venue, at, kHalfRoom + 0.5)) continue;
       if (!start && way >= kStartFrom && way <= kStartTo) {
         start = place.pose;
-      } else if (venue.rooms.size() < 2 && is_roomy(place) && way >= kBetweenRooms) {
-        venue.rooms.push_back(at);
       } else if (venue.people.size() < kPersons && way >= kNearest && way <= kFarthest &&
                  distances.interpolated(at).distance >= 0.5 * kLeastOpen + kPassage) {
         const Point2 stands = beside_wall(distances, at);
-        const bool in_room =
-            std::any_of(venue.rooms.begin(), venue.rooms.end(), [&](const Point2& room) {
-              return (stands - room).cwiseAbs().maxCoeff() < kHalfRoom + 0.5;
-            });
         const bool alone = std::all_of(venue.people.begin(), venue.people.end(),
                                        [&](const Point2& p) { return (p - stands).norm() > 1.5; });
-        if (!in_room && alone) venue.people.push_back(stands);
+        if (alone && !in_room(venue, stands, kHalfRoom + 0.5)) venue.people.push_back(stands);
       }
     }
-    if (!start || venue.rooms.size() < 2 || venue.people.size() < kPersons) continue;
+    if (!start || venue.people.size() < kPersons) continue;
     venue.start = *start;
     return venue;
   }
-  return Error{building.name + ": no room of 2.4 m with people within 15 m of it"};
+  return Error{building.name + ": no two rooms with a start and people within 15 m"};
 }
 
 /// `people`: the file that the run writes anew.

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -116,7 +118,9 @@ std::vector<Trial> trials_of(const std::string& only, int seeds, int most_robots
   const std::size_t end = only.find_last_not_of("0123456789") + 1;
   const bool one = end < only.size();
   const std::string row = one ? only.substr(0, end - 1) : only;
-  const int first = one ? std::atoi(only.c_str() + end) : 1;
+  constexpr long kLast = 1000000;
+  const int first =
+      one ? static_cast<int>(std::min(kLast, std::strtol(only.c_str() + end, nullptr, 10))) : 1;
   const int last = one ? first : seeds;
   std::vector<Trial> trials;
   for (int robots = 1; robots <= most_robots; ++robots) {
@@ -224,8 +228,7 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
       failed += trial.failed() ? 1 : 0;
       mean += trial.gathering();
       longest = std::max(longest, trial.gathering());
-      if (m.outcome() == usher_msgs::msg::MeetingStatus_Constants::OUTCOME_COMPLETE)
-        total = std::max(total, run.seconds);
+      total = std::max(total, run.seconds);
       missed += run.missed;
       checked += m.faces_checked();
       refused += m.faces_refused();

@@ -116,11 +116,13 @@ std::optional<Feedback> Link::take(std::span<const std::uint8_t> packet, Time no
   if (!information) return std::nullopt;
   reported_ = now;
   Feedback feedback = tracker_.take(*information, now);
-  if (emergency_) feedback.mode = Mode::kEmergency;
+  if (information->stop_button)
+    stopped_by_ = "its stop button was pressed";
+  else if (information->stall_stop && !stopped())
+    stopped_by_ = "stopped after a stall";
+  if (stopped()) feedback.mode = Mode::kEmergency;
   reported_mode_ = feedback.mode;
-  reason_ = emergency_                                            ? "emergency stop"
-            : information->stop_button                            ? "the stop button is pressed"
-            : information->stall_stop                             ? "stopped after a stall"
+  reason_ = stopped()                                             ? stopped_by_
             : information->left_stall || information->right_stall ? "a wheel is stalled"
             : information->motors_on                              ? ""
                                                                   : "motors off";
@@ -167,13 +169,13 @@ void Link::send_setup() {
 Mode Link::mode(Time now) const {
   if (state_ != State::kRunning || !reported_ || now - *reported_ >= parameters_.lost)
     return Mode::kDisconnected;
-  return emergency_ ? Mode::kEmergency : reported_mode_;
+  return stopped() ? Mode::kEmergency : reported_mode_;
 }
 
 void Link::send_velocity(const geometry::Twist2& wanted, Time now) {
   if (now - told_ < parameters_.repeat) return;
   told_ = now;
-  if (emergency_) {
+  if (stopped()) {
     send(encode(Command::kEmergencyStop));
     return;
   }

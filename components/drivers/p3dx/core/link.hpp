@@ -71,9 +71,10 @@ class Link {
   /// before the motors are switched on: the controller would resume what it was told last.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
 
-  /// Stops at once and stays stopped until reset().
-  void emergency_stop() { emergency_ = true; }
-  void reset() { emergency_ = false; }
+  /// Stops at once and stays stopped until reset(); so do its stop button and a stall that took the
+  /// motors off.
+  void emergency_stop() { stopped_by_ = "emergency stop"; }
+  void reset() { stopped_by_ = ""; }
 
   /// The next cycle says nothing that a later one would not say again: only the newest counts.
   bool velocity_only() const { return state_ == State::kRunning && output_.empty(); }
@@ -84,6 +85,8 @@ class Link {
   const Decoder& decoder() const { return decoder_; }
 
  private:
+  bool stopped() const { return *stopped_by_ != '\0'; }
+
   enum class State : std::uint8_t { kClosed, kSync0, kSync1, kSync2, kRunning };
 
   std::optional<Feedback> take(std::span<const std::uint8_t> packet, Time now);
@@ -102,7 +105,7 @@ class Link {
   Time enabled_{};  ///< when the motors were last asked on
   std::optional<Time> reported_;
   Mode reported_mode_ = Mode::kStandby;
-  bool emergency_ = false;
+  const char* stopped_by_ = "";  ///< what stopped it until reset(); empty: nothing
   std::string reason_ = "not connected";
   std::vector<std::uint8_t> output_, sent_;
 };

@@ -256,6 +256,41 @@ TEST(Link, AnEmergencyStopHoldsUntilReset) {
   EXPECT_TRUE(contains(base.cycle(link, {0.4, 0}), encode(Command::kVelocity, 400)));
 }
 
+/// A report whose flags say what stopped the motors.
+Bytes stopped_by(std::uint8_t flags) {
+  Bytes packet = report(0, 0, 0, 0, 0, false);
+  constexpr std::size_t kFlags =
+      3 + 1 + 10 + 1 + 4;  // header, type, odometry, battery, stall, bumpers
+  packet[kFlags] = flags;
+  const Bytes body(packet.begin() + 3, packet.end() - 2);
+  const std::uint16_t sum = checksum(body);
+  packet[packet.size() - 2] = static_cast<std::uint8_t>(sum >> 8);
+  packet[packet.size() - 1] = static_cast<std::uint8_t>(sum & 0xFF);
+  return packet;
+}
+
+TEST(Link, ItsStopButtonAndAStallHoldUntilReset) {
+  constexpr std::uint8_t kStopButton = 0x20, kStallStop = 0x40;
+  for (const std::uint8_t flags : {kStopButton, kStallStop}) {
+    Link link({});
+    Base base;
+    base.connect(link);
+    base.hear(link, report(0, 0, 0, 0, 0, true));
+    base.hear(link, stopped_by(flags));
+    EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
+    base.hear(link, report(0, 0, 0, 0, 0, false));  // released
+    base.now += milliseconds(600);
+    EXPECT_FALSE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
+    EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
+    EXPECT_EQ(link.reason(),
+              flags == kStopButton ? "its stop button was pressed" : "stopped after a stall");
+    link.reset();
+    base.hear(link, report(0, 0, 0, 0, 0, false));
+    base.now += milliseconds(600);
+    EXPECT_TRUE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
+  }
+}
+
 TEST(Link, NoticesASilentBase) {
   Link link({});
   Base base;

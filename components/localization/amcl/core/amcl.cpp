@@ -24,7 +24,7 @@ constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
 
 // Beams that end this much [m] before the map's wall, seen from where the robot must be, met
 // something unmapped and tell nothing about the place. When most beams do and the others do not fit
-// either, or for several metres, the place is wrong, not the map.
+// either, or for long, the place is wrong, not the map.
 constexpr double kUnmappedMargin = 0.5;
 constexpr double kMostUnmapped = 0.6;
 constexpr double kUnmappedGain = 0.05;  // of the share lately, in an update
@@ -186,7 +186,6 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   const double unmapped = estimate_ && search_updates_ == 0 && !result.odometry_restarted
                               ? drop_unmapped(scan, odom_T_base)
                               : 0.0;
-  if (beams_.size() < kLeastBeams) return result;
   if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
   const double log_likelihood =
@@ -228,12 +227,13 @@ double Amcl::drop_unmapped(const LaserBeams& scan, const geometry::Pose2& odom_T
   if (share > kMostUnmapped && (unmapped_lately_ > kMostUnmapped || !fits(map_T_base))) return 0.0;
   kept_beams_.clear();
   std::copy_if(beams_.begin(), beams_.end(), std::back_inserter(kept_beams_), mapped);
+  if (kept_beams_.size() < kLeastBeams) return 0.0;
   std::swap(dense_beams_, kept_dense_beams_);
   std::swap(beams_, kept_beams_);
   return share;
 }
 
-/// Whether the beams that are kept end at the map's walls.
+/// Whether the beams that are kept end at the map's walls; few of them tell nothing.
 bool Amcl::fits(const geometry::Pose2& map_T_base) const {
   const auto explained =
       std::count_if(kept_dense_beams_.begin(), kept_dense_beams_.end(), [&](const Beam& beam) {
@@ -241,8 +241,9 @@ bool Amcl::fits(const geometry::Pose2& map_T_base) const {
         return field_.distances().interpolated(end).distance <
                config_.confidence.explained_distance;
       });
-  return static_cast<double>(explained) >=
-         config_.confidence.good_explained * static_cast<double>(kept_dense_beams_.size());
+  return kept_dense_beams_.size() >= kLeastBeams &&
+         static_cast<double>(explained) >=
+             config_.confidence.good_explained * static_cast<double>(kept_dense_beams_.size());
 }
 
 void Amcl::scan_likelihood(const LaserBeams& scan, const Particles& particles) {

@@ -152,10 +152,10 @@ TEST_F(Component, WaitsForAMapAndKeepsTheOneItHas) {
   run(500);
   explore();
   expect_waiting("no map");
-  give_map(grid::OccupancyGrid({.width = 2500, .height = 2, .resolution = 0.05}, grid::kFree));
+  give_map(grid::OccupancyGrid({.width = 4500, .height = 2, .resolution = 0.05}, grid::kFree));
   run(200);
   EXPECT_EQ(host.heartbeat().reason(),
-            "map refused: the map may have 2000 cells a side, it has 2500");
+            "map refused: the map may have 4000 cells a side, it has 4500");
   EXPECT_EQ(host.counter("inputs: rejected"), 1U);
   give_map();
   run(200);

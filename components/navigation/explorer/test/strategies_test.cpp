@@ -198,10 +198,10 @@ TEST(Ground, MeasuresWaysAroundWalls) {
 TEST(Ground, RefusesMapsThatAreNoneOrTooLarge) {
   Ground ground;
   EXPECT_FALSE(ground.set_map({}, {}, 0.24, 0.35));
-  const grid::OccupancyGrid large({.width = 2001, .height = 3, .resolution = 0.05}, grid::kFree);
+  const grid::OccupancyGrid large({.width = 4001, .height = 3, .resolution = 0.05}, grid::kFree);
   const auto status = ground.set_map(large, {}, 0.24, 0.35);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error(), "the map may have 2000 cells a side, it has 2001");
+  EXPECT_EQ(status.error(), "the map may have 4000 cells a side, it has 4001");
 }
 
 }  // namespace

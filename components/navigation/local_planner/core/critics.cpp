@@ -78,8 +78,9 @@ double DynamicWindow::obstacle_on_path(const Input& input) const {
   TurnedFootprint turned;
   const double end = std::min(
       path_.length(), path_.progress() + geometry.resolution * (geometry.width + geometry.height));
-  for (double arc = path_.progress() + geometry.resolution; arc < end + geometry.resolution;
-       arc += geometry.resolution) {
+  double arc = path_.progress();
+  while (arc < end) {
+    arc += geometry.resolution;
     const geometry::Point2 point = path_.point(std::min(arc, end));
     const double x = (point.x() - geometry.origin_x) / geometry.resolution;
     const double y = (point.y() - geometry.origin_y) / geometry.resolution;
@@ -107,7 +108,8 @@ void DynamicWindow::sample(const Input& input, double fastest) {
       std::clamp(std::max(last.v, 0.0) + limits.acceleration * reach, slowest, fastest);
   const double low = std::clamp(last.v - limits.deceleration * reach, slowest, high);
   const int reverse = config_.reverse_speed > 0.0 ? 1 : 0;
-  speeds_.resize(static_cast<std::size_t>(config_.speed_samples + reverse));
+  const int speeds = config_.speed_samples + reverse;
+  speeds_.resize(static_cast<std::size_t>(speeds));
   const Ramp speed_ramp{limits.acceleration, limits.deceleration, config_.response.latency,
                         config_.response.time_constant, config_.response.acceleration};
   // Who walks is looked at for longer: there is time to let them pass.
@@ -117,7 +119,7 @@ void DynamicWindow::sample(const Input& input, double fastest) {
                                                              config_.steps, Rollout::kMostSteps);
   int most_steps = least_steps;
   const double anticipated = config_.response.time_constant + config_.response.latency;
-  for (int i = 0; i < config_.speed_samples + reverse; ++i) {
+  for (int i = 0; i < speeds; ++i) {
     SpeedProfile& profile = speeds_[static_cast<std::size_t>(i)];
     // The slowest is always among them: slowing down is always allowed.
     double v = i == 0 ? slowest : high;
@@ -158,12 +160,14 @@ void DynamicWindow::measure_path(const Input& input) {
   const double end = local_goal_arc_ + config_.forward_point;
   const double step = std::max(kPolylineStep, (end - begin) / 128.0);
   geometry::Point2 a = lane_.point(path_, begin);
-  for (double arc = begin; arc < end; arc += step) {
+  double arc = begin;
+  while (arc < end) {
     const geometry::Point2 b = lane_.point(path_, std::min(arc + step, end));
     path_distance_.add(
         static_cast<float>(a.x() - input.pose.x), static_cast<float>(a.y() - input.pose.y),
         static_cast<float>(b.x() - input.pose.x), static_cast<float>(b.y() - input.pose.y));
     a = b;
+    arc += step;
   }
   const std::size_t count = rollout_.trajectories().size();
   const std::size_t padded = (4 * count + 7) / 8 * 8;

@@ -156,7 +156,10 @@ Status DynamicWindow::set_path(std::span<const Pose2> path) {
   const bool same_goal =
       had_goal && distance(old, path_.goal()) <= config_.position_tolerance &&
       std::abs(geometry::shortest_turn(old.yaw, path_.goal().yaw)) <= config_.yaw_tolerance;
-  if (!same_goal) position_reached_ = false;
+  if (!same_goal) {
+    position_reached_ = false;
+    way_out_.reset();
+  }
   return {};
 }
 
@@ -165,6 +168,7 @@ void DynamicWindow::clear_path() {
   lane_.clear();
   position_reached_ = false;
   turning_ = 0;
+  way_out_.reset();
 }
 
 Status DynamicWindow::set_pace(double pace) {
@@ -355,10 +359,10 @@ bool DynamicWindow::is_given_up(const geometry::Point2& position, int sense) {
 /// Whether arcs still may lead out of where there is no room to turn: along a wall, away from a
 /// path that lies behind, they lead ever farther from it.
 bool DynamicWindow::leads_out(const Input& input, double error) {
-  const double gone = (input.pose.position() - way_out_.at).norm();
-  if (gone > 2.0 * kWayOut || error < way_out_.error - kGain)
-    way_out_ = {input.pose.position(), error};
-  return (input.pose.position() - way_out_.at).norm() <= kWayOut;
+  const geometry::Point2 here = input.pose.position();
+  if (!way_out_ || (here - way_out_->at).norm() > 2.0 * kWayOut || error < way_out_->error - kGain)
+    way_out_ = WayOut{here, error};
+  return (here - way_out_->at).norm() <= kWayOut;
 }
 
 Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
@@ -406,6 +410,7 @@ bool DynamicWindow::must_turn_first(const Input& input, double& heading) {
   if (turning_ != 0 && error < kAligned) {
     turning_ = 0;
     barred_ = {};
+    way_out_.reset();
   }
   if (turning_ != 0) return true;
   return error > (standing ? 0.7 : 1.0) * config_.turn_first_angle;

@@ -207,10 +207,11 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
     int freeing = 0;  // +1, -1: the last corner was freed forward, back
     int to_and_fro = 0;
   } barred_;  // how often a turn at a place could not go on in a sense
-  struct {
-    geometry::Point2 at = geometry::Point2::Constant(1e9);
-    double error = 0.0;  // [rad]
-  } way_out_;  // where it began to look for room to turn, and how far from its path's direction
+  struct WayOut {
+    geometry::Point2 at;
+    double error;  // [rad]
+  };
+  std::optional<WayOut> way_out_;   // where it began to look for room to turn towards its path
   std::optional<double> turns_to_;  // [rad] on an arc, since there is no room to turn in place
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;

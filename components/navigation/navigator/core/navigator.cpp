@@ -537,9 +537,8 @@ void Navigator::recover(const Situation& s, Failure failure, const std::string& 
   }
   if (recoveries_in_a_row_ >= config_.most_recoveries)
     return finish(GoalState::kFailed, failure, reason);
-  ++recoveries_in_a_row_;
-  const int kind = tried_here_++ % kRecoveryKinds;
-  const int round = tried_here_ / kRecoveryKinds;
+  const int kind = recoveries_in_a_row_++ % kRecoveryKinds;
+  const int round = ++tried_here_ / kRecoveryKinds;
   if (s.pose) stuck_at_ = *s.pose;
   const bool left = round % 2 == 1;
   ++status_.recoveries;

@@ -291,7 +291,7 @@ class Navigator {
   double blocked_since_ = 0.0;
   std::optional<double> replanned_at_;
   int recoveries_in_a_row_ = 0;  // of this goal
-  int tried_here_ = 0;           // whatever the goal: what did not help is not tried first again
+  int tried_here_ = 0;           // whatever the goal: what did not help is done over a longer way
   geometry::Pose2 stuck_at_;     // when it last recovered
   bool blocked_by_person_ = false;
   double recovered_at_ = 0.0;  // [m] of advanced_

@@ -37,7 +37,12 @@ void Meeting::divide_work() {
 void Meeting::join(Time now) {
   const bool left = report_.outcome != Outcome::kOpen && report_.outcome != Outcome::kFailed;
   const TeamReport* call = team_.call(left ? report_.id : 0, left ? report_.client : "");
-  if (call == nullptr || call->limit <= now || call->wanted == 0) return;
+  if (call == nullptr || call->limit <= now) return;
+  // What the others say is judged as what an operator asks for.
+  const bool sound = call->wanted >= 1 && call->wanted <= kMostPersons &&
+                     std::chrono::duration<double>(call->limit - now).count() <= kLongestMission &&
+                     !call->client.empty() && call->client.find('\n') == std::string::npos;
+  if (!sound) return;
   begin({call->id, call->client, call->wanted, 0.0}, call->limit, now);
 }
 

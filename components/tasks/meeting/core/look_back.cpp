@@ -14,9 +14,9 @@ constexpr double kNearest = 0.4;           // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;  // points of the laser
 constexpr double kInside = 0.5;            // [m] from its walls the robot is in a room
 constexpr double kThrough = 0.3;           // [m] and somebody has come through its door
-constexpr Time kStuck = std::chrono::seconds(4);  // that it is told to turn and does not
-constexpr double kToTurn = 0.5;                   // [rad] what is left then,
-constexpr double kTurned = 0.1;                   // [rad] and what it has turned
+constexpr Time kStuck = std::chrono::seconds(4);  // it does not turn though it is told to
+constexpr double kToTurn = 0.5;  // [rad] less to the follower is no turn that could be barred
+constexpr double kTurned = 0.1;  // [rad]
 }  // namespace
 
 /// Nobody sees behind this robot: who follows is taken to walk where it drove.
@@ -63,6 +63,7 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
 }
 
 void Meeting::has_followed(Time now) {
+  tries_ = 0;
   enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
 }
 
@@ -78,12 +79,17 @@ bool Meeting::is_there() const {
 
 /// Something that the map does not have, or has a little farther off, bars its turn on the way: it
 /// looks later.
-bool Meeting::cannot_turn(Time now) const {
-  if (in_the_room_ || !robot_.pose || now - since_ < kStuck) return false;
+bool Meeting::cannot_turn(Time now) {
+  if (!robot_.pose) return false;
   const Point2 to = face_to_ - robot_.pose->position();
   const double off = geometry::shortest_turn(robot_.pose->yaw, std::atan2(to.y(), to.x()));
-  const double turned = geometry::shortest_turn(looked_from_, robot_.pose->yaw);
-  return std::abs(off) > kToTurn && std::abs(turned) < kTurned;
+  const bool wants = turn_ == Turn::kSearch || std::abs(off) > kToTurn;
+  const bool turns = std::abs(geometry::shortest_turn(turned_to_, robot_.pose->yaw)) > kTurned;
+  if (turns || !wants || !motion_.may_turn(robot_)) {
+    turned_to_ = robot_.pose->yaw;
+    turned_at_ = now;
+  }
+  return !in_the_room_ && now - turned_at_ >= kStuck;
 }
 
 bool Meeting::calls(Time now) const { return now - since_ >= parameters_.call; }

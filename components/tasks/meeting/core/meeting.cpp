@@ -12,11 +12,9 @@ using service::Supervisor;
 
 namespace {
 
-constexpr std::uint32_t kMostPersons = 100;
-constexpr double kLongestMission = 3600.0;  // [s]
-constexpr double kRefusedRadius = 0.5;      // [m] around a face that was none
-constexpr double kRollsOut = 0.35;          // [m] until it stands
-constexpr double kDeparted = 2.0;  // [m] whom the robot sees then is not the person it guides
+constexpr double kRefusedRadius = 0.5;  // [m] around a face that was none
+constexpr double kRollsOut = 0.35;      // [m] until it stands
+constexpr double kDeparted = 2.0;       // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
 constexpr double kFarthestRoom = 1e4;  // [m] a room without a way counts as so far
 constexpr Time kForever = Time::max();
@@ -129,6 +127,7 @@ void Meeting::begin(const MissionRequest& request, Time limit, Time now) {
   failures_ = 0;
   held_since_.reset();
   lost_since_.reset();
+  blind_since_.reset();
   choose_room();
   enter(State::kToRoom, Cause::kRequest, now);
 }
@@ -268,7 +267,8 @@ void Meeting::arrive_in(State state, Time now) {
       break;
     case State::kLookBack:
       stands_there_ = 0;
-      looked_from_ = robot_.pose ? robot_.pose->yaw : 0.0;
+      turned_to_ = robot_.pose ? robot_.pose->yaw : 0.0;
+      turned_at_ = now;
       turn_ = Turn::kFace;
       face_to_ = follower_;
       break;
@@ -328,7 +328,11 @@ void Meeting::watch_robot(Time now) {
   if (robot_.pose) lost_since_.reset();
   if (!robot_.pose && !lost_since_) lost_since_ = now;
   if (lost_since_ && now - *lost_since_ >= parameters_.recovery)
-    end(Outcome::kFailed, Cause::kFailure, "the robot is not localized", now);
+    return end(Outcome::kFailed, Cause::kFailure, "the robot is not localized", now);
+  if (robot_.sees) blind_since_.reset();
+  if (!robot_.sees && !blind_since_) blind_since_ = now;
+  if (blind_since_ && now - *blind_since_ >= parameters_.recovery)
+    end(Outcome::kFailed, Cause::kFailure, "no face detector", now);
 }
 
 /// Journeys that came to their end.
@@ -383,10 +387,12 @@ void Meeting::drive_failed(Time now) {
       look_for_people(Cause::kNoWay, now);
       break;
     case State::kGuide:
-      if (tries_++ == 0)
+      if (tries_++ == 0) {
         enter(State::kGuide, Cause::kNoWay, now);
-      else
+      } else {
+        ++report_.lost;
         look_for_people(Cause::kNoWay, now);
+      }
       break;
     default:
       break;
@@ -411,6 +417,7 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kRevisit:
+      if (arrived_at_ && !robot_.sees) arrived_at_ = now;
       if (arrived_at_ && now - *arrived_at_ >= parameters_.nobody) {
         met(Met::kGone, person_, now + parameters_.refused);
         look_for_people(Cause::kLost, now);
@@ -436,7 +443,7 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kLookBack:
-      if (!motion_.may_turn(robot_)) since_ = now;  // held meanwhile: it cannot look
+      if (!motion_.may_turn(robot_) || !robot_.sees) since_ = now;  // it cannot look meanwhile
       if (cannot_turn(now)) {
         enter(State::kGuide, Cause::kNoWay, now);
         break;
@@ -503,7 +510,7 @@ void Meeting::leave_room(Cause cause, bool occupied, Time now) {
 }
 
 void Meeting::scan(Time now) {
-  if (!robot_.pose || !motion_.may_turn(robot_)) {
+  if (!robot_.pose || !robot_.sees || !motion_.may_turn(robot_)) {
     yaw_.reset();
     return;
   }

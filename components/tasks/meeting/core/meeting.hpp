@@ -225,7 +225,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void look_for_follower(const Faces& all, Time now);
   void has_followed(Time now);
   bool calls(Time now) const;
-  bool cannot_turn(Time now) const;
+  bool cannot_turn(Time now);
   bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
   bool is_inside(const Point2& point, double by) const;
   bool is_there() const;
@@ -246,7 +246,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   Team team_;
   Surroundings robot_;
   State state_ = State::kInitialise;
-  double looked_from_ = 0.0;  ///< [rad] in map: where it looked when it began to look back
+  double turned_to_ = 0.0;  ///< [rad] in map: of its turns when it looks back, the last
+  Time turned_at_{};
   Time since_{};
   Actions actions_;
   Turn turn_ = Turn::kStand;
@@ -281,7 +282,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   bool in_the_room_ = false;        ///< the guidance is at its end
   std::optional<Time> arrived_at_;  ///< where somebody was seen
 
-  std::optional<Time> held_since_, lost_since_;
+  std::optional<Time> held_since_, lost_since_, blind_since_;
 
   std::uint64_t last_request_ = 0;
   std::string last_client_;

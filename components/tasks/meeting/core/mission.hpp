@@ -54,6 +54,9 @@ enum class Cause : std::uint8_t {
 };
 inline constexpr std::size_t kCauses = 22;
 
+inline constexpr std::uint32_t kMostPersons = 100;  ///< that one mission brings
+inline constexpr double kLongestMission = 3600.0;   ///< [s]
+
 /// The numbers are those on the wire.
 enum class Outcome : std::uint8_t { kOpen = 0, kComplete, kTimeOver, kFailed, kCancelled };
 

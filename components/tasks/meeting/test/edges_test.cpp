@@ -72,7 +72,14 @@ const std::vector<Case>& cases() {
       {"is looked for on the way where there is no room to turn",
        {{[](Rig& r) { r.to_guide(); }, State::kGuide},
         {[](Rig& r) { r.wait(1500), r.robot.pose->y += 2.5, r.wait(20000); }, State::kLookBack},
-        {[](Rig& r) { r.wait(5000); }, State::kGuide}}},
+        {[](Rig& r) { r.robot.pose->yaw += 0.3, r.wait(5000); }, State::kGuide}}},
+      {"does not follow on the way",
+       {{[](Rig& r) { r.to_guide(); }, State::kGuide},
+        {[](Rig& r) { r.wait(1500), r.robot.pose->y += 2.5, r.wait(18500); }, State::kLookBack},
+        {[](Rig& r) {  // all round, past where it looked at first
+           for (int i = 0; i < 280; ++i) r.robot.pose->yaw += 0.04, r.wait(100);
+         },
+         State::kExplore}}},
       {"does not follow",
        {{[](Rig& r) { r.to_look_back(); }, State::kLookBack},
         {[](Rig& r) { r.wait(26900); }, State::kLookBack},

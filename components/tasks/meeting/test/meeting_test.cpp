@@ -337,6 +337,25 @@ TEST(Meeting, CountsNobodyWhoWasInTheRoomBefore) {
   EXPECT_EQ(rig.state(), State::kArrived);
 }
 
+TEST(Meeting, JudgesNothingWhileItIsBlind) {
+  Rig rig;
+  rig.to_scan();
+  rig.robot.sees = false;
+  rig.turn_round();
+  EXPECT_EQ(rig.state(), State::kScanRoom) << "nobody was seen since nothing was";
+  rig.robot.sees = true;
+  rig.turn_round();
+  EXPECT_EQ(rig.state(), State::kExplore);
+  Rig follows;
+  follows.to_look_back();
+  follows.robot.sees = false;
+  follows.wait(40000);
+  EXPECT_EQ(follows.state(), State::kLookBack);
+  follows.wait(21000);
+  EXPECT_EQ(follows.state(), State::kEnded);
+  EXPECT_EQ(follows.meeting.report().reason, "no face detector");
+}
+
 TEST(Meeting, CountsWhomItSawComeInBehindIt) {
   Rig rig;
   rig.to_guide();
