@@ -660,7 +660,9 @@ Point2 Meeting::place_to_talk() {
   from = from.norm() > 0.01 ? Point2(from.normalized()) : Point2(1.0, 0.0);
   const auto straight = [&](double off) { return Point2(person_ + off * from); };
   if (ways_.passing().line_free(robot, straight(parameters_.stand_off))) {
-    for (double off = parameters_.stand_off; off < parameters_.near + 0.5 * kStep; off += kStep) {
+    const auto steps = std::lround((parameters_.near - parameters_.stand_off) / kStep);
+    for (long i = 0; i <= steps; ++i) {
+      const double off = parameters_.stand_off + kStep * static_cast<double>(i);
       if (turning_.free(straight(off))) return straight(off);
     }
     return straight(parameters_.stand_off);
