@@ -214,7 +214,7 @@ TEST(FittedFloor, ShowsABarOf10MillimetresInTheModelAsFarAsInThePixels) {
     EXPECT_GT(pixels, 0.9) << ahead;
     EXPECT_GT(model, 0.9) << ahead;
   }
-  const auto [pixels, model] = bar_found(2.6);
+  const auto [pixels, model] = bar_found(2.8);
   EXPECT_LT(pixels, 0.1);
   EXPECT_LT(model, 0.1);
 }
