@@ -94,6 +94,7 @@ Result<Sums> drive(const ExperimentOptions& options, const Series& series, int s
              format("%.2f", sums.speed / sums.runs), format("%.0f", sums.panes),
              format("%.0f", sums.known), format("%.2f", sums.seen_from / sums.seen)});
   std::vector<const CourseRun*> drawn;
+  drawn.reserve(kDrawn);
   for (const CourseRun& run : runs) {
     if (drawn.size() < kDrawn) drawn.push_back(&run);
   }

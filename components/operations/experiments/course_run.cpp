@@ -172,6 +172,7 @@ Status draw_course(const Deployment& deployment, const std::vector<const CourseR
   const auto building = world::load_building(runs.front()->world_file);
   if (!building) return Error{building.error()};
   std::vector<DrawnWay> ways;
+  ways.reserve(building->obstacles.size() + runs.size());
   for (const world::Thing& thing : building->obstacles)
     ways.push_back({ways.empty() ? "not on the map" : "", 230, 120, 30, 2, outline_of(thing)});
   for (const CourseRun* run : runs) {

@@ -109,10 +109,13 @@ Status draw(const Deployment& deployment, const std::string& out, const std::str
             const std::vector<CourseRun>& runs) {
   std::vector<const CourseRun*> drawn;
   std::vector<Curve> curves;
+  drawn.reserve(kTrials);
+  curves.reserve(kTrials);
   for (const CourseRun& run : runs) {
     if (drawn.size() == kTrials) break;
     const int shade = 40 * static_cast<int>(drawn.size());
     Curve curve{series + " " + std::to_string(drawn.size() + 1), 220 - shade, 40 + shade, 60, {}};
+    curve.points.reserve(run.record.samples().size());
     for (const auto& sample : run.record.samples()) {
       curve.points.emplace_back(runtime::seconds(sample.stamp - run.record.samples().front().stamp),
                                 sample.v);
