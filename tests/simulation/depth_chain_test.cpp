@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "sensing/depth_pipeline/core/calibration.hpp"
 #include "sensing/depth_pipeline/core/depth_pipeline.hpp"
@@ -135,14 +137,19 @@ furniture:
   EXPECT_NEAR(at(result.low, 2.35, -0.9), std::hypot(2.15, 0.9), 0.06);
 }
 
-TEST(DepthPipelineInTheWorld, FindsNoFloorWhileItDrivesAndLeans) {
-  const auto building = parse_building(R"(name: hall
+constexpr const char* kEmptyHall = R"(name: hall
 walls:
   - {name: outer, thickness: 0.2, points: [[-20, -20], [40, -20], [40, 20], [-20, 20], [-20, -20]]}
-)",
-                                       "hall.yaml");
+)";
+
+class DepthPipelineInTheWorld : public testing::TestWithParam<bool> {};
+
+TEST_P(DepthPipelineInTheWorld, FindsNoFloorWhileItDrivesAndLeans) {
+  const auto building = parse_building(kEmptyHall, "hall.yaml");
   World world({}, *building, {}, {0, 0, 0}, 4);
-  Chain chain(world, 9, {});
+  depth_pipeline::PipelineConfig config;
+  config.refit = GetParam();
+  Chain chain(world, 9, config);
   int frames = 0, false_bearings = 0, calm = 0, false_while_calm = 0;
   double steepest = 0.0;
   for (int step = 0; step < 700; ++step) {
@@ -152,6 +159,7 @@ walls:
     const double pitch = world.base().readings().pitch;
     steepest = std::max(steepest, std::abs(pitch));
     const auto view = chain.see(pitch);
+    EXPECT_EQ(view.refitted, GetParam());
     ++frames;
     calm = chain.camera().burst() > 0.0 ? 0 : calm + 1;
     for (const float range : view.scan->ranges) {
@@ -161,8 +169,54 @@ walls:
   }
   EXPECT_GT(steepest, radians(9.0));
   EXPECT_EQ(frames, 70);
-  EXPECT_EQ(false_while_calm, 0);
+  EXPECT_LE(false_while_calm, GetParam() ? 4 : 0);
   EXPECT_LE(false_bearings, 120);  // of 38 000, while bursts of noise spoil the images
+}
+
+INSTANTIATE_TEST_SUITE_P(PredictedAndFittedFloor, DepthPipelineInTheWorld, testing::Bool());
+
+/// Shares of the bearings ahead at which a bar of 10 mm is found in the pixels and by the model.
+std::pair<double, double> bar_found(double ahead) {
+  const auto building =
+      parse_building(std::string(kEmptyHall) + "furniture:\n  - {name: bar, box: [" +
+                         std::to_string(ahead) + ", 0, 1.5708, 2.5, 0.06], height: [0, 0.01]}\n",
+                     "hall.yaml");
+  World world({}, *building, {}, {0, 0, 0}, 4);
+  depth_pipeline::PipelineConfig config;
+  config.refit = true;
+  config.confidence_frames = 1;
+  Chain chain(world, 9, config);
+  DepthScanModel model(with_fitted_floor({}), 5);
+  DepthScanResult modelled;
+  int rendered_hits = 0, modelled_hits = 0, bearings = 0;
+  for (int frame = 0; frame < 6; ++frame) {
+    for (int i = 0; i < 3; ++i) chain.step();
+    const auto view = chain.see(world.base().readings().pitch);
+    model.scan(world, chain.camera(), modelled);
+    for (std::size_t i = 0; i < modelled.ranges.size(); ++i) {
+      const double bearing = modelled.angle_min + modelled.increment * static_cast<double>(i);
+      if (std::abs(bearing) > 0.4) continue;
+      const auto hits = [&](float range) {
+        return std::abs(0.2 + static_cast<double>(range) * std::cos(bearing) - ahead) < 0.1;
+      };
+      rendered_hits += hits(view.scan->ranges[i]);
+      modelled_hits += hits(modelled.ranges[i]);
+      ++bearings;
+    }
+  }
+  return {static_cast<double>(rendered_hits) / bearings,
+          static_cast<double>(modelled_hits) / bearings};
+}
+
+TEST(FittedFloor, ShowsABarOf10MillimetresInTheModelAsFarAsInThePixels) {
+  for (const double ahead : {1.75, 2.0}) {
+    const auto [pixels, model] = bar_found(ahead);
+    EXPECT_GT(pixels, 0.9) << ahead;
+    EXPECT_GT(model, 0.9) << ahead;
+  }
+  const auto [pixels, model] = bar_found(2.8);
+  EXPECT_LT(pixels, 0.1);
+  EXPECT_LT(model, 0.1);
 }
 
 struct MountErrors {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -33,9 +34,13 @@ class CommandedRobot {
   virtual double processor_time() const { return 0.0; }
 };
 
-/// In this thread, on a virtual clock.
-Result<std::unique_ptr<CommandedRobot>> lockstep_robot(const Deployment& deployment,
-                                                       std::uint64_t seed);
+class LockstepRun;
+
+/// In this thread, on a virtual clock. `watch` is shown the run before anything has happened; it
+/// lives as long as the robot.
+Result<std::unique_ptr<CommandedRobot>> lockstep_robot(
+    const Deployment& deployment, std::uint64_t seed,
+    const std::function<void(LockstepRun&)>& watch = {});
 /// As real DDS processes, on the wall clock.
 Result<std::unique_ptr<CommandedRobot>> process_robot(Deployment deployment, std::uint64_t seed,
                                                       const Installation& installation);

@@ -18,6 +18,7 @@ struct ExperimentOptions {
   std::string data;           ///< folder with real data, empty = none
   std::string only;           ///< one of the experiment's inputs; empty = all
   int robots = 1;             ///< that work together, for those that know fleets
+  bool glass = false;         ///< of the corridor
   double minutes = 0.0;       ///< how long, for those that run for a time; 0 = their own
   std::uint32_t domain = 44;  ///< of those with real processes
   Installation installation;
@@ -51,6 +52,8 @@ Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_pixels_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_corridor_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);
 
 /// One line that is rewritten: "17 of 100  ...".

@@ -67,11 +67,13 @@ class LockstepRobot final : public CommandedRobot {
 
 }  // namespace
 
-Result<std::unique_ptr<CommandedRobot>> lockstep_robot(const Deployment& deployment,
-                                                       std::uint64_t seed) {
+Result<std::unique_ptr<CommandedRobot>> lockstep_robot(
+    const Deployment& deployment, std::uint64_t seed,
+    const std::function<void(LockstepRun&)>& watch) {
   const double started = thread_time();
   auto run = LockstepRun::create(deployment, seed);
   if (!run) return Error{run.error()};
+  if (watch) watch(**run);
   return std::unique_ptr<CommandedRobot>(
       std::make_unique<LockstepRobot>(std::move(run).value(), started));
 }

@@ -63,6 +63,14 @@ const std::vector<Experiment>& experiments() {
        "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
        "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",
        run_human_detection_experiment},
+      {"obstacle-course",
+       "Thesis 8.2.3: MARVIN drives round the objects of table 8.2, lock-step: five trials with "
+       "rendered images, --seeds N with the depth model; --only SERIES",
+       run_obstacle_course_experiment},
+      {"corridor",
+       "MARVIN drives along a corridor, lock-step; --glass: with panes in it that the map does not "
+       "have, with and without its ultrasonic sensors",
+       run_corridor_experiment},
       {"haar",
        "OpenCV's cascades on annotated photographs: sensitivity, false positives, time; ROC beside "
        "the meeting report's figure 9",
@@ -140,6 +148,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
   app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")
       ->check(CLI::NonNegativeNumber);
+  app.add_flag("--glass", options.glass, "corridor: with glass panes in it");
   app.add_option("--robots", options.robots,
                  "gather: also with so many robots that call the meeting together")
       ->check(CLI::Range(1, 2))

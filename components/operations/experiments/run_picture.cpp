@@ -218,7 +218,7 @@ Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& m
   for (const auto& way : ways) {
     const cv::Scalar color(way.blue, way.green, way.red);
     picture.way(way.points, color, way.thickness);
-    entries.emplace_back(way.label, color);
+    if (!way.label.empty()) entries.emplace_back(way.label, color);
   }
   picture.legend(entries);
   return picture.save(path);

@@ -103,7 +103,7 @@ Status draw_run(const RunRecord& record, const grid::OccupancyGrid& map, const s
 Status draw_runs(const std::vector<RunRecord>& runs, const grid::OccupancyGrid& map,
                  const std::string& title, const std::string& path);
 
-/// Ways over a map, the later ones on top; labels for the legend.
+/// Ways over a map, the later ones on top; labels for the legend, those without are not in it.
 struct DrawnWay {
   std::string label;
   int red = 0, green = 0, blue = 0;

@@ -61,6 +61,23 @@ Result<std::vector<SiteRoom>> site_meeting_rooms(const Deployment& deployment) {
   return rooms;
 }
 
+Result<std::vector<geometry::Point2>> robot_footprint(const Deployment& deployment) {
+  const auto footprint = fact(deployment, "robot.footprint");
+  if (!footprint) return Error{footprint.error()};
+  const auto numbers = YAML::Load(footprint->yaml).as<std::vector<double>>();
+  std::vector<geometry::Point2> corners;
+  corners.reserve(numbers.size() / 2);
+  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+    corners.emplace_back(numbers[i], numbers[i + 1]);
+  return corners;
+}
+
+Result<std::string> site_world(const Deployment& deployment) {
+  const auto path = fact(deployment, "site.world");
+  if (!path) return Error{path.error()};
+  return YAML::Load(path->yaml).as<std::string>();
+}
+
 void set_site_value(Deployment& deployment, const std::string& name, const std::string& yaml) {
   for (auto& file : deployment.files) {
     for (auto& value : file.values) {

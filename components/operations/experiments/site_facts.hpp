@@ -29,6 +29,10 @@ Result<std::vector<SitePlace>> site_places(const Deployment& deployment);
 /// Names of the locations; the robot usually starts at the first one.
 Result<std::vector<std::string>> site_locations(const Deployment& deployment);
 Result<std::vector<SiteRoom>> site_meeting_rooms(const Deployment& deployment);
+/// The robot's outline on the floor, in base_footprint [m].
+Result<std::vector<geometry::Point2>> robot_footprint(const Deployment& deployment);
+/// The file of the building around the robot (world.yaml).
+Result<std::string> site_world(const Deployment& deployment);
 
 /// Another value of the site for all who were given it.
 void set_site_value(Deployment& deployment, const std::string& name, const std::string& yaml);

@@ -189,7 +189,9 @@ void Costmap::set_people(std::span<const geometry::Point2> people) {
 }
 
 void Costmap::forget() {
-  for (ObstacleLayer& layer : layers_) touch(layer.forget());
+  for (ObstacleLayer& layer : layers_) {
+    if (layer.config().min_raytrace_range <= 0.0) touch(layer.forget());
+  }
 }
 
 void Costmap::invalidate() {

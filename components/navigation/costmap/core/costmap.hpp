@@ -76,7 +76,8 @@ class Costmap {
   Status replace(LayerId layer, std::span<const geometry::Point2> points, double stamp);
   /// Who gets room, in the costmap's frame, in the place of those before.
   void set_people(std::span<const geometry::Point2> people);
-  /// Forgets all that the sensors saw (a recovery); people stay.
+  /// Forgets what the sensors saw and would see again (a recovery). People stay, and layers that
+  /// are not cleared nearby (min_raytrace_range): their sensor looks over what lies there.
   void forget();
 
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the

@@ -13,6 +13,7 @@ namespace {
 constexpr double kFarthestStamp = 1e12;          // [s]
 constexpr double kLongestPersistence = 86400.0;  // [s]
 constexpr int kLongestRay = 32767;               // [cells]
+constexpr double kThickest = 1.0;                // [m]
 
 std::uint32_t milliseconds(double seconds) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(seconds * 1000.0)));
@@ -49,6 +50,10 @@ Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution
   if (Status s = check_range("raytrace", config.min_raytrace_range, config.max_raytrace_range);
       !s.ok())
     return s;
+  if (!(config.thickness >= 0.0 && config.thickness <= kThickest)) {
+    return Error{"layer " + config.name + ": thickness must be in [0, 1] m, got " +
+                 meters(config.thickness)};
+  }
   if (!(config.persistence >= 0.0 && config.persistence <= kLongestPersistence)) {
     return Error{"layer " + config.name + ": persistence must be in [0, 86400] s, got " +
                  std::to_string(config.persistence) + " s"};
@@ -110,8 +115,9 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   const bool clears = states_.geometry().contains(origin);
   if (!clears) ++sensors_outside_;
 
+  const int behind = static_cast<int>(std::lround(config_.thickness / raster.resolution));
   marks_.clear();
-  marks_.reserve(observation.ranges.size());
+  marks_.reserve(observation.ranges.size() * static_cast<std::size_t>(1 + behind));
   CellBounds touched;
   grid::Cell previous{std::numeric_limits<int>::min(), 0};
   bool previous_through = false;
@@ -133,6 +139,10 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
       const grid::Cell hit = through ? cell_along(range) : end;
       if (collect(hit)) touched.include(hit);
+      for (int step = 1; step <= behind; ++step) {
+        const grid::Cell more = cell_along(range + step * raster.resolution);
+        if (collect(more)) touched.include(more);
+      }
     }
     if (!clears || (end == previous && through == previous_through)) continue;
     previous = end;

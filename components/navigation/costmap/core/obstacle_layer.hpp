@@ -35,6 +35,9 @@ struct ObstacleLayerConfig {
   double max_obstacle_range = 2.5;  ///< [m] farther echoes mark nothing
   double min_raytrace_range = 0.0;  ///< [m] cells nearer than this are not cleared
   double max_raytrace_range = 3.0;  ///< [m] cells farther than this are not cleared
+  /// [m] {0..1} an echo marks so much behind it too: for a sensor that looks down on low things and
+  /// tells of their near edges only.
+  double thickness = 0.0;
   bool infinity_clears =
       true;  ///< no echo clears up to max_raytrace_range, else it is no measurement
   double persistence =

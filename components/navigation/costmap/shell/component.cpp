@@ -160,6 +160,12 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
   depth_blind_range_ = parameters.number(
       "depth_blind_range", "m", {0, 4}, 1.8,
       "Nearer than this the Kinect looks over low things: what is marked there stays.");
+  low_persistence_ = parameters.number("low_persistence", "s", {0, 600}, 300.0,
+                                       "The same for low things that the Kinect looks over: nobody "
+                                       "sees them again while it stands.");
+  low_thickness_ = parameters.number(
+      "low_thickness", "m", {0, 1}, 0.3,
+      "Low things are taken to be so thick: the Kinect tells of their near edges only.");
 }
 
 void CostmapComponent::read_depth() {
@@ -214,6 +220,8 @@ void CostmapComponent::add_layers(Map& map) {
   map.rear = add(depth);
   depth.name = "low";
   depth.min_raytrace_range = depth_blind_range_;
+  depth.persistence = low_persistence_;
+  depth.thickness = low_thickness_;
   map.low = add(depth);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";

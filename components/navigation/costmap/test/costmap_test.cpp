@@ -256,6 +256,20 @@ TEST(Costmap, UsesTheStaticMapOnlyWhereNothingWasObserved) {
   EXPECT_EQ(costmap.cost_at({1.02, 0.02}), kLethalCost);
 }
 
+TEST(Costmap, ForgetsNothingThatNoSensorWouldSeeAgain) {
+  Costmap costmap = Costmap::make(rolling_config()).value();
+  const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
+  ObstacleLayerConfig config = layer_config("low");
+  config.min_raytrace_range = 1.8;
+  const auto low = costmap.add_obstacle_layer(config).value();
+  see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
+  see(costmap, low, {0.02, 0.02, 0.0}, 1.5F);
+  costmap.forget();
+  costmap.update(0.2);
+  EXPECT_NE(costmap.cost_at({1.02, 0.02}), kLethalCost) << "the laser would see it again";
+  EXPECT_EQ(costmap.cost_at({1.52, 0.02}), kLethalCost) << "the camera looks over it";
+}
+
 TEST(Costmap, KeepsMappedGlassForALayerThatMayNotOverruleTheMap) {
   Costmap costmap = Costmap::make(rolling_config()).value();
   ObstacleLayerConfig config = layer_config("laser");

@@ -52,6 +52,21 @@ TEST(ObstacleLayer, ClearsUpToTheEchoAndMarksIt) {
   EXPECT_EQ(touched, (CellRect{20, 20, 41, 21}));
 }
 
+TEST(ObstacleLayer, MarksWhatAThingHidesBehindItsNearEdge) {
+  ObstacleLayerConfig thick = config();
+  thick.thickness = 0.3;
+  ObstacleLayer layer(thick, raster());
+  const CellRect touched = see(layer, 1.0F);
+  EXPECT_EQ(state(layer, 39), kSeenFree);
+  for (int x = 40; x <= 46; ++x) EXPECT_EQ(state(layer, x), kSeenOccupied) << x;
+  EXPECT_EQ(state(layer, 47), kUnseen);
+  EXPECT_EQ(touched, (CellRect{20, 20, 47, 21}));
+  see(layer, 2.0F);
+  EXPECT_EQ(state(layer, 43), kSeenFree) << "it has gone";
+  thick.thickness = 1.5;
+  EXPECT_FALSE(ObstacleLayer::check(thick, 0.05).ok());
+}
+
 TEST(ObstacleLayer, HasNothingToForgetWhenTheWindowHasLeftAllThatItSaw) {
   for (const int away : {150, -150}) {
     ObstacleLayer layer(config(), raster());

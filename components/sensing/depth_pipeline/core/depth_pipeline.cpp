@@ -18,8 +18,9 @@ constexpr double kHalfMillimeter = 5e-4;  // [m] unit of the columns' distances
 constexpr double kWidest = 0.85;          // least forward distance per depth that the scan covers
 constexpr int kColumnArrays = 11;
 constexpr int kBuffers = 8;
-constexpr int kLeastValid = 10;   // a column with fewer than one in so many pixels is unknown
-constexpr double kFallGap = 0.3;  // [m] between columns of one missing piece of floor
+constexpr int kLeastValid = 10;    // a column with fewer than one in so many pixels is unknown
+constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
+constexpr double kGrazing = 2.14;  // tan 65 deg: distance over height from which vinyl may mirror
 
 enum ColumnArray { kHigh = 0, kLow = 4, kValid = 8, kFallBegin, kFall };
 
@@ -51,6 +52,7 @@ Status check(const PipelineConfig& config) {
                   {"low_gap", config.low_gap, 0.0, 5.0},
                   {"drop_length", config.drop_length, 0.05, 2.0},
                   {"drop_width", config.drop_width, 0.0, 2.0},
+                  {"grazing_drop_width", config.grazing_drop_width, 0.0, 2.0},
                   {"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
                    Confidence::kMostFrames},
                   {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
@@ -125,7 +127,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   mark_obstacles(floor);
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
-  view.drops = mark_drops();
+  view.drops = mark_drops(kGrazing * view.pose.height);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
   view.processed = processed_;
@@ -240,8 +242,9 @@ void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
   }
 }
 
-/// A piece of floor is missing where neighbouring columns say so over a width.
-int DepthPipeline::mark_drops() {
+/// A piece of floor is missing where neighbouring columns say so over a width, from a distance [m]
+/// on over the width that no mirroring patch has.
+int DepthPipeline::mark_drops(double grazing_from) {
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
   int count = 0;
   for (int begin = 0; begin < intrinsics_.width;) {
@@ -255,7 +258,11 @@ int DepthPipeline::mark_drops() {
       if (end > begin && std::abs(fall[end] - fall[end - 1]) > kFallGap * 1e3) break;
       width += 1e-3 * fall[end] / intrinsics_.fx;
     }
-    if (width >= config_.drop_width) {
+    const double nearest = 1e-3 * *std::min_element(fall + begin, fall + end);
+    const double needed = nearest < grazing_from
+                              ? config_.drop_width
+                              : std::max(config_.drop_width, config_.grazing_drop_width);
+    if (width >= needed) {
       for (int column = begin; column < end; ++column) {
         const double forward = 1e-3 * fall[column];
         mark(scan_.ranges, column, forward, forward / intrinsics_.fx);

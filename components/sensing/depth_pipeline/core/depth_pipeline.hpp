@@ -28,12 +28,15 @@ struct PipelineConfig {
   bool missing_is_drop = true;  ///< floor that gives no measurement counts as missing
   double drop_length = 0.3;     ///< [m] {0.05..2} of floor that must be missing along a column
   double drop_width = 0.15;     ///< [m] {0..2} and across
-  int confidence_frames = 3;    ///< {1..8} of the rolling mean
+  /// [m] {0..2} across where the floor is looked at flatter than 65 deg: vinyl mirrors in patches
+  /// there, which look like holes.
+  double grazing_drop_width = 0.4;
+  int confidence_frames = 3;          ///< {1..8} of the rolling mean
   double confidence_threshold = 0.5;  ///< [m] {0.01..10} deviation with confidence 0
   double least_confidence = 0.2;      ///< {0..1} ranges with less become NaN
   bool refit = false;  ///< fit the floor in each frame; then floor_margin may be small
   FloorFitConfig fit;
-  FloorModel refitted{.floor_margin = 0.004, .angle_margin = 0.0006};
+  FloorModel refitted{.floor_margin = 0.003, .angle_margin = 0.0006, .noise_grazing = 1e-4};
   cpu::Simd simd = cpu::best_simd();
 };
 
@@ -87,7 +90,7 @@ class DepthPipeline {
 
   void sort_pixels(const DepthImage& image, const FloorPrediction& floor);
   void clear_bearings();
-  int mark_drops();
+  int mark_drops(double grazing_from);
   void mark_free(const CameraPose& pose);
   void mark_obstacles(const FloorPrediction& floor);
   void drop_unsupported(std::vector<float>& ranges) const;

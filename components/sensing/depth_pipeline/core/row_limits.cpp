@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "foundation/geometry/angle.hpp"
 #include "foundation/result/bounds.hpp"
 
 namespace usher::depth_pipeline {
@@ -44,6 +45,7 @@ Status check(const FloorModel& model) {
                  {"noise_factor", model.noise_factor, 0.0, 10.0},
                  {"noise_base", model.noise_base, 0.0, 0.1},
                  {"noise_growth", model.noise_growth, 0.0, 0.05},
+                 {"noise_grazing", model.noise_grazing, 0.0, 0.001},
                  {"ceiling", model.ceiling, 0.3, 4.0},
                  {"low_height", model.low_height, 0.0, 2.0},
                  {"drop_depth", model.drop_depth, 0.02, 1.0},
@@ -69,12 +71,21 @@ double FloorPrediction::floor_depth(int row) const {
   return slope > 0.0 ? pose_.height / slope : kInfinity;
 }
 
+/// Noise [m] of the depth of the floor in a row, for being looked at along it.
+double FloorPrediction::grazing(double slope, double forward) const {
+  if (model_.noise_grazing <= 0.0 || slope <= 0.0) return 0.0;
+  const double depth = std::min(pose_.height / slope, max_depth_);
+  const double from_along = std::max(0.02, std::atan2(slope, forward));
+  const double ratio = std::max(0.0, geometry::kPi / 2.0 - from_along) / from_along;
+  return model_.noise_grazing * depth * std::sqrt(depth) * ratio * ratio;
+}
+
 RowLimits FloorPrediction::limits_of(double slope, double forward) const {
   const double h = pose_.height;
   const double m = model_.floor_margin;
   const double a = model_.angle_margin;
   const double steep = std::abs(slope);
-  const double base = model_.noise_factor * steep * model_.noise_base;
+  const double base = model_.noise_factor * steep * (model_.noise_base + grazing(slope, forward));
   const double growth = model_.noise_factor * steep * model_.noise_growth;
 
   // A point at depth z is h - slope z high.

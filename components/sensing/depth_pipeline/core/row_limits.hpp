@@ -9,16 +9,20 @@ namespace usher::depth_pipeline {
 
 /// What counts as floor and ceiling. A point is an obstacle when it is higher than
 ///
-///     floor_margin + angle_margin z + noise_factor k (noise_base + noise_growth z^2)
+///     floor_margin + angle_margin z + noise_factor k (noise_base + noise_growth z^2 + grazing)
+///     grazing = noise_grazing z^1.5 (t / (pi/2 - t))^2
 ///
 /// at distance z, where k is the height that a metre of depth is worth in its row: the
-/// distance-dependent threshold of thesis figure 4.16, said in height.
+/// distance-dependent threshold of thesis figure 4.16, said in height. Where a level floor is
+/// looked at along it, under an angle t from upright, its depth is noisier than that of things that
+/// stand [fankhauser2015kinect]: what is too flat for its distance is not told from floor.
 struct FloorModel {
   double floor_margin = 0.02;    ///< [m] {0..0.5} floors and calibrations are not exact
   double angle_margin = 0.006;   ///< [rad] {0..0.1} error of pitch and tilt
   double noise_factor = 3.0;     ///< [-] {0..10} standard deviations
   double noise_base = 0.0011;    ///< [m] {0..0.1} standard deviation of the depth at 0 m
   double noise_growth = 0.0002;  ///< [1/m] {0..0.05} and its growth with the square of z
+  double noise_grazing = 0.0;    ///< [m^-0.5] {0..0.001} and that of a floor looked at along it
   double ceiling = 2.0;          ///< [m] {0.3..4} higher things do not concern the robot
   double low_height = 0.45;      ///< [m] {0..2} lower things leave the image near the robot
   double drop_depth = 0.08;      ///< [m] {0.02..1} deeper below the floor than this is a drop
@@ -69,6 +73,7 @@ class FloorPrediction {
   const CameraPose& pose() const { return pose_; }
 
  private:
+  double grazing(double slope, double forward) const;
   RowLimits limits_of(double slope, double forward) const;
 
   Intrinsics intrinsics_;

@@ -140,6 +140,30 @@ TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
   EXPECT_EQ(finite(view.scan->ranges), 0U);
 }
 
+TEST(DepthPipeline, ReflectionsOfVinylFarAwayAreNoDropsButHolesAre) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  DepthPipeline pipeline = make(scene);
+  const auto with_hole = [&](double near, double far, double width) {
+    auto image = scene.draw(kPose);
+    for (int row = 0; row < scene.camera.height; ++row) {
+      const double y = (row - scene.camera.cy) / scene.camera.fy;
+      const double fall = std::sin(kPose.down) + y * std::cos(kPose.down);
+      if (fall <= 0.0) continue;
+      const double depth = kPose.height / fall;
+      const double distance = depth * (std::cos(kPose.down) - y * std::sin(kPose.down));
+      if (distance < near || distance > far) continue;
+      const auto half = static_cast<int>(0.5 * width / depth * scene.camera.fx);
+      for (int column = 256 - half; column < 256 + half; ++column)
+        image[static_cast<std::size_t>(row * 512 + column)] = 5000;
+    }
+    return pipeline.process(view_of(scene.camera, image), kPose).value().drops;
+  };
+  EXPECT_EQ(with_hole(2.2, 2.9, 0.3), 0);
+  EXPECT_GT(with_hole(2.2, 2.9, 0.6), 30);
+  EXPECT_GT(with_hole(1.4, 1.85, 0.3), 30) << "steeper than vinyl mirrors";
+}
+
 TEST(DepthPipeline, SinglePixelsAndSingleColumnsAreNoise) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;

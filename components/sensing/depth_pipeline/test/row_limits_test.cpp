@@ -37,6 +37,34 @@ TEST(FloorPrediction, LimitsAreTheDistanceDependentThreshold) {
   EXPECT_GT(rows, 150);
 }
 
+TEST(FloorPrediction, AFloorLookedAtAlongItNeedsMoreHeight) {
+  const Intrinsics camera;
+  FloorModel model{.floor_margin = 0.004, .angle_margin = 0.0006};
+  FloorPrediction calm(camera, model, 8.0);
+  model.noise_grazing = 1e-4;
+  FloorPrediction noisy(camera, model, 8.0);
+  calm.predict(kPose);
+  noisy.predict(kPose);
+  int rows = 0;
+  for (int row = 0; row < camera.height; ++row) {
+    const double z = noisy.floor_depth(row);
+    if (z > 4.0) continue;
+    const double forward =
+        std::cos(kPose.down) - (row - camera.cy) / camera.fy * std::sin(kPose.down);
+    const double slope = kPose.height / z;
+    const double upright = std::atan2(forward, slope);  // of the ray from the floor's normal
+    const double ratio = upright / (1.5707963 - upright);
+    const double more = 3.0 * slope * 1e-4 * std::pow(z, 1.5) * ratio * ratio;
+    // To first order: the noise of a nearer point is a little smaller.
+    EXPECT_NEAR(height(camera, kPose, row, noisy.rows(0)[row].obstacle) -
+                    height(camera, kPose, row, calm.rows(0)[row].obstacle),
+                more, 0.0012 + 0.05 * more)
+        << row;
+    ++rows;
+  }
+  EXPECT_GT(rows, 100);
+}
+
 TEST(FloorPrediction, CeilingAndLowThingsAreHeights) {
   const Intrinsics camera;
   FloorPrediction floor(camera, {}, 8.0);

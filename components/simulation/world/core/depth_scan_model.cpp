@@ -102,7 +102,8 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
         const auto thing = static_cast<std::size_t>(hits_.what[i]);
         if (thing >= things.size() || things[thing].top > 0.0 || forward > config_.drop_range)
           continue;
-      } else if (height < config_.floor_margin + config_.floor_angle * forward) {
+      } else if (height < config_.floor_margin + config_.floor_angle * forward +
+                              config_.floor_growth * forward * forward) {
         continue;
       }
       if (!in_view(forward, std::max(height, 0.0))) continue;

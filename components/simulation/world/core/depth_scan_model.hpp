@@ -18,9 +18,11 @@ struct DepthScanModelConfig {
   double least_depth = 0.5;  ///< [m] along the optical axis
   double max_range = 5.0;    ///< [m] of the scan
   double origin = 0.20;      ///< [m] of the scan ahead of the axle in the camera's direction
-  // The pipeline's threshold of height over the floor: margin + angle times distance.
+  // The pipeline's threshold of height over the floor: margin + angle times distance + growth times
+  // its square.
   double floor_margin = 0.024;
   double floor_angle = 0.0065;
+  double floor_growth = 0.0;
   double ceiling = 2.0;          ///< [m]
   double low_height = 0.45;      ///< [m]
   double low_gap = 0.4;          ///< [m]
@@ -38,6 +40,15 @@ struct DepthScanResult {
   std::vector<float> ranges;  ///< [m] nearest obstacle or missing floor
   std::vector<float> low;     ///< [m] what is lower than low_height, alone
 };
+
+/// The same for a pipeline that fits the floor in every frame: low things count from what the noise
+/// of the floor leaves.
+inline DepthScanModelConfig with_fitted_floor(DepthScanModelConfig config) {
+  config.floor_margin = 0.003;
+  config.floor_angle = 0.0;
+  config.floor_growth = 0.0014;
+  return config;
+}
 
 class DepthScanModel {
  public:

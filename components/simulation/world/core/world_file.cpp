@@ -313,9 +313,9 @@ bool lies_on_a_wall(const Building& building, const Gap& gap) {
 }
 
 Building read_building(const YAML::Node& root) {
-  const Entry entry(
-      root, "world",
-      {"name", "ceiling", "rooms", "walls", "glass", "openings", "doors", "furniture"});
+  const Entry entry(root, "world",
+                    {"name", "ceiling", "rooms", "walls", "glass", "openings", "doors", "furniture",
+                     "obstacles"});
   Building building;
   building.name = entry.text("name");
   if (entry.has("ceiling")) building.ceiling = entry.number("ceiling", 2.2, 30.0);
@@ -349,12 +349,14 @@ Building read_building(const YAML::Node& root) {
       }
     });
   }
-  each("furniture", [&](const YAML::Node& node) {
-    for (Thing& thing : parse_furniture(node)) {
-      insist_on_new_name(names, thing, node);
-      building.furniture.push_back(std::move(thing));
-    }
-  });
+  for (const bool mapped : {true, false}) {
+    each(mapped ? "furniture" : "obstacles", [&](const YAML::Node& node) {
+      for (Thing& thing : parse_furniture(node)) {
+        insist_on_new_name(names, thing, node);
+        (mapped ? building.furniture : building.obstacles).push_back(std::move(thing));
+      }
+    });
+  }
   return building;
 }
 
@@ -464,6 +466,7 @@ std::vector<Thing> construct(const Building& building) {
     }
   }
   things.insert(things.end(), building.furniture.begin(), building.furniture.end());
+  things.insert(things.end(), building.obstacles.begin(), building.obstacles.end());
   return things;
 }
 

@@ -44,6 +44,7 @@ struct Building {
   std::vector<WallLine> walls;
   std::vector<Gap> gaps;
   std::vector<Thing> furniture;
+  std::vector<Thing> obstacles;  ///< like furniture, but set up after the map was made
 };
 
 /// Reads a world.yaml (its format: README.md). Strict: an unknown or missing key, a value out of
@@ -52,7 +53,7 @@ Result<Building> load_building(const std::string& path);
 Result<Building> parse_building(const std::string& text, const std::string& file);
 
 /// The things of a building with its doors as they are: walls cut at gaps, lintels, closed leaves,
-/// furniture.
+/// furniture, obstacles.
 std::vector<Thing> construct(const Building& building);
 
 /// Somebody who walks, as people.yaml describes it.

@@ -84,8 +84,14 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
       "images_every", "-", {1, 30}, 1, "Only every n-th image of the 30 a second is rendered."));
   has_rear_ = host.parameters().flag("robot.rear_camera.fitted", true,
                                      "Whether the robot has a rear camera.");
-  kinect_model_.emplace(model_for<DepthScanModelConfig>(kinect_.config()), seed);
-  rear_model_.emplace(model_for<DepthScanModelConfig>(rear_.config()), seed + 1);
+  const bool fitted = host.parameters().flag(
+      "depth_refit", false,
+      "The modelled depth pipeline fits the floor in every frame, as its own refit.");
+  for (auto* models : {&kinect_model_, &rear_model_}) {
+    const bool rear = models == &rear_model_;
+    const auto config = model_for<DepthScanModelConfig>((rear ? rear_ : kinect_).config());
+    models->emplace(fitted ? with_fitted_floor(config) : config, rear ? seed + 1 : seed);
+  }
   kinect_people_model_.emplace(model_for<PeopleModelConfig>(kinect_.config()), seed);
   rear_people_model_.emplace(model_for<PeopleModelConfig>(rear_.config()), seed + 1);
   FaceModelConfig faces;

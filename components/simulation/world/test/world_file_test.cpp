@@ -36,6 +36,20 @@ TEST(WorldFile, ReadsABuilding) {
   EXPECT_EQ(building->furniture.size(), 2U);
 }
 
+TEST(WorldFile, KeepsObstaclesApartFromFurnitureAndConstructsBoth) {
+  const auto building = parse_building(
+      std::string(kHouse) + "obstacles:\n  - {name: box, disc: [1, 1, 0.2], height: [0, 0.3]}\n",
+      "house.yaml");
+  ASSERT_TRUE(building) << building.error();
+  EXPECT_EQ(building->furniture.size(), 2U);
+  ASSERT_EQ(building->obstacles.size(), 1U);
+  EXPECT_EQ(construct(*building).back().name, "box");
+  const auto doubled = parse_building(
+      std::string(kHouse) + "obstacles:\n  - {name: bin, disc: [1, 1, 0.2], height: [0, 0.3]}\n",
+      "house.yaml");
+  EXPECT_FALSE(doubled.ok()) << "the name is in use";
+}
+
 TEST(WorldFile, CutsDoorsOfTheirExactWidth) {
   const auto building = parse_building(kHouse, "house.yaml");
   ASSERT_TRUE(building);
