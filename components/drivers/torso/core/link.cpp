@@ -34,7 +34,6 @@ void Link::opened(Time now) {
 void Link::closed() {
   open_ = false;
   heard_at_.reset();
-  due_.reset();
   output_.clear();
 }
 
