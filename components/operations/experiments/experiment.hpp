@@ -51,6 +51,7 @@ Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_gather_pixels_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_interaction_zones_experiment(const ExperimentOptions& options);
 
 /// One line that is rewritten: "17 of 100  ...".
 void show_progress(const std::string& line);
