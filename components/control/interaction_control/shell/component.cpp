@@ -90,11 +90,9 @@ void InteractionControlComponent::aim(const usher_msgs::msg::FaceTarget& target)
   const auto odom_T_base = pose_of(odom_.fresh());
   const bool known = target.mode() <= MODE_SEARCH && std::isfinite(target.bearing());
   if (!known) ++rejected_;
-  if (!known || target.mode() == MODE_STAND) {
-    face_.stand();
-  } else if (target.mode() == MODE_SEARCH) {
+  if (known && target.mode() == MODE_SEARCH) {
     face_.search(target.bearing() >= 0.0);
-  } else if (odom_T_base) {
+  } else if (known && target.mode() == MODE_FACE && odom_T_base) {
     face_.face(odom_T_base->yaw + target.bearing());
   } else {
     face_.stand();
