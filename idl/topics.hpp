@@ -163,6 +163,17 @@ inline constexpr Topic<sensor_msgs::msg::Joy> kJoy{
 inline constexpr Topic<usher_msgs::msg::FaceTarget> kInteractionTarget{
     "interaction/target",        Kind::kStream, 1, 10, "guide meeting people_detector operator",
     "Whom the robot shall face."};
+inline constexpr Topic<usher_msgs::msg::InteractionStatus> kInteractionStatus{
+    "interaction/status",
+    Kind::kLatched,
+    1,
+    5,
+    "interaction_control",
+    "Whom it poses the robot for, and how."};
+inline constexpr Topic<usher_msgs::msg::TorsoFrame> kTorsoFrame{
+    "torso/frame", Kind::kCommand, 1, 20, "interaction_control", "Where joints and eyes shall be."};
+inline constexpr Topic<usher_msgs::msg::TorsoStatus> kTorsoStatus{
+    "torso/status", Kind::kStream, 1, 20, "torso", "Where the joints are."};
 inline constexpr Topic<usher_msgs::msg::People> kPeople{
     "people", Kind::kStream, 1, 15, "people_detector", "Everybody around, followed over time."};
 inline constexpr Topic<usher_msgs::msg::PersonAhead> kPersonAhead{
@@ -348,6 +359,10 @@ inline constexpr Topic<usher_sim_msgs::msg::SensorBoardReading> kSimSensorBoard{
     "sim/sensor_board", Kind::kStream, 5, 50, "world", "From the simulated sensor board."};
 inline constexpr Topic<usher_sim_msgs::msg::SensorBoardCommand> kSimSensorBoardCommand{
     "sim/sensor_board/command", Kind::kCommand, 1, 20, "sensor_board", "To the simulated board."};
+inline constexpr Topic<usher_sim_msgs::msg::TorsoReading> kSimTorso{
+    "sim/torso", Kind::kStream, 5, 50, "world", "From the simulated torso."};
+inline constexpr Topic<usher_sim_msgs::msg::TorsoCommand> kSimTorsoCommand{
+    "sim/torso/command", Kind::kCommand, 1, 20, "torso", "To the simulated torso."};
 inline constexpr Topic<sensor_msgs::msg::Image> kSimKinectDepth{
     "sim/kinect/depth", Kind::kStream, 2, 30, "world", "From the simulated Kinect, 16UC1 in mm."};
 inline constexpr Topic<sensor_msgs::msg::Image> kSimKinectColor{
@@ -426,17 +441,18 @@ inline constexpr auto kAll = std::tie(
     kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan, kKinectTilt,
     kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
     kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
-    kMovementStatus, kPeople, kPersonAhead, kFaces, kJoy, kInteractionTarget, kSupervisorStatus,
-    kSupervisorRequest, kMap, kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus,
-    kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest,
-    kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal,
-    kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace, kLocations, kExploreGoal,
-    kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen, kDialogueAnswer,
-    kGuideStatus, kGuideVisit, kVisitor, kSpeechStatus, kSpeechLevel, kMeetingRequest,
-    kMeetingCancel, kMeetingStatus, kMeetingReport, kSimKinectFaces, kSimBaseCommand,
-    kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimKinectDepth,
-    kSimKinectColor, kSimKinectInfo, kSimRearDepth, kSimRearInfo, kSimKinectScan, kSimKinectScanLow,
-    kSimRearScan, kSimKinectPeople, kSimRearPeople, kSimGroundTruth, kSimPersonGoal, kExploreShare,
-    kFleetMeeting, kFleetLook, kFleetSimBody, kFleetSimPeople, kFleetSimPersonGoal);
+    kMovementStatus, kPeople, kPersonAhead, kFaces, kJoy, kInteractionTarget, kInteractionStatus,
+    kTorsoFrame, kTorsoStatus, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
+    kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap,
+    kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus,
+    kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace,
+    kLocations, kExploreGoal, kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen,
+    kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSpeechStatus, kSpeechLevel,
+    kMeetingRequest, kMeetingCancel, kMeetingStatus, kMeetingReport, kSimKinectFaces,
+    kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimTorso,
+    kSimTorsoCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth, kSimRearInfo,
+    kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople, kSimRearPeople,
+    kSimGroundTruth, kSimPersonGoal, kExploreShare, kFleetMeeting, kFleetLook, kFleetSimBody,
+    kFleetSimPeople, kFleetSimPersonGoal);
 
 }  // namespace usher::topics

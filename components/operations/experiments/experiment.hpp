@@ -55,6 +55,7 @@ Result<ResultSheet> run_gather_pixels_experiment(const ExperimentOptions& option
 Result<ResultSheet> run_corridor_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_interaction_zones_experiment(const ExperimentOptions& options);
 
 /// One line that is rewritten: "17 of 100  ...".
 void show_progress(const std::string& line);

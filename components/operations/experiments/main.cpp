@@ -36,6 +36,11 @@ const std::vector<Experiment>& experiments() {
        "Strategies of exploration in the arena, lock-step: what the camera saw after 8 minutes "
        "beside figure 12 of the meeting report; --only STRATEGY",
        run_coverage_experiment},
+      {"interaction-zones",
+       "A visitor walks through the zones of the thesis' figure 7.4, lock-step: zones, poses of "
+       "the "
+       "torso, times, borders",
+       run_interaction_zones_experiment},
       {"stopping", "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step",
        run_stopping_experiment},
       {"reaction",

@@ -1,17 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "foundation/geometry/angle.hpp"
-#include "foundation/grid/map_file.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
+#include "operations/experiments/hall.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
-#include "simulation/world/core/map_drawing.hpp"
-#include "simulation/world/core/world_file.hpp"
 
 namespace usher::operations {
 
@@ -204,35 +201,16 @@ class Trial {
 };
 
 Result<Deployment> deploy_hall(const ExperimentOptions& options, double speed) {
-  const std::string folder = std::filesystem::absolute(options.out).string();
-  if (auto saved = write_file(folder + "/world.yaml", kHall); !saved) return Error{saved.error()};
-  const auto building = world::load_building(folder + "/world.yaml");
-  if (!building) return Error{building.error()};
-  const world::Scene scene(world::construct(*building), building->ceiling);
-  const world::MapDrawing drawing{.start = world::Point2(1.5, 0.0)};
-  if (auto saved = grid::save_map(world::draw_map(scene, drawing), folder + "/map.yaml"); !saved)
-    return Error{saved.error()};
-  if (auto saved =
-          write_file(folder + "/site.yaml",
-                     "map: map.yaml\nworld: world.yaml\ninitial_pose: [1.5, 0, 0]\n"
-                     "locations:\n  - {name: start, title: Start, x: 1.5, y: 0, yaw: 0}\n");
-      !saved)
-    return Error{saved.error()};
-  const auto contracts = read_contracts(options.installation.contracts);
-  if (!contracts) return Error{contracts.error()};
-  const std::string path = options.installation.share + "/deploy/marvin-sim.yaml";
-  auto manifest = read_manifest(path, config_directories(path, options.installation));
-  if (!manifest) return Error{manifest.error()};
-  manifest->site_file = folder + "/site.yaml";
   // As in the thesis, the stick's step reaches the base: nothing bounds it before, whatever is
   // ahead, and also while it leans to start and its laser sees the floor instead of the hall.
-  return resolve(*manifest, *contracts,
-                 {{"manual_control", "linear", format("%.2f m/s", speed)},
-                  {"movement_control", "linear_speed_up", "0 m/s2"},
-                  {"movement_control", "linear_jerk", "0 m/s3"},
-                  {"movement_control", "corridor_v", "1.4 m/s"},
-                  {"movement_control", "confined_v", "1.4 m/s"},
-                  {"movement_control", "guard", "false"}});
+  return deploy_in_hall({.world = kHall, .start = {1.5, 0.0, 0.0}}, "marvin-sim", options.out,
+                        options.installation,
+                        {{"manual_control", "linear", format("%.2f m/s", speed)},
+                         {"movement_control", "linear_speed_up", "0 m/s2"},
+                         {"movement_control", "linear_jerk", "0 m/s3"},
+                         {"movement_control", "corridor_v", "1.4 m/s"},
+                         {"movement_control", "confined_v", "1.4 m/s"},
+                         {"movement_control", "guard", "false"}});
 }
 
 struct Figures {

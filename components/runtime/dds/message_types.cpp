@@ -49,6 +49,9 @@
   TYPE(usher_msgs::msg::MovementEnable)               \
   TYPE(usher_msgs::msg::MovementStatus)               \
   TYPE(usher_msgs::msg::FaceTarget)                   \
+  TYPE(usher_msgs::msg::InteractionStatus)            \
+  TYPE(usher_msgs::msg::TorsoFrame)                   \
+  TYPE(usher_msgs::msg::TorsoStatus)                  \
   TYPE(usher_msgs::msg::People)                       \
   TYPE(usher_msgs::msg::PersonAhead)                  \
   TYPE(usher_msgs::msg::Faces)                        \
@@ -84,6 +87,8 @@
   TYPE(usher_sim_msgs::msg::BaseCommand)              \
   TYPE(usher_sim_msgs::msg::BaseFeedback)             \
   TYPE(usher_sim_msgs::msg::SensorBoardReading)       \
+  TYPE(usher_sim_msgs::msg::TorsoCommand)             \
+  TYPE(usher_sim_msgs::msg::TorsoReading)             \
   TYPE(usher_sim_msgs::msg::SensorBoardCommand)       \
   TYPE(usher_sim_msgs::msg::GroundTruth)              \
   TYPE(usher_sim_msgs::msg::PersonGoal)               \

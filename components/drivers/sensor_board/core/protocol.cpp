@@ -1,8 +1,13 @@
 #include "drivers/sensor_board/core/protocol.hpp"
 
+#include "drivers/serial_frame/core/fields.hpp"
+
 namespace usher::sensor_board {
 
 namespace {
+
+using serial_frame::FieldReader;
+using serial_frame::FieldWriter;
 
 enum : std::uint8_t {
   kHello = 0x01,
@@ -13,40 +18,6 @@ enum : std::uint8_t {
   kSetConfig = 0x22,
   kAck = 0x60,
   kNack = 0x61,
-};
-
-/// Little-endian fields from the front of a message whose length was checked.
-class Reader {
- public:
-  explicit Reader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
-  template <class Number>
-  Number get() {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < sizeof(Number); ++i) value |= std::uint32_t{rest_[i]} << (8 * i);
-    rest_ = rest_.subspan(sizeof(Number));
-    return static_cast<Number>(value);
-  }
-
- private:
-  std::span<const std::uint8_t> rest_;
-};
-
-class Writer {
- public:
-  Writer(std::uint8_t type, std::uint8_t sequence) { put(type).put(sequence); }
-  template <class Number>
-  Writer& put(Number number) {
-    const auto value = static_cast<std::uint32_t>(number);
-    for (std::size_t i = 0; i < sizeof(Number); ++i) {
-      bytes_[size_++] = static_cast<std::uint8_t>(value >> (8 * i));
-    }
-    return *this;
-  }
-  Frame frame() const { return encode(std::span(bytes_).first(size_)); }
-
- private:
-  std::array<std::uint8_t, 32> bytes_{};
-  std::size_t size_ = 0;
 };
 
 std::size_t length_of(std::uint8_t type) {
@@ -70,7 +41,7 @@ std::size_t length_of(std::uint8_t type) {
 
 std::optional<BoardMessage> parse(std::span<const std::uint8_t> content) {
   if (content.size() < 2 || content.size() != length_of(content[0])) return std::nullopt;
-  Reader reader(content);
+  FieldReader reader(content);
   const auto type = reader.get<std::uint8_t>();
   BoardMessage message;
   message.sequence = reader.get<std::uint8_t>();
@@ -115,40 +86,40 @@ std::optional<BoardMessage> parse(std::span<const std::uint8_t> content) {
   }
 }
 
-Frame hello_request(std::uint8_t sequence) { return Writer(kHello, sequence).frame(); }
-Frame heartbeat(std::uint8_t sequence) { return Writer(kHeartbeat, sequence).frame(); }
+Frame hello_request(std::uint8_t sequence) { return FieldWriter(kHello, sequence).frame(); }
+Frame heartbeat(std::uint8_t sequence) { return FieldWriter(kHeartbeat, sequence).frame(); }
 
 Frame set_tilt(std::uint8_t sequence, std::int16_t tilt) {
-  return Writer(kSetTilt, sequence).put(tilt).frame();
+  return FieldWriter(kSetTilt, sequence).put(tilt).frame();
 }
 
 Frame set_config(std::uint8_t sequence, std::uint8_t key, std::int32_t value) {
-  return Writer(kSetConfig, sequence).put(key).put(value).frame();
+  return FieldWriter(kSetConfig, sequence).put(key).put(value).frame();
 }
 
 Frame to_frame(const BoardMessage& message) {
   const std::uint8_t sequence = message.sequence;
   if (const auto* hello = std::get_if<Hello>(&message.content)) {
-    Writer writer(kHello, sequence);
+    FieldWriter writer(kHello, sequence);
     writer.put(hello->protocol_version);
     for (const std::uint8_t part : hello->firmware) writer.put(part);
     return writer.put(hello->serial_number).put(hello->sonars).put(hello->whiskers).frame();
   }
   if (const auto* sensors = std::get_if<Sensors>(&message.content)) {
-    Writer writer(kSensors, sequence);
+    FieldWriter writer(kSensors, sequence);
     writer.put(sensors->time_ms);
     for (const std::uint16_t range : sensors->ranges_mm) writer.put(range);
     return writer.put(sensors->whisker_mask).put(sensors->tilt).put(sensors->status).frame();
   }
   if (const auto* change = std::get_if<WhiskerChange>(&message.content)) {
-    return Writer(kWhisker, sequence)
+    return FieldWriter(kWhisker, sequence)
         .put(change->time_ms)
         .put(change->mask)
         .put(change->changed)
         .frame();
   }
   const auto& verdict = std::get<Verdict>(message.content);
-  Writer writer(verdict.accepted ? kAck : kNack, sequence);
+  FieldWriter writer(verdict.accepted ? kAck : kNack, sequence);
   writer.put(verdict.type).put(verdict.sequence);
   if (!verdict.accepted) writer.put(verdict.reason);
   return writer.frame();

@@ -7,9 +7,15 @@
 #include <variant>
 
 #include "drivers/sensor_board/core/device.hpp"
-#include "drivers/sensor_board/core/frame.hpp"
+#include "drivers/serial_frame/core/frame.hpp"
 
 namespace usher::sensor_board {
+
+using serial_frame::crc16;
+using serial_frame::encode;
+using serial_frame::Frame;
+using serial_frame::FrameDecoder;
+using serial_frame::kLongestContent;
 
 /// Bits of the board's status.
 enum : std::uint8_t {

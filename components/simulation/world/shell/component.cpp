@@ -7,6 +7,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/torso.hpp"
 
 namespace usher::world {
 
@@ -138,6 +139,7 @@ std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
 
 WorldComponent::WorldComponent(runtime::Host& host)
     : host_(host),
+      torso_(wire::read_torso_limits(host)),
       world_(make(host)),
       rejected_(host.health().counter("commands: rejected")),
       late_steps_(host.health().counter("steps: late")) {
@@ -158,9 +160,12 @@ WorldComponent::WorldComponent(runtime::Host& host)
   tilt_command_ =
       host.input(topics::kSimSensorBoardCommand, {.optional = true},
                  [this](const auto& command, const auto&) { depth_->set_tilt(command.tilt()); });
+  torso_command_ = host.input(topics::kSimTorsoCommand, {.optional = true},
+                              [this](const auto& command, const auto&) { take_torso(command); });
   feedback_ = host.output(topics::kSimBaseFeedback);
   scans_ = host.output(topics::kSimScan);
   boards_ = host.output(topics::kSimSensorBoard);
+  torsos_ = host.output(topics::kSimTorso);
   truth_ = host.output(topics::kSimGroundTruth);
   host.input(topics::kFleetSimBody, {.optional = true},
              [this](const auto& body, const auto&) { take_body(body); });
@@ -210,6 +215,14 @@ void WorldComponent::move_person(const PersonGoal& goal, const std::string& lead
   if (!world_ ||
       !world_->send_person(goal.name(), {goal.x(), goal.y()}, goal.speed(), goal.follow(), leader))
     ++rejected_;
+}
+
+void WorldComponent::take_torso(const TorsoCommand& command) {
+  if (!kinematics::finite(command.joints())) {
+    ++rejected_;
+    return;
+  }
+  torso_.command(command.joints(), command.left_eye(), command.right_eye());
 }
 
 /// A robot whose world falls silent stays where it was.
@@ -266,6 +279,7 @@ void WorldComponent::advance(std::uint64_t skipped) {
   bool scan = false, board = false, truth = false;
   for (std::uint64_t i = 0; i < due; ++i) {
     world_->step();
+    torso_.step();
     ++steps_;
     depth_->step(host_.now());
     scan = scan || steps_ % scan_every_ == 0;
@@ -276,6 +290,7 @@ void WorldComponent::advance(std::uint64_t skipped) {
   if (!host_.robot_name().empty()) publish_to_fleet();
   if (scan) publish_scan();
   if (board) publish_sensor_board();
+  if (board && torso_.exists()) publish_torso();
   if (truth) publish_truth();
   const double lag = runtime::seconds(host_.now() - start_) - static_cast<double>(steps_) * kStep;
   if (skipped + 1 > due) fell_behind_at_ = host_.now();
@@ -325,6 +340,15 @@ void WorldComponent::publish_sensor_board() {
   board_.back_right(contacts.back_right);
   board_.tilt(depth_->tilt());
   boards_.publish(board_);
+}
+
+void WorldComponent::publish_torso() {
+  TorsoReading message;
+  message.header(wire::header(host_.now(), ""));
+  message.joints(torso_.joints());
+  message.left_eye(torso_.left_eye());
+  message.right_eye(torso_.right_eye());
+  torsos_.publish(message);
 }
 
 void WorldComponent::publish_truth() {

@@ -7,6 +7,7 @@
 
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "simulation/world/core/torso.hpp"
 #include "simulation/world/core/world.hpp"
 #include "simulation/world/shell/depth_output.hpp"
 
@@ -26,17 +27,20 @@ class WorldComponent final : public runtime::Component {
   void take_person_goal(const usher_sim_msgs::msg::PersonGoal& goal);
   void move_person(const usher_sim_msgs::msg::PersonGoal& goal, const std::string& leader);
   void take_body(const usher_sim_msgs::msg::FleetBody& body);
+  void take_torso(const usher_sim_msgs::msg::TorsoCommand& command);
   void take_people(const usher_sim_msgs::msg::FleetPeople& message);
   void publish_to_fleet();
   void advance(std::uint64_t skipped);
   void publish_feedback();
   void publish_scan();
   void publish_sensor_board();
+  void publish_torso();
   void publish_truth();
 
   runtime::Host& host_;
   std::uint64_t seed_ = 0;
-  std::string people_of_;         ///< robot whose world moves the people; empty: this one does
+  std::string people_of_;  ///< robot whose world moves the people; empty: this one does
+  Torso torso_;
   std::unique_ptr<World> world_;  ///< null while the component is only described
   runtime::Time start_{};
   std::int64_t steps_ = 0;
@@ -53,9 +57,11 @@ class WorldComponent final : public runtime::Component {
   runtime::Input<usher_sim_msgs::msg::BaseCommand> command_;
   runtime::Input<usher_sim_msgs::msg::PersonGoal> person_goal_;
   runtime::Input<usher_sim_msgs::msg::SensorBoardCommand> tilt_command_;
+  runtime::Input<usher_sim_msgs::msg::TorsoCommand> torso_command_;
   runtime::Output<usher_sim_msgs::msg::BaseFeedback> feedback_;
   runtime::Output<sensor_msgs::msg::LaserScan> scans_;
   runtime::Output<usher_sim_msgs::msg::SensorBoardReading> boards_;
+  runtime::Output<usher_sim_msgs::msg::TorsoReading> torsos_;
   runtime::Output<usher_sim_msgs::msg::GroundTruth> truth_;
   runtime::Output<usher_sim_msgs::msg::FleetBody> bodies_;
   runtime::Output<usher_sim_msgs::msg::FleetPeople> people_;

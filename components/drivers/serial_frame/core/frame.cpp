@@ -1,9 +1,9 @@
-#include "drivers/sensor_board/core/frame.hpp"
+#include "drivers/serial_frame/core/frame.hpp"
 
 #include <algorithm>
 #include <cassert>
 
-namespace usher::sensor_board {
+namespace usher::serial_frame {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::optional<std::span<const std::uint8_t>> FrameDecoder::take(std::uint8_t byt
   return content;
 }
 
-}  // namespace usher::sensor_board
+}  // namespace usher::serial_frame

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-namespace usher::sensor_board {
+namespace usher::serial_frame {
 
 /// CRC-16/CCITT-FALSE: polynomial 1021, initial FFFF, nothing reflected.
 std::uint16_t crc16(std::span<const std::uint8_t> bytes);
@@ -52,4 +52,4 @@ class FrameDecoder {
   std::uint64_t damaged_ = 0;
 };
 
-}  // namespace usher::sensor_board
+}  // namespace usher::serial_frame
