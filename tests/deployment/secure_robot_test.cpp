@@ -35,7 +35,7 @@ class SecureRobot : public testing::Test {
         << robot_->complaints();
   }
   /// A command that nobody answered, since it was not authenticated in time, is typed again.
-  static constexpr int kTries = 3;
+  static constexpr int kTries = 6;
 
   /// Drives there while `meanwhile` is called again and again.
   static void drive(
@@ -59,7 +59,7 @@ class SecureRobot : public testing::Test {
   /// What `usher status` prints; its exit code also tells of a simulation that was once too slow.
   static std::string status() {
     std::string printed;
-    // Who comes new authenticates with twenty others: on a slow machine that outlasts one command.
+    // Who comes new authenticates with all others: on a slow machine that outlasts one command.
     const auto until = std::chrono::steady_clock::now() + Seconds(60);
     while (std::chrono::steady_clock::now() < until) {
       const auto command = robot_->command({"status"});
