@@ -260,7 +260,7 @@ TEST(Link, AnEmergencyStopHoldsUntilReset) {
 Bytes stopped_by(std::uint8_t flags) {
   Bytes packet = report(0, 0, 0, 0, 0, false);
   constexpr std::size_t kFlags =
-      3 + 1 + 10 + 1 + 4;  // header, type, odometry, battery, stall, bumpers
+      3 + 1 + 10 + 1 + 4;  // header, type, odometry, battery, stall and bumpers, heading to hold
   packet[kFlags] = flags;
   const Bytes body(packet.begin() + 3, packet.end() - 2);
   const std::uint16_t sum = checksum(body);

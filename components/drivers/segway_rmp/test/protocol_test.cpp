@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -16,23 +15,15 @@
 #include "drivers/segway_rmp/core/status.hpp"
 #include "foundation/geometry/angle.hpp"
 #include "foundation/random/random.hpp"
+#include "support/bytes.hpp"
 #include "support/data.hpp"
 
 namespace usher::segway_rmp {
 namespace {
 
 using std::chrono::milliseconds;
-using Bytes = std::vector<std::uint8_t>;
-
-std::string hex(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    char two[4];
-    std::snprintf(two, sizeof two, "%02X ", byte);
-    text += two;
-  }
-  return text.substr(0, text.size() - 1);
-}
+using test::Bytes;
+using test::hex;
 
 Bytes unhex(const std::string& digits) {
   Bytes bytes;

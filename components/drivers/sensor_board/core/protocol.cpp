@@ -10,11 +10,9 @@ using serial_frame::FieldReader;
 using serial_frame::FieldWriter;
 
 enum : std::uint8_t {
-  kHello = 0x01,
   kSensors = 0x10,
   kWhisker = 0x11,
   kSetTilt = 0x20,
-  kHeartbeat = 0x21,
   kSetConfig = 0x22,
   kAck = 0x60,
   kNack = 0x61,
@@ -22,8 +20,6 @@ enum : std::uint8_t {
 
 std::size_t length_of(std::uint8_t type) {
   switch (type) {
-    case kHello:
-      return 12;
     case kSensors:
       return 20;
     case kWhisker:
@@ -46,16 +42,6 @@ std::optional<BoardMessage> parse(std::span<const std::uint8_t> content) {
   BoardMessage message;
   message.sequence = reader.get<std::uint8_t>();
   switch (type) {
-    case kHello: {
-      Hello hello;
-      hello.protocol_version = reader.get<std::uint8_t>();
-      for (auto& part : hello.firmware) part = reader.get<std::uint8_t>();
-      hello.serial_number = reader.get<std::uint32_t>();
-      hello.sonars = reader.get<std::uint8_t>();
-      hello.whiskers = reader.get<std::uint8_t>();
-      message.content = hello;
-      return message;
-    }
     case kSensors: {
       Sensors sensors;
       sensors.time_ms = reader.get<std::uint32_t>();
@@ -86,9 +72,6 @@ std::optional<BoardMessage> parse(std::span<const std::uint8_t> content) {
   }
 }
 
-Frame hello_request(std::uint8_t sequence) { return FieldWriter(kHello, sequence).frame(); }
-Frame heartbeat(std::uint8_t sequence) { return FieldWriter(kHeartbeat, sequence).frame(); }
-
 Frame set_tilt(std::uint8_t sequence, std::int16_t tilt) {
   return FieldWriter(kSetTilt, sequence).put(tilt).frame();
 }
@@ -99,12 +82,6 @@ Frame set_config(std::uint8_t sequence, std::uint8_t key, std::int32_t value) {
 
 Frame to_frame(const BoardMessage& message) {
   const std::uint8_t sequence = message.sequence;
-  if (const auto* hello = std::get_if<Hello>(&message.content)) {
-    FieldWriter writer(kHello, sequence);
-    writer.put(hello->protocol_version);
-    for (const std::uint8_t part : hello->firmware) writer.put(part);
-    return writer.put(hello->serial_number).put(hello->sonars).put(hello->whiskers).frame();
-  }
   if (const auto* sensors = std::get_if<Sensors>(&message.content)) {
     FieldWriter writer(kSensors, sequence);
     writer.put(sensors->time_ms);

@@ -41,8 +41,8 @@ void SensorBoardComponent::tick() {
   link_.tick(now());
   const auto output = link_.take_output();
   if (!output.empty()) stream_->write(output);
-  lost_ = link_.lost_messages();
-  damaged_ = link_.damaged();
+  lost_ = link_.dialogue().lost_messages();
+  damaged_ = link_.dialogue().damaged();
   const bool healthy = link_.healthy(now());
   host_.health().set(healthy ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
                      healthy ? "" : link_.reason(now()));

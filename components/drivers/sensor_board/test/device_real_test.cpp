@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "drivers/sensor_board/device_real/component.hpp"
+#include "drivers/serial_frame/core/emulated_board.hpp"
 #include "foundation/geometry/angle.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
@@ -21,20 +22,17 @@ constexpr const char* kRing =
 class Device final : public runtime::LockstepDevice {
  public:
   Device() { sensors.ranges_mm.fill(2000); }
-  void opened() override { greeted_ = false; }
+  void opened() override { board_.hello_requests = 0; }
   runtime::Bytes answer(std::span<const std::uint8_t> bytes) override {
-    runtime::Bytes said;
-    decoder_.feed(bytes, [&](std::span<const std::uint8_t> content) {
-      if (content[0] == 0x01) append(said, {sequence_++, Hello{1, {1, 0, 0}, 42, 5, 8}});
-      if (content[0] == 0x01) greeted_ = true;
+    return board_.hear(bytes, [this](std::span<const std::uint8_t> content) {
       if (content[0] == 0x20)
         sensors.tilt = static_cast<std::int16_t>(content[2] | (content[3] << 8));
     });
-    return said;
   }
   runtime::Bytes speak(runtime::Time /*now*/) override {
     runtime::Bytes said;
-    if (greeted_ && !silent && ++asked_ % 5 == 0) append(said, {sequence_++, sensors});
+    if (board_.hello_requests > 0 && !silent && ++asked_ % 5 == 0)
+      board_.append(said, to_frame({board_.sequence++, sensors}));
     return said;
   }
 
@@ -42,13 +40,7 @@ class Device final : public runtime::LockstepDevice {
   bool silent = false;
 
  private:
-  static void append(runtime::Bytes& bytes, const BoardMessage& message) {
-    const Frame frame = to_frame(message);
-    bytes.insert(bytes.end(), frame.span().begin(), frame.span().end());
-  }
-  FrameDecoder decoder_;
-  std::uint8_t sequence_ = 0;
-  bool greeted_ = false;
+  serial_frame::EmulatedBoard board_{{1, {1, 0, 0}, 42, {5, 8}}};
   int asked_ = 0;
 };
 

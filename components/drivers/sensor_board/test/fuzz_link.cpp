@@ -1,4 +1,5 @@
 // Any bytes from the board, and any content with a right checksum.
+#include <algorithm>
 #include <cstdlib>
 
 #include "drivers/sensor_board/core/link.hpp"
@@ -18,8 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     link.tick(now);
     link.take_output();
   };
+  hear(usher::serial_frame::to_frame(0, {1, {}, 0, {5, 8}}).span());
   hear({data, size});
-  const Frame frame = encode({data, size < kLongestContent ? size : kLongestContent});
+  const Frame frame =
+      usher::serial_frame::encode({data, std::min(size, usher::serial_frame::kLongestContent)});
   hear(frame.span());
   return 0;
 }

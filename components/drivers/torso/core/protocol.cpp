@@ -15,9 +15,8 @@ using kinematics::kTorsoJoints;
 using serial_frame::FieldReader;
 using serial_frame::FieldWriter;
 
-enum : std::uint8_t { kHello = 0x01, kHeartbeat = 0x21, kSetFrame = 0x30, kState = 0x31 };
+enum : std::uint8_t { kSetFrame = 0x30, kState = 0x31 };
 
-constexpr std::size_t kHelloLength = 12;
 constexpr std::size_t kFrameLength = 2 + 2 * kTorsoJoints + 6;
 constexpr std::size_t kStateLength = kFrameLength + 4 + 1;
 constexpr double kAngleStep = geometry::kPi / 18000.0;  // [rad] 0.01 deg
@@ -63,28 +62,15 @@ bool is(std::span<const std::uint8_t> content, std::uint8_t type, std::size_t le
 }  // namespace
 
 std::optional<BoardMessage> parse(std::span<const std::uint8_t> content) {
-  const bool hello = is(content, kHello, kHelloLength);
-  if (!hello && !is(content, kState, kStateLength)) return std::nullopt;
+  if (!is(content, kState, kStateLength)) return std::nullopt;
   FieldReader reader(content.subspan(1));
   BoardMessage message;
   message.sequence = reader.get<std::uint8_t>();
-  if (hello) {
-    Hello said;
-    said.protocol_version = reader.get<std::uint8_t>();
-    for (auto& part : said.firmware) part = reader.get<std::uint8_t>();
-    said.serial_number = reader.get<std::uint32_t>();
-    said.joints = reader.get<std::uint8_t>();
-    said.eyes = reader.get<std::uint8_t>();
-    message.content = said;
-    return message;
-  }
-  State state;
-  state.time_ms = reader.get<std::uint32_t>();
+  message.state.time_ms = reader.get<std::uint32_t>();
   const auto frame = get_frame(reader);
   if (!frame) return std::nullopt;
-  state.frame = *frame;
-  state.status = reader.get<std::uint8_t>();
-  message.content = state;
+  message.state.frame = *frame;
+  message.state.status = reader.get<std::uint8_t>();
   return message;
 }
 
@@ -94,16 +80,6 @@ std::optional<TorsoFrame> parse_command(std::span<const std::uint8_t> content) {
   return get_frame(reader);
 }
 
-bool is_hello_request(std::span<const std::uint8_t> content) { return is(content, kHello, 2); }
-
-serial_frame::Frame hello_request(std::uint8_t sequence) {
-  return FieldWriter(kHello, sequence).frame();
-}
-
-serial_frame::Frame heartbeat(std::uint8_t sequence) {
-  return FieldWriter(kHeartbeat, sequence).frame();
-}
-
 serial_frame::Frame set_frame(std::uint8_t sequence, const TorsoFrame& frame) {
   FieldWriter writer(kSetFrame, sequence);
   put_frame(writer, frame);
@@ -111,17 +87,10 @@ serial_frame::Frame set_frame(std::uint8_t sequence, const TorsoFrame& frame) {
 }
 
 serial_frame::Frame to_frame(const BoardMessage& message) {
-  if (const auto* hello = std::get_if<Hello>(&message.content)) {
-    FieldWriter writer(kHello, message.sequence);
-    writer.put(hello->protocol_version);
-    for (const std::uint8_t part : hello->firmware) writer.put(part);
-    return writer.put(hello->serial_number).put(hello->joints).put(hello->eyes).frame();
-  }
-  const auto& state = std::get<State>(message.content);
   FieldWriter writer(kState, message.sequence);
-  writer.put(state.time_ms);
-  put_frame(writer, state.frame);
-  return writer.put(state.status).frame();
+  writer.put(message.state.time_ms);
+  put_frame(writer, message.state.frame);
+  return writer.put(message.state.status).frame();
 }
 
 }  // namespace usher::torso

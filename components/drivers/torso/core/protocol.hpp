@@ -1,32 +1,19 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <variant>
 
 #include "drivers/serial_frame/core/frame.hpp"
 #include "drivers/torso/core/device.hpp"
 
 namespace usher::torso {
 
-/// Bits of the board's status.
+/// Bits of the board's status beside those that all boards share.
 enum : std::uint8_t {
-  kWatchdogExpired = 0x01,  ///< the host was silent: servos hold, eyes dim
   kServosOff = 0x02,
   kSupplyLow = 0x04,
   kJointStuck = 0x08,  ///< a joint does not get where it shall
-  kRebooted = 0x80,    ///< since its last Hello
-};
-
-/// At boot and on request.
-struct Hello {
-  std::uint8_t protocol_version = 0;
-  std::array<std::uint8_t, 3> firmware{};  ///< major, minor, patch
-  std::uint32_t serial_number = 0;
-  std::uint8_t joints = 0;
-  std::uint8_t eyes = 0;
 };
 
 /// 20 Hz.
@@ -38,7 +25,7 @@ struct State {
 
 struct BoardMessage {
   std::uint8_t sequence = 0;
-  std::variant<Hello, State> content;
+  State state;
 };
 
 /// Nothing when the type is unknown, the length is not the type's, or a joint stands where none can
@@ -47,14 +34,11 @@ std::optional<BoardMessage> parse(std::span<const std::uint8_t> content);
 
 /// What the board was told; for emulators and tests. Nothing when it is no frame for the torso.
 std::optional<TorsoFrame> parse_command(std::span<const std::uint8_t> content);
-bool is_hello_request(std::span<const std::uint8_t> content);
 
-// Frames to the board. `frame` is finite; a joint beyond half a turn or 1 m is clipped to that.
-serial_frame::Frame hello_request(std::uint8_t sequence);
-serial_frame::Frame heartbeat(std::uint8_t sequence);
+/// To the board. `frame` is finite; a joint beyond half a turn or 1 m is clipped to that.
 serial_frame::Frame set_frame(std::uint8_t sequence, const TorsoFrame& frame);
 
-// Frames of the board; for emulators.
+/// Of the board; for emulators.
 serial_frame::Frame to_frame(const BoardMessage& message);
 
 }  // namespace usher::torso

@@ -35,9 +35,9 @@ void TorsoComponent::tick() {
   link_.tick(now());
   const auto output = link_.take_output();
   if (!output.empty()) stream_->write(output);
-  lost_ = link_.lost_messages();
-  damaged_ = link_.damaged();
-  senseless_ = link_.rejected();
+  lost_ = link_.dialogue().lost_messages();
+  damaged_ = link_.dialogue().damaged();
+  senseless_ = link_.dialogue().rejected();
 }
 
 }  // namespace usher::torso

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/serial_frame/core/emulated_board.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 
@@ -22,25 +23,20 @@ constexpr std::size_t kTilt = 2, kRise = 3;
 /// told last.
 class Device final : public runtime::LockstepDevice {
  public:
-  void opened() override { greeted_ = false; }
+  void opened() override { board_.hello_requests = 0; }
   runtime::Bytes answer(std::span<const std::uint8_t> bytes) override {
-    runtime::Bytes said;
-    decoder_.feed(bytes, [&](std::span<const std::uint8_t> content) {
-      if (is_hello_request(content)) {
-        append(said, {sequence_++, Hello{1, {1, 0, 0}, 42, 7, 2}});
-        greeted_ = true;
-      }
-      if (const auto frame = parse_command(content)) {
-        largest_step =
-            std::max(largest_step, std::abs(frame->joints[kTilt] - state.frame.joints[kTilt]));
-        state.frame = *frame;
-      }
+    return board_.hear(bytes, [this](std::span<const std::uint8_t> content) {
+      const auto frame = parse_command(content);
+      if (!frame) return;
+      largest_step =
+          std::max(largest_step, std::abs(frame->joints[kTilt] - state.frame.joints[kTilt]));
+      state.frame = *frame;
     });
-    return said;
   }
   runtime::Bytes speak(runtime::Time /*now*/) override {
     runtime::Bytes said;
-    if (greeted_ && !silent && ++asked_ % 5 == 0) append(said, {sequence_++, state});
+    if (board_.hello_requests > 0 && !silent && ++asked_ % 5 == 0)
+      board_.append(said, to_frame({board_.sequence++, state}));
     return said;
   }
 
@@ -49,13 +45,7 @@ class Device final : public runtime::LockstepDevice {
   double largest_step = 0.0;
 
  private:
-  static void append(runtime::Bytes& bytes, const BoardMessage& message) {
-    const serial_frame::Frame frame = to_frame(message);
-    bytes.insert(bytes.end(), frame.span().begin(), frame.span().end());
-  }
-  serial_frame::FrameDecoder decoder_;
-  std::uint8_t sequence_ = 0;
-  bool greeted_ = false;
+  serial_frame::EmulatedBoard board_{{1, {1, 0, 0}, 42, {7, 2}}};
   int asked_ = 0;
 };
 

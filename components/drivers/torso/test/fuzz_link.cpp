@@ -1,4 +1,5 @@
 // Any bytes from the torso's board, and any content with a right checksum.
+#include <algorithm>
 #include <cstdlib>
 
 #include "drivers/torso/core/link.hpp"
@@ -19,10 +20,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     link.tick(now);
     link.take_output();
   };
-  hear(torso::to_frame({0, torso::Hello{1, {}, 0, 7, 2}}).span());
+  hear(serial_frame::to_frame(0, {1, {}, 0, {7, 2}}).span());
   hear({data, size});
-  const serial_frame::Frame frame = serial_frame::encode(
-      {data, size < serial_frame::kLongestContent ? size : serial_frame::kLongestContent});
+  const serial_frame::Frame frame =
+      serial_frame::encode({data, std::min(size, serial_frame::kLongestContent)});
   hear(frame.span());
   torso::parse_command({data, size});
   return 0;
