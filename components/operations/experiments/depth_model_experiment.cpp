@@ -26,14 +26,26 @@ constexpr int kSeeds = 3;
 constexpr std::size_t kFeatures = 11;
 constexpr const char* kPhotographs = "photographs";
 constexpr double kLeastPortrait = 60.0;  // [pixels]
+constexpr double kAlike = 1.5;           // between the sizes of two rectangles around one face
 constexpr double kHalfView = 0.45;  // of the distance: as far aside a face is whole in the image
 
+/// Whether a rectangle is that of something at a point; of a face when the point has a width, the
+/// face's: a much larger rectangle that happens to lie there is none.
 bool covers(const Box& box, const Box& point) {
+  if (point.width > 0.0 && std::abs(std::log(box.width / point.width)) > std::log(kAlike))
+    return false;
   return std::abs(box.column() - point.left) < 0.5 * box.width &&
          std::abs(box.row() - point.top) < 0.5 * box.height;
 }
 
 Eigen::Vector3d face_of(const rendering::Body& body) { return rendering::head_of(body).middle; }
+
+/// Where a face is in the image, and how wide.
+Box place_of(const Stage& stage, const rendering::Body& body) {
+  Box place = stage.pixel_of(face_of(body));
+  place.width = 1.0 / (DepthModel().center.b * body.pose.x);
+  return place;
+}
 
 /// Two people, one tall and one short, step back before the camera (report III-B-4): in the middle
 /// of the image, or towards a side.
@@ -131,7 +143,7 @@ Result<std::vector<Photographed>> look_at_photographs(const std::vector<cv::Mat>
     for (Photographed& one : all) {
       const auto body = face_study::standing(one.ahead, 0.05 * one.ahead, 1.75);
       const auto& shot = stage->shoot({body});
-      const Box head = stage->pixel_of(face_of(body));
+      const Box head = place_of(*stage, body);
       const auto hits = detector->find_anywhere(shot.color());
       judge(hits, head, {}, one.cascade);
       judge(*detector->find_as_printed(shot.color(), shot.depth()), head, {}, one.algorithm);
@@ -235,7 +247,7 @@ Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options)
     const auto body = face_study::standing(ahead, ahead * random.uniform(-kHalfView, kHalfView),
                                            random.uniform(1.6, 1.85));
     const auto& shot = stage->shoot({body});
-    const Box face = stage->pixel_of(face_of(body));
+    const Box face = place_of(*stage, body);
     const std::array<int, 4> before{all[0].found, all[1].found, all[2].found, all[3].found};
     const auto hits = anywhere->find_anywhere(shot.color());
     judge(hits, face, features, all[0]);

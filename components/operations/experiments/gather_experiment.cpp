@@ -212,6 +212,7 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
   std::string csv =
       "distance,seed,failed,room_s,gather_s,total_s,brought,missed,checked,refused,invited,"
       "unanswered,lost,contacts\n";
+  std::vector<double> look_backs;  // of one robot
   double failed_all = 0.0, worst = 0.0, missed_all = 0.0, contacts = 0.0, wall = 0.0,
          simulated = 0.0;
   for (std::size_t row = 0; row < kDistances.size() * static_cast<std::size_t>(options.robots);
@@ -238,7 +239,10 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
       met += run.robot_contacts;
       grazed += run.robot_touches;
       whole += run.seconds;
-      if (robots == 1) wall += run.wall, simulated += run.simulated;
+      if (robots == 1) {
+        wall += run.wall, simulated += run.simulated;
+        look_backs.insert(look_backs.end(), run.look_backs.begin(), run.look_backs.end());
+      }
       csv += row_of(distance, robots) + "," + std::to_string(trial.seed) + "," +
              (trial.failed() ? "1" : "0") + format(",%.1f", m.room_time()) +
              format(",%.1f", trial.gathering()) + format(",%.1f,", run.seconds) +
@@ -291,6 +295,12 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
   sheet.targets["failed"] = {Bound::kAtMost, 0.0};
   sheet.metrics["longest_with_room_s"] = worst;
   sheet.targets["longest_with_room_s"] = {Bound::kAtMost, limit};
+  if (!look_backs.empty()) {
+    std::sort(look_backs.begin(), look_backs.end());
+    sheet.metrics["look_back_s_median"] = look_backs[look_backs.size() / 2];
+    sheet.metrics["look_back_s_p95"] = look_backs[look_backs.size() * 95 / 100];
+    sheet.targets["look_back_s_p95"] = {Bound::kAtMost, 15.0};
+  }
   sheet.metrics["contacts"] = contacts;
   sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
   const char* const speed = "simulated_s_per_wall_s_and_thread";

@@ -122,7 +122,8 @@ struct Watched {
   std::string name;
   MissJudge judge;
   std::string journal = "t,state,x,y,yaw,brought,invited,navigator\n";
-  bool lost = false;  ///< it is dead now
+  bool lost = false;         ///< it is dead now
+  double state_since = 0.0;  ///< [s]
   std::uint32_t contacts = 0, touches = 0;
 };
 
@@ -131,12 +132,16 @@ void watch(Watched& robot, LockstepRun& run, MeetingRun& result) {
   const auto take_status = [&robot, &run, &result](const auto& status, const auto&) {
     auto& last = result.statuses[robot.name];
     const bool changed = status.state() != last.state();
+    const double time = runtime::seconds(run.world().elapsed());
+    if (changed && last.state() == state::STATE_LOOK_BACK && status.state() == state::STATE_GUIDE)
+      result.look_backs.push_back(time - robot.state_since);
+    if (changed) robot.state_since = time;
     last = status;
     const RunRecord& record = run.record(robot.name);
     const auto truth = record.truth();
     if (!changed || !truth) return;
     const auto& navigation = record.navigation();
-    robot.journal += format("%.1f,", runtime::seconds(run.world().elapsed())) +
+    robot.journal += format("%.1f,", time) +
                      std::string(meeting::text(static_cast<meeting::State>(status.state()))) +
                      format(",%.2f", truth->x) + format(",%.2f", truth->y) +
                      format(",%.2f,", truth->yaw) + std::to_string(status.mission().brought()) +

@@ -52,9 +52,10 @@ struct MeetingRun {
                               ///< and it went by; in a meeting room nobody is missed
   std::uint32_t present = 0;  ///< who really is in the meeting's room soon after the end
   std::string whereabouts;    ///< "ada 3.1 9.8; boole ..." [m], soon after the end
-  RunRecord::Summary summary;  ///< of a fleet, of its first robot, contacts and touches of all
-  double wall = 0.0;           ///< [s]
-  double simulated = 0.0;      ///< [s]
+  std::vector<double> look_backs;  ///< [s] each, of those that saw whom the robot guided
+  RunRecord::Summary summary;      ///< of a fleet, of its first robot, contacts and touches of all
+  double wall = 0.0;               ///< [s]
+  double simulated = 0.0;          ///< [s]
   std::uint64_t digest = 0;
   std::string complaints;
 };

@@ -23,6 +23,7 @@ using std::chrono::milliseconds;
 constexpr auto kPeriod = milliseconds(100);
 constexpr int kStatusEvery = 5;            // periods
 constexpr std::uint64_t kFoundAfter = 10;  // periods
+constexpr std::uint64_t kWaitedFor = 50;   // periods
 constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr auto kGoalAge = milliseconds(2000);
 constexpr auto kLocalizationAge = milliseconds(2000);
@@ -305,12 +306,25 @@ void MeetingComponent::recall() {
   left_->reason = "the assistant was restarted";
 }
 
-/// Once the others have found this participant.
+/// Whatever still works for the mission that a restart ended is told to stop until it says that it
+/// has: nobody would notice who drives on. What is silent for a while is not waited for.
 void MeetingComponent::end_what_was_left() {
-  usher_msgs::msg::GoalCancel cancel;
-  cancel.client(host_.name());
-  cancel_exploration_.publish(cancel);
-  cancel_drive_.publish(cancel);
+  bool unknown = false, runs = false;
+  const auto end = [&](const auto* status, auto& output) {
+    namespace goal = usher_msgs::msg::GoalStatus_Constants;
+    unknown = unknown || status == nullptr;
+    if (status == nullptr || status->client() != host_.name() ||
+        (status->state() != goal::STATE_ACTIVE && status->state() != goal::STATE_WAITING))
+      return;
+    usher_msgs::msg::GoalCancel cancel;
+    cancel.client(host_.name());
+    cancel.id(status->id());
+    output.publish(cancel);
+    runs = true;
+  };
+  end(exploration_.fresh(), cancel_exploration_);
+  end(navigation_.fresh(), cancel_drive_);
+  if (runs || (unknown && ticks_ < kWaitedFor)) return;
   usher_msgs::msg::SupervisorRequest request;
   request.id(requests_.next_id());
   request.command(service::command_for(service::RequestKind::kNavigationEnd));
@@ -452,12 +466,12 @@ std::string MeetingComponent::lacks() const {
 void MeetingComponent::tick() {
   step();
   turn();
-  if (left_ && ticks_ >= kFoundAfter) end_what_was_left();
   if (++ticks_ % kStatusEvery == 0) {
     publish_status();
     tell_team();
     if (core_.state() == State::kGuide) publish_screen();  // the remaining way
   }
+  if (left_ && ticks_ % kFoundAfter == 0) end_what_was_left();
   const std::string lacking = lacks();
   host_.health().set(lacking.empty() ? HealthState::kOk : HealthState::kDegraded, lacking);
 }

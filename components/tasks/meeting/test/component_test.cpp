@@ -44,6 +44,7 @@ class Stage {
   bool navigator = true, explorer = true, detector = true, localized = true;
   geometry::Pose2 pose{6.0, 6.0, 0.0};
   NavigateStatus navigation;
+  ExploreStatus exploration;
   std::vector<usher_msgs::msg::Face> faces;
 
   void run(int ms) {
@@ -54,7 +55,6 @@ class Stage {
       if (supervisor != 255) host.publish(topics::kSupervisorStatus, status);
       navigation.header(wire::header(host.now(), frames::kMap));
       if (navigator) host.publish(topics::kNavigateStatus, navigation);
-      ExploreStatus exploration;
       exploration.header(navigation.header());
       if (explorer) host.publish(topics::kExploreStatus, exploration);
       LocalizationStatus localization;
@@ -185,8 +185,50 @@ TEST(MeetingComponent, ReportsAMissionThatItsRestartEnded) {
   EXPECT_EQ(report->wanted(), 3U);
   EXPECT_EQ(report->outcome(), state::OUTCOME_FAILED);
   EXPECT_EQ(report->reason(), "the assistant was restarted");
-  EXPECT_TRUE(stage.host.last(topics::kNavigateCancel));
+  EXPECT_FALSE(stage.host.last(topics::kNavigateCancel)) << "nobody drives for it";
   EXPECT_EQ(stage.status().state(), state::STATE_IDLE);
+}
+
+TEST(MeetingComponent, EndsWhatItsRestartLeftUntilItHasEnded) {
+  Stage stage;
+  stage.call(1);
+  stage.host.world().kill("meeting");
+  stage.host.clear();
+  stage.exploration.id(99);
+  stage.exploration.client("meeting");
+  stage.exploration.state(GoalStatus_Constants::STATE_ACTIVE);
+  stage.navigation.id(5);
+  stage.navigation.client("operator");
+  stage.navigation.state(GoalStatus_Constants::STATE_ACTIVE);
+  stage.host.world().start("meeting");
+  stage.run(1500);
+  ASSERT_TRUE(stage.host.last(topics::kExploreCancel));
+  EXPECT_EQ(stage.host.last(topics::kExploreCancel)->id(), 99U);
+  EXPECT_FALSE(stage.host.last(topics::kMeetingReport)) << "it explores yet";
+  stage.host.clear();  // that one was lost
+  stage.run(1500);
+  EXPECT_TRUE(stage.host.last(topics::kExploreCancel));
+  stage.exploration.state(GoalStatus_Constants::STATE_CANCELLED);
+  stage.run(1500);
+  EXPECT_TRUE(stage.host.last(topics::kMeetingReport));
+  EXPECT_FALSE(stage.host.last(topics::kNavigateCancel)) << "another one's drive is not touched";
+  stage.host.clear();
+  stage.run(3000);
+  EXPECT_FALSE(stage.host.last(topics::kExploreCancel));
+}
+
+TEST(MeetingComponent, WaitsForNobodyWhoIsSilentAfterItsRestart) {
+  Stage stage;
+  stage.call(1);
+  stage.host.world().kill("meeting");
+  stage.host.clear();
+  stage.explorer = false;
+  stage.run(3000);
+  stage.host.world().start("meeting");
+  stage.run(4000);
+  EXPECT_FALSE(stage.host.last(topics::kMeetingReport));
+  stage.run(2000);
+  EXPECT_TRUE(stage.host.last(topics::kMeetingReport));
 }
 
 TEST(MeetingComponent, RefusesTextsThatAreNone) {
