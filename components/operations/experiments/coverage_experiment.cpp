@@ -23,7 +23,8 @@ using std::chrono::milliseconds;
 
 constexpr int kSeeds = 3;
 constexpr double kMinutes = 8.0;
-constexpr auto kLook = milliseconds(100);        // between two looks of the judge
+constexpr auto kLook = milliseconds(100);  // between two looks of the judge
+constexpr auto kAskEvery = milliseconds(1000);
 constexpr auto kPatience = milliseconds(60000);  // until the exploration has begun
 constexpr double kTurnRate = 0.4;                // [rad/s] and 0.7 m/s, the robot's pace: R IV-E
 constexpr std::string_view kChosen = "information_gain";
@@ -110,13 +111,13 @@ Result<Exploration> explore(const Deployment& deployment, const Site& site, std:
   Exploration& result = judge.result();
 
   constexpr std::uint64_t kId = 1000;
-  std::uint64_t told = 0;
+  usher_msgs::msg::ExploreGoal goal;
+  goal.client(Errand::kClient);
+  goal.anew(true);
+  const auto ask = [&] { world.publish(topics::kExploreGoal, goal, Errand::kClient); };
   const auto tell = [&](const usher_msgs::msg::NavigateGoal& start) {
-    usher_msgs::msg::ExploreGoal goal;
-    goal.id(told = start.id());
-    goal.client(Errand::kClient);
-    goal.anew(true);
-    world.publish(topics::kExploreGoal, goal, Errand::kClient);
+    goal.id(start.id());
+    ask();
   };
   Errand errand("exploration", kId,
                 {[&](const auto& request) {
@@ -127,7 +128,7 @@ Result<Exploration> explore(const Deployment& deployment, const Site& site, std:
                 [&](const auto& status, const auto&) { errand.take(status); });
   world.observe(topics::kExploreStatus,
                 [&](const auto& status, const auto&) { result.status = status; });
-  const auto begun = [&] { return told != 0 && result.status.id() == told; };
+  const auto begun = [&] { return goal.id() != 0 && result.status.id() == goal.id(); };
   while (!begun() && world.elapsed() < kPatience && !errand.over()) {
     errand.step();
     world.run_for(milliseconds(200));
@@ -135,7 +136,11 @@ Result<Exploration> explore(const Deployment& deployment, const Site& site, std:
   if (!begun())
     return Error{"the exploration did not begin: " + errand.reason() + "\n" + (*run)->complaints()};
   const auto until = world.now() + runtime::from_seconds(60.0 * minutes);
-  while (world.now() < until) {
+  for (auto ask_at = world.now(); world.now() < until;) {
+    if (world.now() >= ask_at) {  // the explorer ends when nobody asks any more
+      ask();
+      ask_at += kAskEvery;
+    }
     if (const auto truth = (*run)->record().truth()) judge.look(*truth);
     world.run_for(kLook);
   }

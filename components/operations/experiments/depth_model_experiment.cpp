@@ -26,7 +26,7 @@ constexpr int kSeeds = 3;
 constexpr std::size_t kFeatures = 11;
 constexpr const char* kPhotographs = "photographs";
 constexpr double kLeastPortrait = 60.0;  // [pixels]
-constexpr double kAlike = 1.5;           // between the sizes of two rectangles around one face
+constexpr double kAlike = 2.0;           // between the sizes of two rectangles around one face
 constexpr double kHalfView = 0.45;  // of the distance: as far aside a face is whole in the image
 
 /// Whether a rectangle is that of something at a point; of a face when the point has a width, the

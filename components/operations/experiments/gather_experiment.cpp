@@ -299,6 +299,7 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
     std::sort(look_backs.begin(), look_backs.end());
     sheet.metrics["look_back_s_median"] = look_backs[look_backs.size() / 2];
     sheet.metrics["look_back_s_p95"] = look_backs[look_backs.size() * 95 / 100];
+    sheet.metrics["look_back_s_longest"] = look_backs.back();
     sheet.targets["look_back_s_p95"] = {Bound::kAtMost, 15.0};
   }
   sheet.metrics["contacts"] = contacts;

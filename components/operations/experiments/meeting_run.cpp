@@ -133,7 +133,9 @@ void watch(Watched& robot, LockstepRun& run, MeetingRun& result) {
     auto& last = result.statuses[robot.name];
     const bool changed = status.state() != last.state();
     const double time = runtime::seconds(run.world().elapsed());
-    if (changed && last.state() == state::STATE_LOOK_BACK && status.state() == state::STATE_GUIDE)
+    const bool seen = status.state() == state::STATE_ARRIVED ||
+                      (status.state() == state::STATE_GUIDE && status.reason().empty());
+    if (changed && last.state() == state::STATE_LOOK_BACK && seen)
       result.look_backs.push_back(time - robot.state_since);
     if (changed) robot.state_since = time;
     last = status;

@@ -55,8 +55,8 @@ class Stream {
   virtual void reopen(Duration delay) = 0;
 };
 /// A guard process beside the driver: it owns the port, so that the device hears something safe
-/// though the driver dies or hangs. It sends `safe` at once when the driver ends, and every 10 ms
-/// while the driver has written nothing for `silence`; never before its first write.
+/// though the driver dies or hangs. It sends `safe` at once when the driver ends, and thrice in a
+/// `silence` while the driver has written nothing for that long; never before its first write.
 struct StreamGuard {
   Bytes safe;  ///< one whole message to the device, for example "velocity zero"; empty = no guard
   Duration silence{};  ///< {>= 1 ms}

@@ -6,7 +6,7 @@
 namespace usher::runtime {
 
 Guard::Guard(std::vector<std::uint8_t> safe, Time silence)
-    : safe_(std::move(safe)), silence_(silence) {
+    : safe_(std::move(safe)), silence_(silence), repeat_(silence / kRepeats) {
   assert(!safe_.empty() && silence > Time::zero());
 }
 
@@ -45,8 +45,8 @@ void Guard::tick(Time now) {
 
 std::optional<Guard::Time> Guard::due() const {
   if (!heard_at_) return std::nullopt;
-  if (gone_) return farewells_ > 0 ? std::optional<Time>(safe_at_ + kRepeat) : std::nullopt;
-  return overruling_ ? safe_at_ + kRepeat : *heard_at_ + silence_;
+  if (gone_) return farewells_ > 0 ? std::optional<Time>(safe_at_ + kFarewellEvery) : std::nullopt;
+  return overruling_ ? safe_at_ + repeat_ : *heard_at_ + silence_;
 }
 
 }  // namespace usher::runtime

@@ -15,14 +15,15 @@ namespace usher::runtime {
 ///
 /// A driver that was silent is passed on again from its next write on: what it writes then was
 /// decided then. Nothing is sent before the driver's first write: the device may not be ready for
-/// it. Bytes that wait because the port is slow are dropped for the safe ones, but never a part of
-/// what is already on its way.
+/// it. Bytes that wait because the port is slow are dropped for the
+/// safe ones, but never a part of what is already on its way.
 ///
 /// Fixed memory, no allocation after the constructor, no clock of its own.
 class Guard {
  public:
   using Time = std::chrono::nanoseconds;
-  static constexpr auto kRepeat = std::chrono::milliseconds(10);  ///< between two safe messages
+  static constexpr int kRepeats = 3;  ///< safe messages in the time of one silence
+  static constexpr auto kFarewellEvery = std::chrono::milliseconds(10);
   static constexpr int kFarewells = 3;  ///< safe messages to the port after the driver's end
 
   Guard(std::vector<std::uint8_t> safe, Time silence);
@@ -52,6 +53,7 @@ class Guard {
 
   const std::vector<std::uint8_t> safe_;
   const Time silence_;
+  const Time repeat_;  ///< between two safe messages to a silent driver's port
   Outbox outbox_;
   std::optional<Time> heard_at_;
   Time safe_at_{};

@@ -166,6 +166,13 @@ void Link::send_setup() {
   send(encode(Command::kEnable, 1));
 }
 
+std::vector<std::uint8_t> Link::standstill() {
+  std::vector<std::uint8_t> bytes;
+  for (const Frame& frame : {encode(Command::kVelocity, 0), encode(Command::kTurnRate, 0)})
+    bytes.insert(bytes.end(), frame.span().begin(), frame.span().end());
+  return bytes;
+}
+
 Mode Link::mode(Time now) const {
   if (state_ != State::kRunning || !reported_ || now - *reported_ >= parameters_.lost)
     return Mode::kDisconnected;

@@ -67,6 +67,9 @@ class Link {
     });
   }
 
+  /// Zero velocity, as a guard sends it for a driver that is gone.
+  static std::vector<std::uint8_t> standstill();
+
   /// What to send now, valid until the next call; call it at 25 Hz or more. Zero velocity goes out
   /// before the motors are switched on: the controller would resume what it was told last.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);

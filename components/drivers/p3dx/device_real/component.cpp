@@ -23,9 +23,13 @@ P3dxComponent::P3dxComponent(runtime::Host& host)
       driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
                      .emergency_stop = [this] { line_.link().emergency_stop(); },
                      .reset = [this] { line_.link().reset(); }}) {
+  const double silence =
+      host.parameters().number("guard_silence", "s", {0.1, 0.5}, 0.15,
+                               "The guard commands zero when the driver is silent for so long.");
   line_.open({.address = "serial:///dev/ttyUSB0?baud=9600",
               .text = "The base's line.",
               .cycle = kCycle,
+              .guard = {.safe = Link::standstill(), .silence = runtime::from_seconds(silence)},
               .take =
                   [this](const Feedback& feedback) {
                     driver_.warn(line_.link().reason());

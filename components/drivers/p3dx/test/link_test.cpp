@@ -291,6 +291,12 @@ TEST(Link, ItsStopButtonAndAStallHoldUntilReset) {
   }
 }
 
+TEST(Link, StandstillIsZeroVelocity) {
+  const Bytes bytes = Link::standstill();
+  EXPECT_TRUE(contains(bytes, encode(Command::kVelocity, 0)));
+  EXPECT_TRUE(contains(bytes, encode(Command::kTurnRate, 0)));
+}
+
 TEST(Link, NoticesASilentBase) {
   Link link({});
   Base base;

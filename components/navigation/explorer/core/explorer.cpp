@@ -19,7 +19,8 @@ Result<Explorer> Explorer::create(const ExplorerConfig& config, std::uint64_t se
       within({{"passing_room", config.passing_room, 0.05, 2.0, "m"},
               {"standing_room", config.standing_room, config.passing_room, 2.0, "m"},
               {"most_recoveries", static_cast<double>(config.most_recoveries), 0, 100},
-              {"most_failures", static_cast<double>(config.most_failures), 1, 100}});
+              {"most_failures", static_cast<double>(config.most_failures), 1, 100},
+              {"client_silence", config.client_silence, 0.5, 60.0, "s"}});
   if (!status) return Error{status.error()};
   auto seen = SeenArea::create(config.camera);
   if (!seen) return Error{seen.error()};
@@ -69,7 +70,10 @@ void Explorer::begin_round() {
 }
 
 void Explorer::request(const ExploreRequest& request) {
-  if (request.id == status_.id && request.id != 0 && request.client == status_.client) return;
+  if (request.id == status_.id && request.id != 0 && request.client == status_.client) {
+    asked_ = true;
+    return;
+  }
   const bool sound =
       request.id != 0 && std::isfinite(request.max_speed) && request.max_speed >= 0.0;
   if (!sound && active()) return;
@@ -87,6 +91,7 @@ void Explorer::request(const ExploreRequest& request) {
     return;
   }
   status_.state = GoalState::kActive;
+  asked_ = true;
   if (request.anew) begin_round();
 }
 
@@ -109,8 +114,11 @@ void Explorer::wait(const std::string& reason) {
 }
 
 Decision Explorer::step(const Situation& s) {
+  if (std::exchange(asked_, false)) asked_at_ = s.time;
   if (active()) {
-    if (seen_.empty()) {
+    if (s.time - asked_at_ >= config_.client_silence) {
+      finish(GoalState::kFailed, "'" + status_.client + "' is silent");
+    } else if (seen_.empty()) {
       wait("no map");
     } else if (!s.navigation) {
       wait("no navigator");

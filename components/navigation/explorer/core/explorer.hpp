@@ -23,10 +23,11 @@ struct ExplorerConfig {
   double standing_room = 0.35;       ///< [m] to turn at a viewpoint; [passing_room, 2]
   int most_recoveries = 2;           ///< of the navigator, for one viewpoint; [0, 100]
   int most_failures = 5;             ///< viewpoints in a row that cannot be reached; [1, 100]
+  double client_silence = 3.0;       ///< [s] of who asked, then it ends; [0.5, 60]
 };
 
 struct ExploreRequest {
-  std::uint64_t id = 0;  ///< unique per client, not 0; a repeated one changes nothing
+  std::uint64_t id = 0;  ///< unique per client, not 0; a repeated one says that it is still wanted
   std::string client;
   std::uint32_t rounds = 0;  ///< 0 = until cancelled
   bool anew = false;         ///< else the round before goes on
@@ -90,7 +91,8 @@ class Explorer {
   /// map.
   void look(const Pose2& robot) { seen_.look(robot); }
 
-  /// The newest goal wins; one that is none is refused and does not disturb what runs.
+  /// The newest goal wins; one that is none is refused and does not disturb what runs. Ends when
+  /// it is not repeated: nobody would come for whom the robot finds.
   void request(const ExploreRequest& request);
   /// Id 0 cancels whatever runs. False when no such goal is active.
   bool cancel(std::uint64_t id);
@@ -135,6 +137,8 @@ class Explorer {
   bool driving_ = false;  // a viewpoint was sent and is neither reached nor given up
   std::uint64_t last_drive_ = 0;
   bool answered_ = false;  // the navigator has named the drive
+  bool asked_ = false;     // since the last step
+  double asked_at_ = 0.0;
   double sent_at_ = 0.0;
   int failures_ = 0;  // in a row
   Decision decision_;

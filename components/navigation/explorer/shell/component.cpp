@@ -57,6 +57,8 @@ ExplorerConfig ExplorerComponent::read_parameters(runtime::Host& host) {
   c.most_failures = static_cast<int>(
       p.integer("most_failures", "-", {1, 100}, c.most_failures,
                 "So many viewpoints in a row that cannot be reached end the exploration."));
+  number("client_silence", "s", {0.5, 60}, c.client_silence,
+         "An exploration ends when its goal was not repeated for so long.");
   const double clearance = p.number("clearance", "m", {0, 1}, 0.08,
                                     "Around the outline, at viewpoints and on ways to them.");
   const auto footprint = wire::read_footprint(host);
@@ -83,7 +85,7 @@ ExplorerComponent::ExplorerComponent(runtime::Host& host)
       drives_(host, topics::kNavigateGoal) {
   map_ =
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
-  goal_ = host.input(topics::kExploreGoal, {.optional = true},
+  goal_ = host.input(topics::kExploreGoal, {.on_loss = "the exploration ends", .optional = true},
                      [this](const auto& goal, const auto&) { take_goal(goal); });
   cancel_ = host.input(topics::kExploreCancel, {.optional = true},
                        [this](const auto& cancel, const auto&) {

@@ -51,15 +51,15 @@ class Component : public testing::Test {
         status.state(navigation_state);
         host.publish(topics::kNavigateStatus, status);
       }
+      if (asks && at % 500 == 0) host.publish(topics::kExploreGoal, goal);
       host.run_for(milliseconds(50));
     }
   }
   void explore() {
-    usher_msgs::msg::ExploreGoal goal;
     goal.id(4);
     goal.client("meeting");
     goal.max_speed(0.5F);
-    host.publish(topics::kExploreGoal, goal);
+    asks = true;
     run(200);
   }
   void answer(std::uint8_t state) {
@@ -80,6 +80,8 @@ class Component : public testing::Test {
 
   runtime::TestHost host{runtime::component_factory<ExplorerComponent>("explorer"), kParameters};
   geometry::Pose2 robot{3.0, 5.0, 0.0};
+  usher_msgs::msg::ExploreGoal goal;
+  bool asks = false;
   bool transforms = true, localizes = true, navigates = true;
   std::uint8_t localized = localization::STATE_GOOD;
   std::uint64_t navigation_id = 0;
@@ -124,11 +126,25 @@ TEST_F(Component, RepeatsADriveUntilTheNavigatorNamesIt) {
   const auto all = host.written(topics::kNavigateGoal);
   EXPECT_GE(all.size(), 4U);
   EXPECT_TRUE(std::all_of(all.begin(), all.end(),
-                          [&](const auto& goal) { return goal.id() == all.front().id(); }));
+                          [&](const auto& each) { return each.id() == all.front().id(); }));
   answer(STATE_ACTIVE);
   const auto sent = drives();
   run(1000);
   EXPECT_EQ(drives(), sent);
+}
+
+TEST_F(Component, EndsWhenWhoAskedIsSilent) {
+  give_map();
+  run(500);
+  explore();
+  answer(STATE_ACTIVE);
+  run(5000);
+  ASSERT_EQ(status().state(), STATE_ACTIVE);
+  asks = false;
+  run(3500);
+  EXPECT_EQ(status().state(), STATE_FAILED);
+  EXPECT_EQ(status().reason(), "'meeting' is silent");
+  EXPECT_EQ(host.last(topics::kNavigateCancel)->id(), drive().id());
 }
 
 TEST_F(Component, CancelsItsDriveWhenItIsCancelled) {
@@ -219,7 +235,6 @@ TEST_F(Component, TakesNothingForSeenWhenLocalizationOrTheFramesAreSilent) {
 TEST_F(Component, RefusesGoalsThatAreNone) {
   give_map();
   run(500);
-  usher_msgs::msg::ExploreGoal goal;
   goal.id(9);
   goal.max_speed(std::numeric_limits<float>::quiet_NaN());
   host.publish(topics::kExploreGoal, goal);

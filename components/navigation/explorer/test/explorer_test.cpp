@@ -24,6 +24,7 @@ class Rig : public testing::Test {
   /// One step of 0.1 s with what the navigator said last.
   Decision step() {
     time += 0.1;
+    if (asks && explorer->active()) explorer->request({.id = status().id, .client = "meeting"});
     if (localized) explorer->look(robot);
     Situation s;
     s.time = time;
@@ -47,7 +48,7 @@ class Rig : public testing::Test {
 
   std::optional<Explorer> explorer;
   Pose2 robot{2.0, 5.0, 0.0};
-  bool localized = true, heard = true;
+  bool localized = true, heard = true, asks = true;
   DriveReport report;
   double time = 10.0;
   std::vector<Drive> drives;
@@ -129,6 +130,22 @@ TEST_F(Rig, GivesUpAViewpointAndGoesToAnother) {
   ASSERT_EQ(drives.size(), 2U);
   EXPECT_EQ(status().state, GoalState::kActive);
   EXPECT_EQ(status().given_up, 1U);
+}
+
+TEST_F(Rig, EndsWhenNobodyAsksForItAnyMore) {
+  make();
+  begin();
+  asks = false;
+  for (int i = 0; i < 29; ++i) step();
+  EXPECT_EQ(status().state, GoalState::kActive);
+  explorer->request({.id = 5, .client = "meeting"});
+  for (int i = 0; i < 29; ++i) step();
+  EXPECT_EQ(status().state, GoalState::kActive) << "asked once more";
+  for (int i = 0; i < 3; ++i) step();
+  EXPECT_EQ(status().state, GoalState::kFailed);
+  EXPECT_EQ(status().reason, "'meeting' is silent");
+  ASSERT_FALSE(cancelled.empty());
+  EXPECT_EQ(cancelled.back(), drives.back().id);
 }
 
 TEST_F(Rig, GivesUpAViewpointThatTakesTooManyRecoveries) {

@@ -88,6 +88,7 @@ class Sharing : public testing::Test {
   }
   std::optional<Drive> step() {
     time += 0.1;
+    explorer->request({.id = 5, .client = "meeting"});  // it is wanted still
     explorer->look(robot);
     const Decision decision =
         explorer->step({.time = time, .pose = robot, .navigation = report, .client = "explorer"});

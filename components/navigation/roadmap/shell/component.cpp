@@ -94,9 +94,11 @@ void RoadmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   Status taken = map ? planner_->set_map(*map) : Status(Error{map.error()});
   if (!taken) {
     ++rejected_;
-    host_.health().set(HealthState::kDegraded, "map refused: " + taken.error());
+    map_refused_ = "map refused: " + taken.error();
+    host_.health().set(HealthState::kDegraded, map_refused_);
     return;
   }
+  map_refused_.clear();
   resolution_ = map->resolution();
   map_distances_.build(*map, obstacle_tolerance_ + 2.0 * resolution_, kOccupiedFrom);
   obstacles_.clear();
@@ -110,8 +112,10 @@ void RoadmapComponent::take_costs(const usher_msgs::msg::Costmap& message) {
     return;
   }
   costs_ = std::move(costs).value();
-  host_.health().set(planner_->has_map() ? HealthState::kOk : HealthState::kDegraded,
-                     planner_->has_map() ? "" : "no map");
+  const std::string lacks = !map_refused_.empty() ? map_refused_
+                            : planner_->has_map() ? ""
+                                                  : "no map";
+  host_.health().set(lacks.empty() ? HealthState::kOk : HealthState::kDegraded, lacks);
 }
 
 /// At its goal the robot forgets what stood in its way.

@@ -30,6 +30,7 @@ class RoadmapComponent final : public runtime::Component {
   double forget_distance_;
   double obstacle_tolerance_;
   std::optional<RoadmapPlanner> planner_;
+  std::string map_refused_;  ///< why; empty: the newest was taken
   double resolution_ = 0.05;
   grid::DistanceField map_distances_;
   std::optional<grid::Grid<std::uint8_t>> costs_;

@@ -104,6 +104,20 @@ TEST_F(Component, RefusesBadInputAndOtherFrames) {
   EXPECT_EQ(ask({2, 2, 0}, {12, 9, 1}).state(), STATE_SUCCEEDED) << "keeps the map that it had";
 }
 
+TEST_F(Component, SaysThatAMapWasRefusedUntilOneIsTaken) {
+  give_map(two_rooms());
+  give_costs(two_rooms());
+  host.publish(topics::kMap, {});
+  host.run_for(milliseconds(5));
+  give_costs(two_rooms());
+  host.run_for(std::chrono::seconds(1));
+  EXPECT_NE(host.heartbeat().reason().find("map refused"), std::string::npos);
+  give_map(two_rooms());
+  give_costs(two_rooms());
+  host.run_for(std::chrono::seconds(1));
+  EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
 TEST_F(Component, TellsTheSameReplyToARepeatedRequest) {
   give_map(two_rooms());
   give_costs(two_rooms());

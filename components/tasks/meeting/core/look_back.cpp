@@ -12,6 +12,7 @@ constexpr double kFollowerInRoom = 1.9;    // [m] from the robot: farther sit th
 constexpr double kStandsNear = 1.4;        // [m] the same: what the laser sees
 constexpr double kNearest = 0.4;           // [m] nearer is the robot itself
 constexpr std::ptrdiff_t kOfSomebody = 3;  // points of the laser
+constexpr double kAnotherRobot = 0.7;      // [m] from its place: what the laser sees is the robot
 constexpr double kInside = 0.5;            // [m] from its walls the robot is in a room
 constexpr double kThrough = 0.3;           // [m] and somebody has come through its door
 constexpr Time kStuck = std::chrono::seconds(4);  // it does not turn though it is told to
@@ -55,7 +56,8 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
   const Point2 here = robot_.pose->position();
   const auto count = std::count_if(points.begin(), points.end(), [&](const Point2& point) {
     return (point - here).norm() > kNearest && (point - follower_).norm() < kStandsNear &&
-           (!in_the_room_ || is_inside(point, kThrough)) && cleared_.was_clear(point);
+           !is_another_robot(point) && (!in_the_room_ || is_inside(point, kThrough)) &&
+           cleared_.was_clear(point);
   });
   stands_there_ = count >= kOfSomebody ? stands_there_ + 1 : 0;
   if (stands_there_ >= parameters_.confirmations) has_followed(now);
@@ -71,6 +73,12 @@ void Meeting::has_followed(Time now) {
 bool Meeting::is_inside(const Point2& point, double by) const {
   const Room* room = room_named(report_.room);
   return room != nullptr && room->contains(point, -by);
+}
+
+bool Meeting::is_another_robot(const Point2& point) const {
+  return std::any_of(robot_.team_at.begin(), robot_.team_at.end(), [&](const auto& each) {
+    return (point - each.second).norm() < kAnotherRobot;
+  });
 }
 
 bool Meeting::is_there() const {

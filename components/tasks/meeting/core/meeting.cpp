@@ -12,9 +12,9 @@ using service::Supervisor;
 
 namespace {
 
-constexpr double kRefusedRadius = 0.5;  // [m] around a face that was none
-constexpr double kRollsOut = 0.35;      // [m] until it stands
-constexpr double kDeparted = 2.0;       // [m] whom the robot sees then is not the person it guides
+constexpr double kOneFace = 0.5;    // [m] around a face: nobody else's is there
+constexpr double kRollsOut = 0.35;  // [m] until it stands
+constexpr double kDeparted = 2.0;   // [m] whom the robot sees then is not the person it guides
 constexpr std::size_t kMostClients = 16;
 constexpr double kFarthestRoom = 1e4;  // [m] a room without a way counts as so far
 constexpr Time kForever = Time::max();
@@ -173,8 +173,7 @@ const Actions& Meeting::answer(const service::Answer& answer, Time now) {
     const bool on_the_way = robot_.pose && state_ != State::kInvite &&
                             (follower_ - person_).norm() > parameters_.same_person;
     const Point2 at = on_the_way ? robot_.pose->position() : person_;
-    people_.leave_alone(at, on_the_way ? parameters_.seen_again : parameters_.same_person, kForever,
-                        now);
+    people_.leave_alone(at, on_the_way ? parameters_.seen_again : kOneFace, kForever, now);
     met(Met::kDeclined, at, kForever);
     look_for_people(Cause::kNo, now);
   }
@@ -410,6 +409,7 @@ void Meeting::pass_time(Time now) {
       break;
     case State::kCheckRoom:
     case State::kCheckFace:
+      if (is_blind()) face_seen_ = since_ = now;
       if (now - face_seen_ >= parameters_.check) {
         refuse_face(now);
       } else if (passed >= parameters_.check_most) {
@@ -417,7 +417,7 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kRevisit:
-      if (arrived_at_ && !robot_.sees) arrived_at_ = now;
+      if (arrived_at_ && is_blind()) arrived_at_ = now;
       if (arrived_at_ && now - *arrived_at_ >= parameters_.nobody) {
         met(Met::kGone, person_, now + parameters_.refused);
         look_for_people(Cause::kLost, now);
@@ -443,9 +443,10 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kLookBack:
-      if (!motion_.may_turn(robot_) || !robot_.sees) since_ = now;  // it cannot look meanwhile
+      if (!motion_.may_turn(robot_) || is_blind()) since_ = now;  // it cannot look meanwhile
       if (cannot_turn(now)) {
         enter(State::kGuide, Cause::kNoWay, now);
+        reason_ = "no room to look back";
         break;
       }
       if (calls(now) && track_.successive() == 0) turn_ = Turn::kSearch;
@@ -510,7 +511,7 @@ void Meeting::leave_room(Cause cause, bool occupied, Time now) {
 }
 
 void Meeting::scan(Time now) {
-  if (!robot_.pose || !robot_.sees || !motion_.may_turn(robot_)) {
+  if (is_blind() || !motion_.may_turn(robot_)) {
     yaw_.reset();
     return;
   }
@@ -596,7 +597,7 @@ void Meeting::confirm(Time now) {
 
 void Meeting::refuse_face(Time now) {
   ++report_.faces_refused;
-  people_.leave_alone(face_to_, kRefusedRadius, now + parameters_.refused, now);
+  people_.leave_alone(face_to_, kOneFace, now + parameters_.refused, now);
   if (visiting_) met(Met::kGone, person_, now + parameters_.refused);
   if (state_ == State::kCheckRoom)
     enter(State::kScanRoom, Cause::kLost, now);

@@ -212,6 +212,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void remember_seen(const Faces& all, Time now);
 
   // The way.
+  /// What it cannot see says nothing.
+  bool is_blind() const { return !robot_.sees || !robot_.pose; }
   void watch_robot(Time now);
   void follow_motion(Time now);
   void drive_failed(Time now);
@@ -228,6 +230,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   bool cannot_turn(Time now);
   bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
   bool is_inside(const Point2& point, double by) const;
+  bool is_another_robot(const Point2& point) const;
   bool is_there() const;
 
   // Screens.

@@ -22,6 +22,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kPeriod = milliseconds(100);
 constexpr int kStatusEvery = 5;            // periods
+constexpr std::uint64_t kAskEvery = 10;    // periods; the explorer ends when nobody asks
 constexpr std::uint64_t kFoundAfter = 10;  // periods
 constexpr std::uint64_t kWaitedFor = 50;   // periods
 constexpr auto kSupervisorAge = milliseconds(1000);
@@ -309,13 +310,17 @@ void MeetingComponent::recall() {
 /// Whatever still works for the mission that a restart ended is told to stop until it says that it
 /// has: nobody would notice who drives on. What is silent for a while is not waited for.
 void MeetingComponent::end_what_was_left() {
-  bool unknown = false, runs = false;
+  bool unknown = false, runs = false, anothers = false;
   const auto end = [&](const auto* status, auto& output) {
     namespace goal = usher_msgs::msg::GoalStatus_Constants;
     unknown = unknown || status == nullptr;
-    if (status == nullptr || status->client() != host_.name() ||
+    if (status == nullptr ||
         (status->state() != goal::STATE_ACTIVE && status->state() != goal::STATE_WAITING))
       return;
+    if (status->client() != host_.name()) {
+      anothers = true;
+      return;
+    }
     usher_msgs::msg::GoalCancel cancel;
     cancel.client(host_.name());
     cancel.id(status->id());
@@ -325,10 +330,12 @@ void MeetingComponent::end_what_was_left() {
   end(exploration_.fresh(), cancel_exploration_);
   end(navigation_.fresh(), cancel_drive_);
   if (runs || (unknown && ticks_ < kWaitedFor)) return;
-  usher_msgs::msg::SupervisorRequest request;
-  request.id(requests_.next_id());
-  request.command(service::command_for(service::RequestKind::kNavigationEnd));
-  requests_.ask(std::move(request));
+  if (!anothers) {  // an operator may have sent the robot somewhere meanwhile
+    usher_msgs::msg::SupervisorRequest request;
+    request.id(requests_.next_id());
+    request.command(service::command_for(service::RequestKind::kNavigationEnd));
+    requests_.ask(std::move(request));
+  }
   reports_.publish(to_message(*left_, host_.now()));
   left_.reset();
   remember();
@@ -471,6 +478,7 @@ void MeetingComponent::tick() {
     tell_team();
     if (core_.state() == State::kGuide) publish_screen();  // the remaining way
   }
+  if (explores_ && ticks_ % kAskEvery == 0) explorations_.ask(*explores_);
   if (left_ && ticks_ % kFoundAfter == 0) end_what_was_left();
   const std::string lacking = lacks();
   host_.health().set(lacking.empty() ? HealthState::kOk : HealthState::kDegraded, lacking);
@@ -498,6 +506,7 @@ void MeetingComponent::act(const Actions& actions) {
     if (actions.motion.cancel) cancel_drive_.publish(cancel);
     cancel.id(actions.motion.stop_exploring.value_or(0));
     explorations_.give_up();
+    explores_.reset();
     if (actions.motion.stop_exploring) cancel_exploration_.publish(cancel);
   }
   for (const auto& request : actions.motion.requests) {
@@ -521,6 +530,7 @@ void MeetingComponent::act(const Actions& actions) {
     message.id(exploration->id);
     message.anew(exploration->anew);
     explorations_.give_up();
+    explores_ = message;
     explorations_.ask(std::move(message));
   }
   if (actions.report) reports_.publish(to_message(*actions.report, host_.now()));

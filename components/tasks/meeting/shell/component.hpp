@@ -55,7 +55,8 @@ class MeetingComponent final : public runtime::Component {
   std::vector<Point2> points_;
   std::uint64_t told_ = 0;  ///< number of the last report to the fleet; above all of a life before
   std::string remembered_;
-  std::optional<Report> left_;  ///< of a mission that a restart ended
+  std::optional<Report> left_;                            ///< of a mission that a restart ended
+  std::optional<usher_msgs::msg::ExploreGoal> explores_;  ///< what the explorer does for it
 
   wire::TransformInput transforms_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -68,7 +70,8 @@ class Stage {
       transform.child_frame_id(frames::kBaseFootprint);
       transform.transform().translation().x(pose.x);
       transform.transform().translation().y(pose.y);
-      transform.transform().rotation().w(1.0);
+      transform.transform().rotation().z(std::sin(0.5 * pose.yaw));
+      transform.transform().rotation().w(std::cos(0.5 * pose.yaw));
       host.publish(topics::kTf, tf);
       usher_msgs::msg::Faces message;
       message.header(wire::header(host.now(), frames::kBaseFootprint));
@@ -135,6 +138,44 @@ TEST(MeetingComponent, TurnsRoundAndFacesWhomItSees) {
   EXPECT_NEAR(stage.host.last(topics::kInteractionTarget)->bearing(), 0.2, 0.02);
   stage.run(600);
   EXPECT_EQ(stage.status().mission().rooms_occupied(), 1U);
+}
+
+TEST(MeetingComponent, RepeatsItsExplorationWhileItGoesOn) {
+  Stage stage;
+  stage.call(1);
+  stage.supervisor = SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+  stage.run(200);
+  stage.navigation.id(stage.host.last(topics::kNavigateGoal)->id());
+  stage.navigation.client("meeting");
+  stage.navigation.state(GoalStatus_Constants::STATE_SUCCEEDED);
+  stage.pose = {2.0, 2.0, 0.0};
+  stage.run(100);
+  stage.supervisor = SupervisorStatus_Constants::STATE_INTERACTION;
+  for (int i = 0; i < 100 && stage.status().state() != state::STATE_EXPLORE; ++i) {
+    stage.pose.yaw = geometry::normalized(stage.pose.yaw + 0.1);
+    stage.run(100);
+  }
+  ASSERT_EQ(stage.status().state(), state::STATE_EXPLORE);
+  stage.supervisor = SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE;
+  stage.run(500);
+  ASSERT_TRUE(stage.host.last(topics::kExploreGoal));
+  stage.exploration.id(stage.host.last(topics::kExploreGoal)->id());
+  stage.exploration.client("meeting");
+  stage.exploration.state(GoalStatus_Constants::STATE_ACTIVE);
+  stage.run(500);
+  stage.host.clear();
+  stage.run(5000);
+  const auto asked = stage.host.written(topics::kExploreGoal);
+  EXPECT_GE(asked.size(), 4U) << "the explorer ends after 3 s without";
+  for (const auto& goal : asked) EXPECT_EQ(goal.id(), stage.exploration.id());
+  GoalCancel cancel;
+  cancel.id(7);
+  cancel.client("operator");
+  stage.host.publish(topics::kMeetingCancel, cancel);
+  stage.run(500);
+  stage.host.clear();
+  stage.run(3000);
+  EXPECT_TRUE(stage.host.written(topics::kExploreGoal).empty());
 }
 
 TEST(MeetingComponent, SaysWhatIsMissing) {
@@ -212,9 +253,31 @@ TEST(MeetingComponent, EndsWhatItsRestartLeftUntilItHasEnded) {
   stage.run(1500);
   EXPECT_TRUE(stage.host.last(topics::kMeetingReport));
   EXPECT_FALSE(stage.host.last(topics::kNavigateCancel)) << "another one's drive is not touched";
+  EXPECT_FALSE(stage.host.last(topics::kSupervisorRequest)) << "nor its navigation";
   stage.host.clear();
   stage.run(3000);
   EXPECT_FALSE(stage.host.last(topics::kExploreCancel));
+}
+
+TEST(MeetingComponent, EndsTheDriveThatItsRestartLeft) {
+  Stage stage;
+  stage.call(1);
+  stage.host.world().kill("meeting");
+  stage.host.clear();
+  stage.navigation.id(5);
+  stage.navigation.client("meeting");
+  stage.navigation.state(GoalStatus_Constants::STATE_WAITING);
+  stage.host.world().start("meeting");
+  stage.run(2500);
+  ASSERT_TRUE(stage.host.last(topics::kNavigateCancel));
+  EXPECT_EQ(stage.host.last(topics::kNavigateCancel)->id(), 5U);
+  EXPECT_FALSE(stage.host.last(topics::kMeetingReport));
+  stage.navigation.state(GoalStatus_Constants::STATE_CANCELLED);
+  stage.run(1500);
+  EXPECT_TRUE(stage.host.last(topics::kMeetingReport));
+  ASSERT_TRUE(stage.host.last(topics::kSupervisorRequest));
+  EXPECT_EQ(stage.host.last(topics::kSupervisorRequest)->command(),
+            SupervisorRequest_Constants::COMMAND_NAVIGATION_END);
 }
 
 TEST(MeetingComponent, WaitsForNobodyWhoIsSilentAfterItsRestart) {

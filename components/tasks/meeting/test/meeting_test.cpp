@@ -264,6 +264,12 @@ TEST(Meeting, SeesWithTheLaserWhoStandsWhereNobodyWas) {
   EXPECT_EQ(rig.state(), State::kLookBack) << "may have stood there before";
   look(rig.robot.pose->position() + Point2(0.0, -0.3), 5);
   EXPECT_EQ(rig.state(), State::kLookBack) << "the robot itself";
+  rig.robot.team_at = {{"otto", start + Point2(0.3, 1.0)}};
+  rig.turn(0.2);
+  look(start + Point2(0.1, 1.2), 5);
+  EXPECT_EQ(rig.state(), State::kLookBack) << "another robot of the fleet";
+  rig.robot.team_at.clear();
+  rig.turn(0.2);
   look(start + Point2(0.1, 1.2), 2);
   look({kNan, kNan}, 1);
   EXPECT_EQ(rig.state(), State::kLookBack) << "three scans in a row";
@@ -354,6 +360,62 @@ TEST(Meeting, JudgesNothingWhileItIsBlind) {
   follows.wait(21000);
   EXPECT_EQ(follows.state(), State::kEnded);
   EXPECT_EQ(follows.meeting.report().reason, "no face detector");
+}
+
+TEST(Meeting, RefusesNoFaceAndGivesUpNobodyWhileItIsBlind) {
+  using Blindness = void (*)(Rig&, bool);
+  const Blindness ways[] = {
+      [](Rig& rig, bool blind) { rig.robot.sees = !blind; },
+      [](Rig& rig, bool blind) {
+        rig.robot.pose = blind ? std::nullopt : std::optional(Pose2{8.0, 5.0, 0.0});
+      }};
+  for (const Blindness& blind : ways) {
+    Rig room;
+    room.to_check_room();
+    const auto pose = room.robot.pose;
+    blind(room, true);
+    room.wait(10000);
+    EXPECT_EQ(room.state(), State::kCheckRoom) << "an occupied room would be free";
+    blind(room, false);
+    room.robot.pose = pose;
+    room.see(1.5, 0.1, 3);
+    EXPECT_EQ(room.meeting.report().rooms_occupied, 1U);
+
+    Rig face;
+    face.to_check_face();
+    blind(face, true);
+    face.wait(10000);
+    EXPECT_EQ(face.state(), State::kCheckFace);
+    blind(face, false);
+    face.wait(4000);
+    EXPECT_EQ(face.state(), State::kExplore) << "it sees now that there is nobody";
+
+    Rig visit;
+    visit.to_revisit();
+    visit.arrive();
+    blind(visit, true);
+    visit.wait(10000);
+    EXPECT_EQ(visit.state(), State::kRevisit);
+
+    Rig follower;
+    follower.to_look_back();
+    blind(follower, true);
+    follower.wait(40000);
+    EXPECT_EQ(follower.state(), State::kLookBack);
+  }
+}
+
+TEST(Meeting, AsksANeighborOfWhoDeclined) {
+  Rig rig;
+  rig.to_invite(2);
+  const Point2 first = rig.meeting.bearing() < 100 ? Point2(10.5, 5.25) : Point2();
+  rig.press("no");
+  ASSERT_EQ(rig.state(), State::kExplore);
+  const Point2 declined = first;
+  rig.see({rig.face_at(declined + Point2(0.2, 0.0))}, 4);
+  EXPECT_EQ(rig.state(), State::kExplore) << "the same one again";
+  rig.see({rig.face_at(declined + Point2(0.0, 0.7))}, 4);
+  EXPECT_NE(rig.state(), State::kExplore) << "another one beside him";
 }
 
 TEST(Meeting, CountsWhomItSawComeInBehindIt) {
