@@ -1,5 +1,5 @@
 // The meeting assistant as processes, called and sent home as an operator would do it. The whole
-// mission is `usher demo meeting`.
+// mission is `deployment.demo`.
 #include <gmock/gmock.h>
 
 #include <atomic>

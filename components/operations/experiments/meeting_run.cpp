@@ -123,6 +123,7 @@ struct Watched {
   MissJudge judge;
   std::string journal = "t,state,x,y,yaw,brought,invited,navigator\n";
   bool lost = false;         ///< it is dead now
+  bool suffers = false;      ///< its loss goes on now
   double state_since = 0.0;  ///< [s]
   std::uint32_t contacts = 0, touches = 0;
 };
@@ -180,19 +181,22 @@ std::vector<geometry::Point2> others_of(const Watched& one, const std::vector<Wa
   return busy;
 }
 
-/// Everything of the robot but what stands for its body and for people.
+/// One component, or everything of the robot but what stands for its body and for people.
 void lose(const MeetingLoss& loss, double elapsed, std::vector<Watched>& robots,
           runtime::LockstepWorld& world) {
   const auto robot = std::find_if(robots.begin(), robots.end(),
                                   [&](const Watched& each) { return each.name == loss.robot; });
   const bool lost = elapsed >= loss.after && (loss.back <= 0.0 || elapsed < loss.after + loss.back);
-  if (robot == robots.end() || robot->lost == lost) return;
-  robot->lost = lost;
+  if (robot == robots.end() || robot->suffers == lost) return;
+  robot->suffers = lost;
+  robot->lost = lost && loss.component.empty();
+  const std::string prefix = loss.robot.empty() ? "" : loss.robot + "/";
   for (const std::string& component : world.components()) {
-    if (!component.starts_with(loss.robot + "/") || component.ends_with("/world") ||
-        component.ends_with("/attendees"))
-      continue;
-    lost ? world.stop(component) : world.start(component);
+    const bool concerned = loss.component.empty()
+                               ? component.starts_with(prefix) && !component.ends_with("world") &&
+                                     !component.ends_with("attendees")
+                               : component == prefix + loss.component;
+    if (concerned) lost ? world.stop(component) : world.start(component);
   }
 }
 

@@ -22,11 +22,12 @@ struct MeetingPerson {
   bool strays = false;        ///< stays behind on the way, the first time
 };
 
-/// A robot of a fleet dies, all but its body, and is started again.
+/// A robot dies, all but its body, or one of its components, and is started again.
 struct MeetingLoss {
-  std::string robot;
-  double after = 0.0;  ///< [s] from the request
-  double back = 0.0;   ///< [s] later; 0: never
+  std::string robot;      ///< of a fleet
+  double after = 0.0;     ///< [s] from the request
+  double back = 0.0;      ///< [s] later; 0: never
+  std::string component;  ///< the only one that dies; empty: all
 };
 
 struct MeetingCase {
