@@ -7,6 +7,10 @@
 
 namespace usher::meeting {
 
+namespace {
+constexpr Time kSettles = std::chrono::seconds(10);  // from being thanked to a seat
+}
+
 void Meeting::follow_team(Time now) {
   team_.hear(robot_.team);
   team_.place(robot_.team_at);
@@ -16,7 +20,9 @@ void Meeting::follow_team(Time now) {
   if (const std::string who = team_.cancelled_by(); !who.empty())
     return end(Outcome::kCancelled, Cause::kCancelled, "given up at " + who, now);
   if (follow_room(now)) return;
-  report_.brought = team_.brought(report_.room);
+  const std::uint32_t brought = team_.brought(report_.room);
+  if (brought > report_.brought) others_settle_ = now + kSettles;
+  report_.brought = brought;
   // Whom it guides it brings to the end.
   const bool guides =
       state_ == State::kGuide || state_ == State::kLookBack || state_ == State::kArrived;

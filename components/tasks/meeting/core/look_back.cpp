@@ -65,6 +65,12 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
 }
 
 void Meeting::has_followed(Time now) {
+  if (in_the_room_ && now < others_settle_) {  // it may be somebody else's
+    track_.forget();
+    stands_there_ = 0;
+    since_ = now;
+    return;
+  }
   tries_ = 0;
   enter(in_the_room_ ? State::kArrived : State::kGuide, Cause::kConfirmed, now);
 }

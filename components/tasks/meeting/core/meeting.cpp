@@ -128,6 +128,7 @@ void Meeting::begin(const MissionRequest& request, Time limit, Time now) {
   held_since_.reset();
   lost_since_.reset();
   blind_since_.reset();
+  others_settle_ = {};
   choose_room();
   enter(State::kToRoom, Cause::kRequest, now);
 }

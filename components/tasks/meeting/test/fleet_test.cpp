@@ -91,6 +91,23 @@ TEST_F(Fleet, JoinsAMissionThatItHearsOfAndLeavesTheRoomToTheNearer) {
             iris.rig.meeting.time_left(iris.rig.now())->count() / 1'000'000'000 / 10);
 }
 
+TEST_F(Fleet, CountsNobodyWhomAnotherBroughtAMomentAgo) {
+  to_explore(3);
+  bring(otto);
+  iris.rig.see(2.5, 0.1, 4);
+  iris.rig.arrive();
+  iris.rig.press("yes");
+  iris.rig.wait(1000);
+  iris.rig.arrive();
+  ASSERT_EQ(iris.rig.state(), State::kLookBack);
+  run(500);
+  iris.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(iris.rig.state(), State::kLookBack) << "that may be otto's, on his way to a seat";
+  run(11000);
+  iris.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(iris.rig.state(), State::kArrived);
+}
+
 TEST_F(Fleet, RemembersWhomItSeesUntilThereIsARoom) {
   iris.rig.to_room(1);
   otto.rig.robot.pose = Pose2{7.5, 5.0, 0.0};
@@ -162,6 +179,7 @@ TEST_F(Fleet, CountsTogetherAndStopsWhenEnoughAreThere) {
   EXPECT_EQ(otto.rig.meeting.report().brought, 1U);
   EXPECT_EQ(otto.rig.state(), State::kExplore);
   otto.rig.robot.pose = Pose2{14.0, 3.0, 1.0};
+  run(11000);  // whom iris brought has sat down
   bring(otto);
   run(3500);
   EXPECT_EQ(iris.rig.state(), State::kDone);
