@@ -65,7 +65,8 @@ const Actions& Meeting::look(const Point2& from, std::span<const Point2> points,
 }
 
 void Meeting::has_followed(Time now) {
-  if (in_the_room_ && now < others_settle_) {  // it may be somebody else's
+  waits_for_others_ = waits_for_others_ && others_count();
+  if (in_the_room_ && (waits_for_others_ || now < others_settle_)) {  // it may be another's
     track_.forget();
     stands_there_ = 0;
     since_ = now;
@@ -79,6 +80,11 @@ void Meeting::has_followed(Time now) {
 bool Meeting::is_inside(const Point2& point, double by) const {
   const Room* room = room_named(report_.room);
   return room != nullptr && room->contains(point, -by);
+}
+
+bool Meeting::others_count() const {
+  const Room* room = room_named(report_.room);
+  return room != nullptr && team_.counts_in(room->area.low, room->area.high);
 }
 
 bool Meeting::is_another_robot(const Point2& point) const {

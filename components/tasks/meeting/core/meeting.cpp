@@ -266,6 +266,7 @@ void Meeting::arrive_in(State state, Time now) {
       departed_ = false;
       break;
     case State::kLookBack:
+      waits_for_others_ = in_the_room_ && others_count();
       stands_there_ = 0;
       turned_to_ = robot_.pose ? robot_.pose->yaw : 0.0;
       turned_at_ = now;

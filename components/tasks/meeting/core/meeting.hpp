@@ -231,6 +231,7 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   bool may_face() const { return robot_.pose && turning_.free(robot_.pose->position()); }
   bool is_inside(const Point2& point, double by) const;
   bool is_another_robot(const Point2& point) const;
+  bool others_count() const;
   bool is_there() const;
 
   // Screens.
@@ -279,11 +280,12 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   Point2 departure_{0, 0};  ///< [m] in map, of the guidance
   int tries_ = 0;
   bool departed_ = false;
-  Point2 follower_{0, 0};     ///< [m] in map, where it should be
-  ClearedSpace cleared_;      ///< while it drove with it
-  int stands_there_ = 0;      ///< scans in a row that have somebody where nobody was
-  bool in_the_room_ = false;  ///< the guidance is at its end
-  Time others_settle_{};      ///< until then somebody whom another robot brought may walk there
+  Point2 follower_{0, 0};          ///< [m] in map, where it should be
+  ClearedSpace cleared_;           ///< while it drove with it
+  int stands_there_ = 0;           ///< scans in a row that have somebody where nobody was
+  bool in_the_room_ = false;       ///< the guidance is at its end
+  bool waits_for_others_ = false;  ///< another robot was in the room first, and counts
+  Time others_settle_{};  ///< until then somebody whom another robot brought may walk there
   std::optional<Time> arrived_at_;  ///< where somebody was seen
 
   std::optional<Time> held_since_, lost_since_, blind_since_;

@@ -224,6 +224,16 @@ std::uint32_t Team::brought(const std::string& room) const {
   return static_cast<std::uint32_t>(counted.size());
 }
 
+bool Team::counts_in(const Point2& low, const Point2& high) const {
+  const auto all = mates();
+  return std::any_of(all.begin(), all.end(), [&](const TeamReport* mate) {
+    const auto place = places_.find(mate->robot);
+    return (mate->state == State::kLookBack || mate->state == State::kArrived) &&
+           place != places_.end() && (place->second.array() >= low.array()).all() &&
+           (place->second.array() <= high.array()).all();
+  });
+}
+
 std::uint32_t Team::underway() const {
   const auto all = mates();
   return static_cast<std::uint32_t>(

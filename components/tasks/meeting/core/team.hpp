@@ -112,6 +112,8 @@ class Team {
   /// Persons who were brought to a room. Two robots that met somebody at the same place met the
   /// same person.
   std::uint32_t brought(const std::string& room) const;
+  /// Whether another robot stands in that area and looks whether whom it brought has come in.
+  bool counts_in(const Point2& low, const Point2& high) const;
   /// Whom others bring now.
   std::uint32_t underway() const;
   /// What the others still want to visit.

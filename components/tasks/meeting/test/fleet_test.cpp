@@ -108,6 +108,32 @@ TEST_F(Fleet, CountsNobodyWhomAnotherBroughtAMomentAgo) {
   EXPECT_EQ(iris.rig.state(), State::kArrived);
 }
 
+TEST_F(Fleet, OfTwoInTheRoomTheFirstCountsFirst) {
+  to_explore(3);
+  const auto guide = [](Robot& robot) {
+    robot.rig.see(2.5, 0.1, 4);
+    robot.rig.arrive();
+    robot.rig.press("yes");
+    robot.rig.wait(1000);
+    robot.rig.arrive();
+    ASSERT_EQ(robot.rig.state(), State::kLookBack);
+  };
+  guide(otto);
+  run(500);
+  guide(iris);
+  run(500);
+  iris.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(iris.rig.state(), State::kLookBack) << "that may be otto's";
+  otto.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(otto.rig.state(), State::kArrived);
+  run(500);
+  iris.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(iris.rig.state(), State::kLookBack);
+  run(11000);
+  iris.rig.see(1.1, 0.0, 4);
+  EXPECT_EQ(iris.rig.state(), State::kArrived);
+}
+
 TEST_F(Fleet, RemembersWhomItSeesUntilThereIsARoom) {
   iris.rig.to_room(1);
   otto.rig.robot.pose = Pose2{7.5, 5.0, 0.0};
