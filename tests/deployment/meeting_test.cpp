@@ -11,6 +11,7 @@ namespace usher::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 namespace meeting = usher_msgs::msg::MeetingStatus_Constants;
 
 TEST(Meeting, IsCalledByAnOperatorAndGivenUp) {
@@ -37,11 +38,22 @@ TEST(Meeting, IsCalledByAnOperatorAndGivenUp) {
   EXPECT_EQ(second->wait(), 1);
   EXPECT_THAT(second->errors(), HasSubstr("is not over"));
 
+  EXPECT_THAT(second->errors(), HasSubstr("'operator' called"));
+  EXPECT_THAT(call->output(), Not(HasSubstr("refused"))) << "that was the other one's";
+
   call->signal(SIGINT);
   EXPECT_EQ(call->wait(), 1);
   EXPECT_THAT(call->errors(), HasSubstr("gave it up"));
   EXPECT_THAT(call->output(), HasSubstr("drives to a meeting room, 0 of 2 there"));
   EXPECT_TRUE(robot.wait_for([&] { return state == meeting::STATE_IDLE; }, Seconds(30)));
+
+  EXPECT_EQ(robot.command({"meet", "--no-wait"})->wait(), 0);
+  const auto cancel = robot.command({"meet", "--cancel"});
+  EXPECT_EQ(cancel->wait(), 0) << cancel->errors();
+  EXPECT_THAT(cancel->output(), HasSubstr("has ended"));
+  const auto again = robot.command({"meet", "--cancel"});
+  EXPECT_EQ(again->wait(), 0);
+  EXPECT_THAT(again->output(), HasSubstr("no meeting is called"));
 }
 
 TEST(Meeting, WithoutAnAssistantIsAnError) {

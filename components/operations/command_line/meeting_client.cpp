@@ -58,7 +58,9 @@ std::string meeting_progress(const usher_msgs::msg::MeetingStatus& status) {
   line += ", " + std::to_string(mission.brought()) + " of " + std::to_string(mission.wanted()) +
           " there";
   if (std::isfinite(status.time_left())) line += format(", %.0f s left", status.time_left());
-  if (!status.reason().empty()) line += ": " + status.reason();
+  // Why somebody else's request was refused is not this mission's reason.
+  const bool refusal = status.last_request() != mission.id();
+  if (!status.reason().empty() && !refusal) line += ": " + status.reason();
   return line;
 }
 

@@ -20,7 +20,9 @@ namespace outcome = usher_msgs::msg::MeetingStatus_Constants;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = std::chrono::seconds(3);
-constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
+constexpr auto kGone = std::chrono::seconds(5);     // longer than the launcher needs to restart it
+constexpr auto kBegins = std::chrono::seconds(20);  // until all of a robot is ready
+constexpr const char* kNotReady = "not ready";
 
 std::atomic<bool> stop_asked{false};
 
@@ -34,7 +36,35 @@ struct MeetingArguments {
   std::uint32_t persons = 2;
   double minutes = 0.0;
   bool no_wait = false;
+  bool cancel = false;
 };
+
+/// Ends the mission that is on, whoever called it.
+int cancel_meeting(const MeetingArguments& arguments) {
+  auto observer = Observer::create(reach_robot(kOperatorName, arguments.domain));
+  if (!observer) return fail(observer.error());
+  auto cancels = (*observer)->writer(topics::kMeetingCancel);
+  if (!cancels) return fail(cancels.error());
+  auto statuses = (*observer)->reader(topics::kMeetingStatus);
+  if (!statuses) return fail(statuses.error());
+  if (!cancels->wait_for_readers(1, kPatience))
+    return fail(nobody_there("meeting assistant", arguments.domain));
+  usher_msgs::msg::GoalCancel cancel;  // id 0: whatever runs
+  cancel.client(kOperatorName);
+  std::uint64_t mission = 0;
+  for (const auto until = Clock::now() + kGone; Clock::now() < until;) {
+    const auto status = statuses->take(milliseconds(200));
+    if (!status) continue;
+    const bool on = status->mission().outcome() == outcome::OUTCOME_OPEN;
+    if (!on || status->mission().id() == 0) {
+      std::cout << (mission == 0 ? "no meeting is called" : meeting_progress(*status)) << "\n";
+      return 0;
+    }
+    mission = status->mission().id();
+    cancels->write(cancel);
+  }
+  return fail("the meeting assistant does not answer");
+}
 
 /// Calls the meeting and tells how it goes; Ctrl-C gives it up.
 int meet(const MeetingArguments& arguments) {
@@ -54,7 +84,8 @@ int meet(const MeetingArguments& arguments) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   MeetingCall call(arguments.persons, 60.0 * arguments.minutes);
-  auto heard = Clock::now();
+  const auto began = Clock::now();
+  auto heard = began;
   std::string told;
   for (;;) {
     if (const auto request = call.due()) requests->write(*request);
@@ -71,6 +102,13 @@ int meet(const MeetingArguments& arguments) {
     heard = Clock::now();
     const bool was_taken = call.taken();
     call.take(*status);
+    const bool too_early = call.refusal().find(kNotReady) != std::string::npos;
+    if (too_early && Clock::now() - began < kBegins && !stop_asked) {
+      if (told.empty())
+        std::cout << (told = "waits until the robot is ready") << "\n" << std::flush;
+      call = MeetingCall(arguments.persons, 60.0 * arguments.minutes);
+      continue;
+    }
     if (!call.refusal().empty()) return fail(call.refusal());
     if (was_taken && !call.taken())
       return fail(status->mission().id() == 0
@@ -81,11 +119,13 @@ int meet(const MeetingArguments& arguments) {
     // Each line once: the seconds that are left change all the time.
     auto quiet = *status;
     quiet.time_left(std::numeric_limits<float>::quiet_NaN());
-    if (const auto line = meeting_progress(quiet); line != told)
-      std::cout << (told = line) << "\n" << std::flush;
+    if (const auto line = meeting_progress(quiet); line != told) {
+      told = line;
+      std::cout << meeting_progress(*status) << "\n" << std::flush;
+    }
     if (status->mission().outcome() == outcome::OUTCOME_OPEN) continue;
     if (status->mission().outcome() == outcome::OUTCOME_COMPLETE) return 0;
-    return fail(status->mission().reason());
+    return fail(stop_asked ? "you gave it up" : status->mission().reason());
   }
 }
 
@@ -99,11 +139,16 @@ void add_meeting_command(CLI::App& app, int& exit_code) {
   command->add_option("--persons", arguments->persons, "How many it brings")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command->add_option("--minutes", arguments->minutes, "It gives up then; 0 = its own limit")
+  command
+      ->add_option("--minutes", arguments->minutes,
+                   "It gives up then; 0 = its own limit, 15 unless set")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   command->add_flag("--no-wait", arguments->no_wait, "Return when the assistant took it");
-  command->callback([arguments, &exit_code] { exit_code = meet(*arguments); });
+  command->add_flag("--cancel", arguments->cancel, "End the meeting that is called, by whomever");
+  command->callback([arguments, &exit_code] {
+    exit_code = arguments->cancel ? cancel_meeting(*arguments) : meet(*arguments);
+  });
 }
 
 }  // namespace usher::operations

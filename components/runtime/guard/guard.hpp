@@ -15,8 +15,8 @@ namespace usher::runtime {
 ///
 /// A driver that was silent is passed on again from its next write on: what it writes then was
 /// decided then. Nothing is sent before the driver's first write: the device may not be ready for
-/// it. Bytes that wait because the port is slow are dropped for the
-/// safe ones, but never a part of what is already on its way.
+/// it. Bytes that wait because the port is slow are dropped for the safe ones, but never a part of
+/// what is already on its way.
 ///
 /// Fixed memory, no allocation after the constructor, no clock of its own.
 class Guard {

@@ -100,7 +100,9 @@ Status Meeting::request(const MissionRequest& request, Time now) {
     return refuse("time_limit must be in [0, 3600] s, got " + std::to_string(request.time_limit));
   if (state_ == State::kInitialise) return refuse("not ready: " + lacks());
   if (state_ != State::kIdle)
-    return refuse("mission " + std::to_string(report_.id) + " is not over");
+    return refuse("the meeting that '" + report_.client + "' called is not over, " +
+                  std::to_string(report_.brought) + " of " + std::to_string(report_.wanted) +
+                  " are there");
   begin(request,
         now + (request.time_limit > 0.0 ? std::chrono::duration_cast<Time>(
                                               std::chrono::duration<double>(request.time_limit))
