@@ -74,7 +74,7 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
       keep_served();
       break;
     case Service::kGuides:
-      keep_follower(moment.time);
+      keep_follower(moment.odom_T_base);
       break;
   }
   report(moment);
@@ -150,6 +150,22 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
   }
 }
 
+/// Beside the robot neither laser nor rear camera look. Who left that place would have been seen,
+/// and a robot that drives on leaves it behind.
+bool VisitorTracker::blind_at(const Point2& place) const {
+  const double bearing = std::abs(std::atan2(place.y(), place.x()));
+  return place.norm() <= kBlindWithin && bearing >= config_.blind_from &&
+         bearing <= config_.blind_to;
+}
+
+/// Seen now, or gone where nothing looks.
+bool VisitorTracker::seen(const Look* look) const {
+  if (look == nullptr) return false;
+  return look->person->unseen <= config_.unseen ||
+         (service_ == Service::kGuides && look->person->unseen <= config_.blind_for &&
+          blind_at(look->place));
+}
+
 bool VisitorTracker::before(const Look& look) const {
   return look.range <= config_.within &&
          std::abs(std::atan2(look.place.y(), look.place.x())) <= config_.bearing &&
@@ -213,7 +229,8 @@ void VisitorTracker::keep_served() {
   if (const Look* nearest = nearest_before()) hold(*nearest, time_);
 }
 
-void VisitorTracker::keep_follower(double time) {
+void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
+  const double time = time_;
   const Look* first = find(first_);
   if (seen(first)) return hold(*first, time);
   const Look* held = find(held_);
@@ -229,7 +246,7 @@ void VisitorTracker::keep_follower(double time) {
     if (const Look* nearest = nearest_before(); nearest && !moves(time))
       return hold(*nearest, time);
   }
-  const Look* found = same_place(time);
+  const Look* found = same_place(odom_T_base);
   if (!found) {
     const double reach = kReach + kWalk * (time - last_time_);
     found = follower(config_.follows, held_ == 0 ? kFollowWithin : std::min(kMostReach, reach));
@@ -238,9 +255,9 @@ void VisitorTracker::keep_follower(double time) {
 }
 
 /// Somebody who turned up where the visitor was going to be, walking likewise.
-const VisitorTracker::Look* VisitorTracker::same_place(double time) const {
-  const double gone = time - last_time_;
-  if (held_ == 0 || gone > kSameFor) return nullptr;
+const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base) const {
+  const double gone = time_ - last_time_;
+  if (held_ == 0 || (gone > kSameFor && !out_of_view(odom_T_base))) return nullptr;
   const Point2 expected = last_place_ + std::min(gone, kForesees) * last_velocity_;
   const Look* best = nullptr;
   double least = kSamePlace;
@@ -268,11 +285,10 @@ const VisitorTracker::Look* VisitorTracker::follower(double least, double neares
   return best;
 }
 
-/// Beside the robot neither laser nor rear camera look: who went there is not lost at once.
-bool VisitorTracker::out_of_view(const Look& held) const {
-  const double bearing = std::abs(std::atan2(held.place.y(), held.place.x()));
-  return service_ == Service::kGuides && held.person->unseen <= config_.blind_for &&
-         held.range <= kBlindWithin && bearing >= config_.blind_from && bearing <= config_.blind_to;
+/// The visitor was last seen, not long ago, at a place where nothing looks now.
+bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
+  return service_ == Service::kGuides && held_ != 0 && time_ - last_time_ <= config_.blind_for &&
+         blind_at(inverse(odom_T_base) * last_place_);
 }
 
 void VisitorTracker::report(const Moment& moment) {
@@ -285,11 +301,13 @@ void VisitorTracker::report(const Moment& moment) {
     last_place_ = held->person->position;
     last_velocity_ = held->person->velocity;
   }
-  const bool there = seen(held) || (held && out_of_view(*held));
   // Ahead, the laser shows who follows only now and then: without eyes behind nothing is known.
   if (guides && !moment.looks_behind) return;
-  if (there) {
-    estimate_ = {Presence::kSeen, held_, held->place, held->speed, held->person->unseen};
+  if (seen(held)) {
+    estimate_ = {Presence::kSeen, held_, held->place, held->speed};
+  } else if (out_of_view(moment.odom_T_base)) {
+    estimate_.presence = Presence::kSeen;
+    estimate_.place = inverse(moment.odom_T_base) * last_place_;
   } else if (guides || moment.looks_ahead) {
     estimate_.presence = Presence::kNobody;
   }

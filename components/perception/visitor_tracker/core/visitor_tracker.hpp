@@ -43,11 +43,11 @@ struct Config {
   double stands_below = 0.6;  ///< [m/s] who is slower stands
   double passes_at = 0.7;     ///< [m] who walks by the robot's middle farther off passes by
   double dwell = 0.4;         ///< [s] before the robot until somebody is its visitor
-  double unseen = 0.6;        ///< [s] then the visitor counts as not seen
-  double blind_from = 1.9;    ///< [rad] to either side, where nothing looks; the laser sees less
-  double blind_to = 2.55;     ///< [rad] and the rear camera more
-  double blind_for = 2.0;     ///< [s] so long a follower who went there counts as seen
-  double trail = 1.2;         ///< [m] beside the robot's way a follower may walk
+  double unseen = 0.5;        ///< [s] then the visitor counts as not seen
+  double blind_from = 1.75;   ///< [rad] to either side, where nothing looks; the laser sees less
+  double blind_to = 2.6;      ///< [rad] and the rear camera more
+  double blind_for = 20.0;    ///< [s] so long a follower who went there counts as seen
+  double trail = 1.5;         ///< [m] beside the robot's way a follower may walk
   double follows = 0.6;       ///< [s] of following until somebody is the one whose identity broke
 };
 
@@ -58,7 +58,6 @@ struct Estimate {
   std::uint64_t person = 0;                                 ///< 0: none
   geometry::Point2 place = geometry::Point2::Zero();        ///< [m] in base_footprint, when seen
   double speed = std::numeric_limits<double>::quiet_NaN();  ///< [m/s] likewise
-  double unseen = 0.0;                                      ///< [s] likewise
 };
 
 /// Which of the people around is the visitor. Before a visit: the nearest who stands before the
@@ -106,12 +105,13 @@ class VisitorTracker {
   const Look* nearest_before() const;
   void choose_to_serve();
   void keep_served();
-  void keep_follower(double time);
-  const Look* same_place(double time) const;
+  void keep_follower(const geometry::Pose2& odom_T_base);
+  const Look* same_place(const geometry::Pose2& odom_T_base) const;
   const Look* follower(double least, double nearest) const;
-  bool seen(const Look* look) const { return look && look->person->unseen <= config_.unseen; }
+  bool seen(const Look* look) const;
+  bool blind_at(const geometry::Point2& place) const;
   void hold(const Look& look, double time);
-  bool out_of_view(const Look& held) const;
+  bool out_of_view(const geometry::Pose2& odom_T_base) const;
   void report(const Moment& moment);
 
   Config config_;

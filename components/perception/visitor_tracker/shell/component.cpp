@@ -40,7 +40,7 @@ Config VisitorTrackerComponent::read_config(runtime::Parameters& p) {
                           "To either side: from here on the laser does not look.");
   c.blind_to =
       p.number("blind_to", "rad", {0, 3.15}, c.blind_to, "From here on the rear camera looks.");
-  c.blind_for = p.number("blind_for", "s", {0, 5}, c.blind_for,
+  c.blind_for = p.number("blind_for", "s", {0, 60}, c.blind_for,
                          "A follower who went in between counts as seen for so long.");
   c.trail = p.number("trail", "m", {0.3, 3}, c.trail,
                      "So far beside the robot's way a follower may walk.");
@@ -109,8 +109,7 @@ void VisitorTrackerComponent::publish(const Estimate& estimate, runtime::Time st
   namespace seen = usher_msgs::msg::Visitor_Constants;
   usher_msgs::msg::Visitor message;
   const bool there = estimate.presence == Presence::kSeen;
-  message.header(wire::header(there ? stamp - runtime::from_seconds(estimate.unseen) : host_.now(),
-                              frames::kBaseFootprint));
+  message.header(wire::header(stamp, frames::kBaseFootprint));
   message.presence(there                                    ? seen::PRESENCE_SEEN
                    : estimate.presence == Presence::kNobody ? seen::PRESENCE_NOBODY
                                                             : seen::PRESENCE_UNKNOWN);
