@@ -29,7 +29,6 @@ constexpr double kLeaveBearing = 0.35;  // [rad] likewise
 constexpr double kLeavesAt = 1.0;       // [m/s]
 constexpr double kReach = 0.8;          // [m] from where the visitor was last seen
 constexpr double kWalk = 1.5;           // [m/s] by which that grows
-constexpr double kMostReach = 7.0;      // [m]
 constexpr double kMistaken = 1.7;       // times as long must follow who is to take somebody's place
 constexpr double kSamePlace = 0.7;      // [m]
 constexpr double kSameVelocity = 0.7;   // [m/s]
@@ -249,7 +248,7 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
   const Look* found = same_place(odom_T_base);
   if (!found) {
     const double reach = kReach + kWalk * (time - last_time_);
-    found = follower(config_.follows, held_ == 0 ? kFollowWithin : std::min(kMostReach, reach));
+    found = follower(config_.follows, held_ == 0 ? kFollowWithin : reach);
   }
   if (found) hold(*found, time);
 }

@@ -414,6 +414,18 @@ TEST_F(OnTheWay, WhoStandsBehindARobotThatWaitsIsFoundAgain) {
   EXPECT_TRUE(sees(6));
 }
 
+TEST_F(OnTheWay, AfterALongWaitTheVisitorMayComeFromAnywhere) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {2.0, 0.0};
+  run(4.0);
+  hide(1);
+  run(6.0);
+  add(6, robot.position() + Point2(1.2, 0.0));
+  run(2.5);
+  EXPECT_TRUE(sees(6));
+}
+
 TEST_F(OnTheWay, RoundACornerTheVisitorIsStillBehind) {
   guide();
   robot.yaw =
