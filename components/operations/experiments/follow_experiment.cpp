@@ -29,6 +29,7 @@ constexpr const char* kVisitor = "visitor";
 constexpr double kSame = 0.7;        // [m] so far from the visitor another one is meant
 constexpr double kArrived = 3.5;     // [m] of the visitor from the robot at the end
 constexpr double kDrives = 0.05;     // [m/s]
+constexpr double kSightedNow = 0.1;  // [s]
 constexpr double kHalfBody = 0.2;    // [m]
 constexpr double kFarEnough = 10.0;  // [m]
 
@@ -79,6 +80,10 @@ class FollowRun {
     auto& world = run.world();
     world.observe(topics::kSimGroundTruth, [this](const auto& truth, const auto&) { take(truth); });
     world.observe(topics::kVisitor, [this](const auto& visitor, const auto&) { take(visitor); });
+    world.observe(topics::kOdom, [this](const auto& odom, const auto&) {
+      if (const auto pose = wire::to_planar(odom.pose().pose())) odom_T_base_ = *pose;
+    });
+    world.observe(topics::kPeople, [this](const auto& people, const auto&) { take(people); });
     world.observe(topics::kDialogueScreen, [this](const auto& screen, const auto&) {
       guides_ = screen.state() == "guide_active";
       namespace follower = usher_msgs::msg::DialogueScreen_Constants;
@@ -124,10 +129,17 @@ class FollowRun {
                          .drives = std::abs(truth.v()) > kDrives,
                          .waits = waits_,
                          .gap = gap,
-                         .visible = visible()});
+                         .visible = sighted_ || visible()});
     const double since = t - *departed_;
     if (journey_.gaps.empty() || since - journey_.gaps.back().first >= 0.2)
       journey_.gaps.emplace_back(since, gap);
+  }
+  void take(const usher_msgs::msg::People& people) {
+    const Pose2 map_T_odom = map_T_base_ * inverse(odom_T_base_);
+    sighted_ = std::ranges::any_of(people.people(), [&](const auto& person) {
+      return person.unseen() < kSightedNow &&
+             (map_T_odom * Point2(person.x(), person.y()) - person_).norm() < kSame;
+    });
   }
   void take(const usher_msgs::msg::Visitor& visitor) {
     if (!guides_ || visitor.presence() != usher_msgs::msg::Visitor_Constants::PRESENCE_SEEN) return;
@@ -135,7 +147,8 @@ class FollowRun {
     const Point2 told = map_T_base_ * Point2(visitor.x(), visitor.y());
     if ((told - person_).norm() < kSame) ++journey_.told_right;
   }
-  /// Some of the visitor's body can be seen past the walls.
+  /// Some of the visitor's body can be seen past the walls of the map; sensors see past its glass,
+  /// too.
   bool visible() const {
     const Point2 way = person_ - map_T_base_.position();
     const Point2 beside = kHalfBody * Point2(-way.y(), way.x()).normalized();
@@ -152,7 +165,8 @@ class FollowRun {
 
   LockstepRun& run_;
   const grid::OccupancyGrid& map_;
-  Pose2 map_T_base_;
+  Pose2 map_T_base_, odom_T_base_;
+  bool sighted_ = false;  ///< a sensor shows somebody where the visitor is
   Point2 person_ = Point2::Zero();
   bool guides_ = false, waits_ = false, over_ = false, near_at_arrival_ = false;
   std::optional<double> departed_;

@@ -12,7 +12,7 @@ struct FollowMoment {
   bool drives = false;   ///< the robot moves
   bool waits = false;    ///< the guide says that it waits for the visitor
   double gap = 0.0;      ///< [m] between the middles of robot and visitor
-  bool visible = false;  ///< no wall is between them
+  bool visible = false;  ///< no wall hides the visitor
 };
 
 /// What became of the visitor on a journey. A *loss* begins when the visitor is farther behind than

@@ -21,7 +21,7 @@ constexpr double kFollowWithin = 6.0;  // [m]
 constexpr double kWaitsWithin =
     2.0;  // [m] who stands so near behind a robot that stands, waits for it
 constexpr double kBlindWithin = 2.5;  // [m] farther somebody would have been seen on the way there
-constexpr double kWaitsCount = 0.3;   // and counts so much less than who walks
+constexpr double kWaitsCount = 0.12;  // and counts so much less than who walks
 constexpr double kMostFollows = 1.5;  // [s]
 constexpr double kNearer = 0.4;       // [m] another one must be, to be served instead
 constexpr double kLeave = 0.5;        // [m] beyond the border until who stood before the robot left
