@@ -233,8 +233,8 @@ TEST_F(OnTheWay, WhoComesBackToWhereNothingLooksIsTheVisitor) {
   const double bearing = geometry::kPi - 2.2;
   add(9, robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing)));
   run(0.3);
-  for (double unseen = 0.0; unseen < 6.0; unseen += 0.5) {
-    person(9).unseen = unseen;
+  for (int i = 0; i < 12; ++i) {
+    person(9).unseen = 0.5 * i;
     run(0.5);
   }
   EXPECT_TRUE(sees(9));
