@@ -355,7 +355,7 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
                format("%.0f", s.needless), format("%.0f", s.waited), format("%.2f", s.eta_mean()),
                format("%.2f", s.eta_max()), format("%.3f", s.told_right / s.told),
                format("%.0f", s.contacts)});
-    curves.push_back({manner.text, manner.red, manner.green, manner.blue, journeys[m]->gaps});
+    curves.push_back({manner.name, manner.red, manner.green, manner.blue, journeys[m]->gaps});
   }
   const bool some_follow = manners.front() == kManners.data();
   ResultSheet sheet = judged(sums, some_follow ? sums.data() : nullptr, seeds);
