@@ -313,7 +313,7 @@ inline constexpr Topic<usher_msgs::msg::GuideStatus> kGuideStatus{
 inline constexpr Topic<usher_msgs::msg::GuideVisit> kGuideVisit{
     "guide/visit", Kind::kEvent, 32, 0, "guide", "A visit is over."};
 inline constexpr Topic<usher_msgs::msg::Visitor> kVisitor{
-    "visitor", Kind::kStream, 1, 10, "people_detector", "The person whom the robot serves."};
+    "visitor", Kind::kStream, 1, 10, "visitor_tracker", "The person whom the robot serves."};
 inline constexpr Topic<usher_msgs::msg::SpeechStatus> kSpeechStatus{
     "speech/status", Kind::kLatched, 1, 2, "speech", "What is said, what is heard."};
 inline constexpr Topic<usher_msgs::msg::SpeechLevel> kSpeechLevel{

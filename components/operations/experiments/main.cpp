@@ -18,6 +18,10 @@ const std::vector<Experiment>& experiments() {
        "Seeded visits in the office, lock-step: arrivals, contacts, localization error, "
        "determinism",
        run_guide_experiment},
+      {"follow",
+       "MARVIN with its depth cameras guides visitors who follow, dawdle, tie a lace, walk away, "
+       "lock-step: gaps, losses noticed, ETA; --only follows | dawdles | lace | returns | leaves",
+       run_follow_experiment},
       {"buildings",
        "Ten goals on each map of a real building, lock-step; --seeds N goals of N seeds, --only "
        "NAME one building",

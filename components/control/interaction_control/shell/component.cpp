@@ -23,6 +23,7 @@ constexpr auto kTargetAge = milliseconds(500);
 constexpr auto kOdometryAge = milliseconds(200);
 constexpr auto kEnableAge = milliseconds(120);
 constexpr auto kPeopleAge = milliseconds(500);
+constexpr auto kGuideAge = milliseconds(1500);
 constexpr auto kTorsoAge = milliseconds(300);
 constexpr auto kSpeechAge = milliseconds(2000);
 constexpr auto kLevelAge = milliseconds(200);
@@ -70,6 +71,8 @@ InteractionControlComponent::InteractionControlComponent(runtime::Host& host)
                        {.max_age = kEnableAge, .on_loss = "stands, the torso holds still"});
   people_ = host.input(topics::kPeople,
                        {.max_age = kPeopleAge, .on_loss = "poses for nobody", .optional = true});
+  guide_ = host.input(topics::kGuideStatus,
+                      {.max_age = kGuideAge, .on_loss = "seeks nobody", .optional = true});
   torso_ = host.input(topics::kTorsoStatus,
                       {.max_age = kTorsoAge,
                        .on_loss = "tells the torso nothing; starts from where it is afterwards",
@@ -130,6 +133,12 @@ bool InteractionControlComponent::listens() const {
          (speech->state() == state::STATE_LISTENING || speech->state() == state::STATE_ASKING);
 }
 
+/// The guide has nobody to serve, and nobody is there either.
+bool InteractionControlComponent::seeks() const {
+  const auto* guide = guide_.fresh();
+  return guide != nullptr && guide->seeks() && posing_.zone() == nullptr;
+}
+
 std::optional<kinematics::TorsoPose> InteractionControlComponent::torso() const {
   const auto* status = torso_.fresh();
   if (status == nullptr || !status->moves() || !kinematics::finite(status->joints()))
@@ -167,6 +176,8 @@ void InteractionControlComponent::drive(const std::optional<Pose2>& odom_T_base)
   if (target_.fresh() == nullptr && odom_T_base) {
     if (posing_.tracks()) {
       face_.face(odom_T_base->yaw + posing_.person()->place.bearing);
+    } else if (seeks()) {
+      face_.search(true);
     } else {
       face_.stand();
     }

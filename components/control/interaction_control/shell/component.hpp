@@ -11,7 +11,8 @@
 namespace usher::interaction_control {
 
 /// The robot's pose while it talks: turns on the spot toward whom it is told to face, or who stands
-/// where it shall, searches, and poses torso and eyes by where the person stands.
+/// where it shall, searches while the guide seeks somebody to serve, and poses torso and eyes by
+/// where the person stands.
 class InteractionControlComponent final : public runtime::Component {
  public:
   explicit InteractionControlComponent(runtime::Host& host);
@@ -23,6 +24,7 @@ class InteractionControlComponent final : public runtime::Component {
   std::vector<Sighting> people_around(const geometry::Pose2& odom_T_base);
   Occasion occasion() const;
   bool listens() const;
+  bool seeks() const;
   std::optional<kinematics::TorsoPose> torso() const;
   void pose(const std::optional<geometry::Pose2>& odom_T_base);
   void drive(const std::optional<geometry::Pose2>& odom_T_base);
@@ -41,6 +43,7 @@ class InteractionControlComponent final : public runtime::Component {
   runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::MovementEnable> enable_;
   runtime::Input<usher_msgs::msg::People> people_;
+  runtime::Input<usher_msgs::msg::GuideStatus> guide_;
   runtime::Input<usher_msgs::msg::TorsoStatus> torso_;
   runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
   runtime::Input<usher_msgs::msg::SpeechLevel> level_;

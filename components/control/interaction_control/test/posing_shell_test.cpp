@@ -43,9 +43,14 @@ struct Bench {
   bool interacts = true, drives = false, torso_speaks = true, people_known = true, hears = false;
   double x = 1.0, y = 0.0, yaw = 0.0;  // of the person, of the robot; in odom
   double level = 0.0;
+  bool guide_speaks = false, seeks = false;
 
   void run(int ms) {
     for (int i = 0; i < ms; i += 50) {
+      usher_msgs::msg::GuideStatus guide;
+      guide.header(wire::header(host.now(), ""));
+      guide.seeks(seeks);
+      if (guide_speaks) host.publish(topics::kGuideStatus, guide);
       usher_msgs::msg::MovementEnable enable;
       enable.header(wire::header(host.now(), ""));
       enable.movement(interacts || drives);
@@ -100,6 +105,45 @@ TEST(PosingShell, PosesByWhereThePersonStandsInTheRobotsFrame) {
   EXPECT_NEAR(status.human_range(), 1.0, 1e-6);
   EXPECT_NEAR(status.human_bearing(), 1.0, 1e-6);
   EXPECT_NEAR(bench.tilt(), 0.1745, 1e-3);
+}
+
+TEST(PosingShell, TurnsSlowlyWhileTheGuideSeeksAndStopsAtOnceForWhoeverIsThere) {
+  Bench bench;
+  bench.people_known = false;
+  bench.guide_speaks = true;
+  bench.run(1000);
+  EXPECT_EQ(bench.w(), 0.0) << "it does not seek";
+  bench.seeks = true;
+  bench.run(200);
+  EXPECT_EQ(bench.w(), 0.25);
+  bench.people_known = true;
+  bench.y = 1.0;  // in the zone where the base stands
+  bench.x = 0.5;
+  bench.run(200);
+  EXPECT_EQ(bench.w(), 0.0) << "somebody is in a zone, though the guide has not noticed yet";
+  bench.people_known = false;
+  bench.run(1500);
+  EXPECT_EQ(bench.w(), 0.25) << "and has gone";
+  bench.seeks = false;
+  bench.run(100);
+  EXPECT_EQ(bench.w(), 0.0) << "somebody is served";
+}
+
+TEST(PosingShell, SeeksNobodyWithoutTheGuideOrLeave) {
+  Bench bench;
+  bench.people_known = false;
+  bench.guide_speaks = bench.seeks = true;
+  bench.run(500);
+  ASSERT_EQ(bench.w(), 0.25);
+  bench.interacts = false;
+  bench.run(100);
+  EXPECT_EQ(bench.w(), 0.0) << "it may not";
+  bench.interacts = true;
+  bench.run(200);
+  ASSERT_EQ(bench.w(), 0.25);
+  bench.guide_speaks = false;
+  bench.run(1700);
+  EXPECT_EQ(bench.w(), 0.0) << "the guide is silent";
 }
 
 TEST(PosingShell, StatusHasTheFieldsOfTheThesis) {

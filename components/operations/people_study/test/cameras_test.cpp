@@ -123,6 +123,8 @@ TEST_F(Cameras, FindWhoStandsBehindTheRobot) {
   const Point2 truth = odom_T_base * Pose2{-0.2, 0.0, geometry::kPi} * person;
   EXPECT_LT((Point2(found.x(), found.y()) - truth).norm(), 0.15);
   EXPECT_TRUE(found.by_rear());
+  EXPECT_TRUE(host.last(topics::kPeople)->rear_looks());
+  EXPECT_FALSE(host.last(topics::kPeople)->kinect_looks());
   EXPECT_TRUE(host.last(topics::kPersonAhead)->clear()) << "nobody is ahead";
 }
 
@@ -149,7 +151,10 @@ TEST_F(Cameras, OneThatFallsSilentIsSaidAndTheOthersGoOn) {
   tell_cameras();
   look(1000);
   EXPECT_EQ(reason(), "");
+  EXPECT_TRUE(host.last(topics::kPeople)->kinect_looks());
+  EXPECT_FALSE(host.last(topics::kPeople)->rear_looks()) << "never did";
   run(600, [] {});
+  EXPECT_FALSE(host.last(topics::kPeople)->kinect_looks());
   EXPECT_EQ(reason(), "no image of the Kinect");
   ASSERT_EQ(people().size(), 1U) << "remembered";
   EXPECT_GT(people()[0].unseen(), 0.4F);

@@ -16,6 +16,7 @@ using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(250);
 constexpr auto kFacesAge = milliseconds(1000);
+constexpr auto kLooks = milliseconds(300);  // a camera that looked so long ago looks
 constexpr auto kPeriod = milliseconds(60);  // every third scan of a laser of 50 Hz
 constexpr double kShortest = 0.04;          // [s] in which a motion is measured
 constexpr double kLongest = 0.5;            // [s] after which nobody knows it
@@ -207,6 +208,7 @@ std::optional<geometry::Pose2> Following::localization() const {
 
 void Following::see(Source source, runtime::Time stamp, std::span<const Sighting> sightings,
                     const geometry::Pose2& odom_T_base, const geometry::Pose2& base_T_foot) {
+  looked_[static_cast<std::size_t>(source)] = host_.now();
   place_sightings(sightings, odom_T_base * base_T_foot, errors_, observations_);
   if (const auto map_T_odom = localization()) {
     std::erase_if(observations_, [&](const Observation& one) {
@@ -232,11 +234,18 @@ void Following::note(runtime::Time stamp, const geometry::Pose2& odom_T_base) {
   motion_ = Motion{stamp, odom_T_base, passed < kLongest ? twist : geometry::Twist2{}};
 }
 
+bool Following::looks(Source camera) const {
+  const auto& looked = looked_[static_cast<std::size_t>(camera)];
+  return looked && host_.now() - *looked <= kLooks;
+}
+
 void Following::publish() {
   if (newest_ - published_ < kPeriod) return;
   published_ = newest_;
   const double now = tracker_->now();
   message_.header(wire::header(newest_, frames::kOdom));
+  message_.kinect_looks(looks(Source::kKinect));
+  message_.rear_looks(looks(Source::kRearCamera));
   message_.people().clear();
   for (const Track& track : tracker_->people()) message_.people().push_back(to_message(track, now));
   people_.publish(message_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,6 +42,7 @@ class Following {
               const geometry::Pose2& odom_T_base);
   std::optional<geometry::Pose2> localization() const;
   void note(runtime::Time stamp, const geometry::Pose2& odom_T_base);
+  bool looks(Source camera) const;
   void publish();
   void publish_ahead();
 
@@ -63,6 +65,8 @@ class Following {
   std::vector<Sighting> faced_;
   const char* legs_trouble_ = "";
   runtime::Time last_scan_{}, newest_{}, published_{};
+  std::array<std::optional<runtime::Time>, kSources>
+      looked_{};  ///< when people were last looked for
   usher_msgs::msg::People message_;
   std::uint64_t& rejected_;
   std::uint64_t& late_;

@@ -112,7 +112,9 @@ std::optional<Choice> Visitor::choice(double now) {
 Walk Visitor::walk(double now) const {
   if (!departed_at_) return Walk::kStand;
   const double since = now - *departed_at_;
-  if (due(character_.walks_away_at, since)) return Walk::kAway;
+  const double away = since - character_.walks_away_at;
+  const bool back = character_.walks_away_for >= 0.0 && away >= character_.walks_away_for;
+  if (due(character_.walks_away_at, since) && !back) return Walk::kAway;
   if (due(character_.ties_lace_at, since) &&
       since < character_.ties_lace_at + character_.ties_lace_for) {
     return Walk::kStand;

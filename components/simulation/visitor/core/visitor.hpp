@@ -34,7 +34,8 @@ struct Character {
   double ties_lace_at = -1.0;  ///< stands
   double ties_lace_for = 12.0;
   double walks_away_at = -1.0;
-  std::string gives_up_in;  ///< answers nothing more from this state of the dialogue on
+  double walks_away_for = -1.0;  ///< then follows again; negative: never comes back
+  std::string gives_up_in;       ///< answers nothing more from this state of the dialogue on
 };
 
 struct Choice {

@@ -35,6 +35,7 @@ Character VisitorComponent::read_character(runtime::Parameters& parameters) {
   time("ties_lace_at", c.ties_lace_at, "Stands to tie a lace; -1 = never.");
   time("ties_lace_for", c.ties_lace_for, "How long.");
   time("walks_away_at", c.walks_away_at, "Leaves the robot; -1 = never.");
+  time("walks_away_for", c.walks_away_for, "And comes back after so long; -1 = never.");
   return c;
 }
 

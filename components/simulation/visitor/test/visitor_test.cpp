@@ -116,6 +116,18 @@ TEST(Visitor, WalksAsItsCharacterIs) {
   EXPECT_EQ(visitor.walk(8.0), Walk::kFollow);
   EXPECT_EQ(visitor.walk(11.0), Walk::kDawdle);
   EXPECT_EQ(visitor.walk(21.0), Walk::kAway);
+  EXPECT_EQ(visitor.walk(500.0), Walk::kAway) << "for good";
+}
+
+TEST(Visitor, ComesBackWhenItsCharacterDoes) {
+  Character wanderer = kitchen();
+  wanderer.walks_away_at = 10.0;
+  wanderer.walks_away_for = 20.0;
+  Visitor visitor(wanderer);
+  visitor.see(screen(1, "guide_active", {"stop"}), 0.0);
+  EXPECT_EQ(visitor.walk(9.0), Walk::kFollow);
+  EXPECT_EQ(visitor.walk(11.0), Walk::kAway);
+  EXPECT_EQ(visitor.walk(30.0), Walk::kFollow);
 }
 
 TEST(Visitor, GivesUpWhereItsCharacterDoes) {

@@ -122,8 +122,13 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   const Screen& screen() const { return screen_; }
   Human human() const;
   const Surroundings& surroundings() const { return surroundings_; }
-  /// Nobody is served: the robot may turn slowly to look for people.
-  bool seeks() const { return state_ == State::kInactive && human() != Human::kYes; }
+  /// Nobody is served, and somebody looks but sees nobody: the robot may turn slowly to look for
+  /// people. Where nobody looks, a turn would find nobody.
+  bool seeks() const { return state_ == State::kInactive && human() == Human::kNo; }
+  /// A visit goes on.
+  bool serves() const { return visit_.id != 0 && visit_.outcome == Outcome::kOpen; }
+  /// A journey goes on: the visitor follows.
+  bool guides() const { return journey(); }
   const Visit& visit() const { return visit_; }
   const Funnel& funnel() const { return funnel_; }
   Memory memory() const;

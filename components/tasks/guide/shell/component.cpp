@@ -223,6 +223,11 @@ void GuideComponent::act(const Actions& actions) {
     publish_status();
   }
   if (actions.screen_changed) publish_screen();
+  // Who turns the robot or watches the visitor must not be a second late.
+  if (core_.seeks() != told_.seeks() || core_.serves() != told_.serves() ||
+      core_.guides() != told_.guides()) {
+    publish_status();
+  }
 }
 
 void GuideComponent::remember() {
@@ -257,6 +262,8 @@ void GuideComponent::publish_status() {
   usher_msgs::msg::GuideStatus message;
   message.header(wire::header(host_.now(), ""));
   message.seeks(core_.seeks());
+  message.serves(core_.serves());
+  message.guides(core_.guides());
   const Funnel& funnel = core_.funnel();
   message.greeted(funnel.greeted);
   message.engaged(funnel.engaged);
@@ -265,6 +272,7 @@ void GuideComponent::publish_status() {
   message.given_up(funnel.given_up);
   message.visit(to_message(core_.visit()));
   status_.publish(message);
+  told_ = message;
 }
 
 void GuideComponent::publish_screen() {

@@ -35,6 +35,7 @@ class GuideComponent final : public runtime::Component {
   std::uint64_t& rejected_locations_;
   std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
+  usher_msgs::msg::GuideStatus told_;  ///< the newest status
   std::optional<std::uint64_t> goal_;  ///< the one that runs
 
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;

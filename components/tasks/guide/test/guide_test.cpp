@@ -259,6 +259,38 @@ TEST(Guide, WaitsForNobodyWhileNobodyLooks) {
   EXPECT_LT(rig.pace, 0.0) << "no pace but the goal's";
 }
 
+TEST(Guide, SeeksOnlyWhereSomebodyLooksAndSeesNobody) {
+  Rig rig;
+  EXPECT_FALSE(rig.guide.seeks()) << "nobody looks: a turn would find nobody";
+  rig.see_nobody();
+  rig.wait(100);
+  EXPECT_TRUE(rig.guide.seeks());
+  rig.see(3.0);
+  rig.wait(100);
+  EXPECT_FALSE(rig.guide.seeks()) << "somebody may come up";
+  rig.see_nobody();
+  rig.begin();
+  EXPECT_FALSE(rig.guide.seeks()) << "somebody touched the screen";
+}
+
+TEST(Guide, SaysWhetherItServesAndGuides) {
+  Rig rig;
+  EXPECT_FALSE(rig.guide.serves());
+  rig.begin();
+  EXPECT_TRUE(rig.guide.serves());
+  EXPECT_FALSE(rig.guide.guides());
+  Rig way;
+  way.to_active();
+  EXPECT_TRUE(way.guide.serves() && way.guide.guides());
+  way.press("stop");
+  EXPECT_TRUE(way.guide.guides()) << "a stop on the way";
+  way.press("cancel");
+  EXPECT_TRUE(way.guide.serves());
+  EXPECT_FALSE(way.guide.guides());
+  way.press("no");
+  EXPECT_FALSE(way.guide.serves()) << way.state();
+}
+
 TEST(Guide, GreetsOncePerEncounterAndNotWhoPassesBy) {
   Rig rig;
   rig.see(1.5, 1.3);

@@ -1,0 +1,315 @@
+#include "perception/visitor_tracker/core/visitor_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace usher::visitor_tracker {
+
+namespace {
+
+using geometry::Point2;
+using geometry::Pose2;
+
+constexpr double kLongestStep = 1.0;   // [s] after a longer one nothing is known of in between
+constexpr double kJump = 0.5;          // [m] that no robot drives between two updates
+constexpr double kStep = 0.1;          // [m] of the remembered way
+constexpr double kMoves = 0.25;        // [m/s]
+constexpr double kWalks = 0.3;         // [m/s]
+constexpr double kAlong = 0.3;         // cosine: heads for the robot, with room for corners
+constexpr double kAhead = 0.5;         // [m] who is farther ahead does not follow
+constexpr double kFollowWithin = 6.0;  // [m]
+constexpr double kWaitsWithin =
+    2.0;  // [m] who stands so near behind a robot that stands, waits for it
+constexpr double kBlindWithin = 2.5;  // [m] farther somebody would have been seen on the way there
+constexpr double kWaitsCount = 0.12;  // and counts so much less than who walks
+constexpr double kMostFollows = 1.5;  // [s]
+constexpr double kNearer = 0.4;       // [m] another one must be, to be served instead
+constexpr double kLeave = 0.5;        // [m] beyond the border until who stood before the robot left
+constexpr double kLeaveBearing = 0.35;  // [rad] likewise
+constexpr double kLeavesAt = 1.0;       // [m/s]
+constexpr double kReach = 0.8;          // [m] from where the visitor was last seen
+constexpr double kWalk = 1.5;           // [m/s] by which that grows
+constexpr double kMistaken = 1.7;       // times as long must follow who is to take somebody's place
+constexpr double kSamePlace = 0.7;      // [m]
+constexpr double kSameVelocity = 0.7;   // [m/s]
+constexpr double kSameFor = 1.5;        // [s]
+constexpr double kForesees = 0.8;       // [s] of walking on
+constexpr double kAgeError = 0.5;       // [s]
+
+bool finite(const Person& person) {
+  return person.id != 0 && person.position.allFinite() && person.velocity.allFinite() &&
+         person.unseen >= 0.0;
+}
+
+}  // namespace
+
+const Estimate& VisitorTracker::lose() {
+  estimate_ = {};
+  estimate_.person = held_;
+  return estimate_;
+}
+
+const Estimate& VisitorTracker::update(const Moment& moment) {
+  if (!std::isfinite(moment.time) || !moment.odom_T_base.finite()) return lose();
+  const double passed = moment.time - time_;
+  const bool broke = !(passed >= 0.0 && passed <= kLongestStep);
+  if (broke) {
+    habits_.clear();
+    way_.clear();
+  }
+  // A visitor of another time would have walked any distance since then.
+  if (broke && passed < 0.0) last_time_ = moment.time;
+  time_ = moment.time;
+  if (moment.service == Service::kGuides && service_ != Service::kGuides) first_ = held_;
+  service_ = moment.service;
+  remember_way(moment);
+  forget_other_people(moment);
+  observe(moment, broke ? 0.0 : passed);
+  switch (service_) {
+    case Service::kNobody:
+      choose_to_serve();
+      break;
+    case Service::kTalks:
+      keep_served();
+      break;
+    case Service::kGuides:
+      keep_follower(moment.odom_T_base);
+      break;
+  }
+  report(moment);
+  return estimate_;
+}
+
+/// The people tracker was restarted when it has given the visitor's number to somebody younger.
+void VisitorTracker::forget_other_people(const Moment& moment) {
+  const bool given_again = std::ranges::any_of(moment.people, [&](const Person& person) {
+    return person.id == held_ && person.age + kAgeError < moment.time - held_since_;
+  });
+  if (held_ == 0 || !given_again) return;
+  held_ = first_ = 0;
+  habits_.clear();
+}
+
+void VisitorTracker::remember_way(const Moment& moment) {
+  const Point2 here = moment.odom_T_base.position();
+  if (!way_.empty() && (way_.back().second - here).norm() > kJump) {
+    way_.clear();
+    habits_.clear();
+  }
+  if (!way_.empty() && (way_.back().second - here).norm() < kStep) return;
+  way_.emplace_back(moment.time, here);
+  if (static_cast<double>(way_.size()) * kStep > kMostTrail) way_.pop_front();
+}
+
+/// The robot drove in the last second.
+bool VisitorTracker::moves(double time) const {
+  constexpr double kSpan = 1.0;  // [s]
+  std::size_t steps = 0;
+  for (auto it = way_.rbegin(); it != way_.rend() && time - it->first <= kSpan; ++it) ++steps;
+  return way_.size() > 1 && static_cast<double>(steps) * kStep >= kMoves * kSpan;
+}
+
+VisitorTracker::Look VisitorTracker::look_at(const Person& person, const Pose2& base_T_odom) const {
+  Look look;
+  look.person = &person;
+  look.place = base_T_odom * person.position;
+  look.range = look.place.norm();
+  look.speed = person.velocity.norm();
+  const Point2 to_robot = inverse(base_T_odom).position() - person.position;
+  // How near the line of the walk comes to the robot's middle.
+  const double miss =
+      look.speed > 0.0
+          ? std::abs(to_robot.x() * person.velocity.y() - to_robot.y() * person.velocity.x()) /
+                look.speed
+          : look.range;
+  look.heads_here = to_robot.dot(person.velocity) > 0.0 && miss <= config_.passes_at;
+  return look;
+}
+
+void VisitorTracker::observe(const Moment& moment, double passed) {
+  const Pose2 base_T_odom = inverse(moment.odom_T_base);
+  const bool drives = moves(moment.time);
+  looks_.clear();
+  for (const Person& person : moment.people) {
+    if (finite(person)) looks_.push_back(look_at(person, base_T_odom));
+  }
+  std::sort(looks_.begin(), looks_.end(),
+            [](const Look& a, const Look& b) { return a.person->id < b.person->id; });
+  std::erase_if(habits_, [&](const auto& habit) { return find(habit.first) == nullptr; });
+  for (Look& look : looks_) {
+    Habit& habit = habits_[look.person->id];
+    if (seen(&look)) {
+      habit.before = before(look) ? habit.before + passed : 0.0;
+      habit.follows = std::clamp(
+          habit.follows + following(look, moment.odom_T_base, drives) * passed, 0.0, kMostFollows);
+    } else {
+      habit.before = 0.0;
+    }
+    look.habit = habit;
+  }
+}
+
+/// Beside the robot neither laser nor rear camera look. Who left that place would have been seen,
+/// and a robot that drives on leaves it behind.
+bool VisitorTracker::blind_at(const Point2& place) const {
+  const double bearing = std::abs(std::atan2(place.y(), place.x()));
+  return place.norm() <= kBlindWithin && bearing >= config_.blind_from &&
+         bearing <= config_.blind_to;
+}
+
+/// Seen now, or gone where nothing looks.
+bool VisitorTracker::seen(const Look* look) const {
+  if (look == nullptr) return false;
+  return look->person->unseen <= config_.unseen ||
+         (service_ == Service::kGuides && look->person->unseen <= config_.blind_for &&
+          blind_at(look->place));
+}
+
+bool VisitorTracker::before(const Look& look) const {
+  return look.range <= config_.within &&
+         std::abs(std::atan2(look.place.y(), look.place.x())) <= config_.bearing &&
+         (look.speed < config_.stands_below || look.heads_here);
+}
+
+/// How much this moment speaks for that somebody follows the robot {-1..1}.
+double VisitorTracker::following(const Look& look, const Pose2& odom_T_base, bool moves) const {
+  if (look.range > kFollowWithin || look.place.x() > kAhead) return -1.0;
+  const Point2 to_robot = odom_T_base.position() - look.person->position;
+  const bool by_the_way = to_robot.norm() <= config_.trail ||
+                          std::any_of(way_.begin(), way_.end(), [&](const auto& point) {
+                            return (point.second - look.person->position).norm() <= config_.trail;
+                          });
+  if (!by_the_way) return -1.0;
+  const bool comes = look.speed >= kWalks &&
+                     to_robot.dot(look.person->velocity) >= kAlong * look.speed * to_robot.norm();
+  // Behind a robot that stands whoever passes comes near; who stays there waits for it.
+  if (moves) return comes ? 1.0 : -1.0;
+  if (comes) return 0.0;
+  return look.speed < kWalks && look.range <= kWaitsWithin ? kWaitsCount : -1.0;
+}
+
+const VisitorTracker::Look* VisitorTracker::find(std::uint64_t id) const {
+  const auto found =
+      std::lower_bound(looks_.begin(), looks_.end(), id,
+                       [](const Look& look, std::uint64_t each) { return look.person->id < each; });
+  return found != looks_.end() && found->person->id == id ? &*found : nullptr;
+}
+
+const VisitorTracker::Look* VisitorTracker::nearest_before() const {
+  const Look* nearest = nullptr;
+  for (const Look& look : looks_) {
+    if (look.habit.before < config_.dwell) continue;
+    if (!nearest || look.range < nearest->range) nearest = &look;
+  }
+  return nearest;
+}
+
+void VisitorTracker::hold(const Look& look, double time) {
+  if (held_ != look.person->id) held_since_ = time;
+  held_ = look.person->id;
+}
+
+/// Nobody is served: the nearest who stands there, until another one is nearer or this one leaves.
+void VisitorTracker::choose_to_serve() {
+  const Look* held = find(held_);
+  const bool stays =
+      seen(held) && held->range <= config_.within + kLeave &&
+      std::abs(std::atan2(held->place.y(), held->place.x())) <= config_.bearing + kLeaveBearing &&
+      (held->speed < kLeavesAt || held->heads_here);
+  if (held && seen(held) && !stays) held_ = 0;
+  const Look* nearest = nearest_before();
+  if (nearest && (!stays || nearest->range < held->range - kNearer)) hold(*nearest, time_);
+}
+
+/// In a visit: the same one, until somebody else stands before the robot and this one does not.
+void VisitorTracker::keep_served() {
+  const Look* held = find(held_);
+  if (seen(held) && held->range <= config_.within) return;
+  if (const Look* nearest = nearest_before()) hold(*nearest, time_);
+}
+
+void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
+  const double time = time_;
+  const Look* first = find(first_);
+  if (seen(first)) return hold(*first, time);
+  const Look* held = find(held_);
+  if (seen(held)) {
+    // Somebody took the visitor's place who does not follow: it was another one.
+    const bool mistaken = held->habit.follows <= 0.0;
+    const Look* other = mistaken ? follower(kMistaken * config_.follows, kFollowWithin) : nullptr;
+    if (other && other->range < held->range) hold(*other, time);
+    return;
+  }
+  if (held_ == 0) {
+    // Who began the journey was not seen.
+    if (const Look* nearest = nearest_before(); nearest && !moves(time))
+      return hold(*nearest, time);
+  }
+  const Look* found = same_place(odom_T_base);
+  if (!found) {
+    const double reach = kReach + kWalk * (time - last_time_);
+    found = follower(config_.follows, held_ == 0 ? kFollowWithin : reach);
+  }
+  if (found) hold(*found, time);
+}
+
+/// Somebody who turned up where the visitor was going to be, walking likewise.
+const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base) const {
+  const double gone = time_ - last_time_;
+  if (held_ == 0 || (gone > kSameFor && !out_of_view(odom_T_base))) return nullptr;
+  const Point2 expected = last_place_ + std::min(gone, kForesees) * last_velocity_;
+  const Look* best = nullptr;
+  double least = kSamePlace;
+  for (const Look& look : looks_) {
+    const double off = (look.person->position - expected).norm();
+    if (!seen(&look) || off > least) continue;
+    if ((look.person->velocity - last_velocity_).norm() > kSameVelocity) continue;
+    best = &look;
+    least = off;
+  }
+  return best;
+}
+
+/// Who has followed for so long [s], nearest to where the visitor was last seen and no farther from
+/// there than `nearest` [m].
+const VisitorTracker::Look* VisitorTracker::follower(double least, double nearest) const {
+  const Look* best = nullptr;
+  for (const Look& look : looks_) {
+    const double off = held_ == 0 ? look.range : (look.person->position - last_place_).norm();
+    const bool new_one = look.person->id != held_ && seen(&look);
+    if (!new_one || look.habit.follows < least || off > nearest) continue;
+    best = &look;
+    nearest = off;
+  }
+  return best;
+}
+
+/// The visitor was last seen, not long ago, at a place where nothing looks now.
+bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
+  return service_ == Service::kGuides && held_ != 0 && time_ - last_time_ <= config_.blind_for &&
+         blind_at(inverse(odom_T_base) * last_place_);
+}
+
+void VisitorTracker::report(const Moment& moment) {
+  estimate_ = {};
+  estimate_.person = held_;
+  const Look* held = find(held_);
+  const bool guides = service_ == Service::kGuides;
+  if (seen(held)) {
+    last_time_ = moment.time - held->person->unseen;
+    last_place_ = held->person->position;
+    last_velocity_ = held->person->velocity;
+  }
+  // Ahead, the laser shows who follows only now and then: without eyes behind nothing is known.
+  if (guides && !moment.looks_behind) return;
+  if (seen(held)) {
+    estimate_ = {Presence::kSeen, held_, held->place, held->speed};
+  } else if (out_of_view(moment.odom_T_base)) {
+    estimate_.presence = Presence::kSeen;
+    estimate_.place = inverse(moment.odom_T_base) * last_place_;
+  } else if (guides || moment.looks_ahead) {
+    estimate_.presence = Presence::kNobody;
+  }
+}
+
+}  // namespace usher::visitor_tracker

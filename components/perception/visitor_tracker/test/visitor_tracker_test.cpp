@@ -1,0 +1,539 @@
+#include "perception/visitor_tracker/core/visitor_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace usher::visitor_tracker {
+namespace {
+
+using geometry::Point2;
+using geometry::Pose2;
+
+constexpr double kStep = 1.0 / 15.0;  // [s]
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A robot and the people that its tracker knows, at 15 Hz; each person walks at a velocity.
+class Scene : public testing::Test {
+ protected:
+  Person& add(std::uint64_t id, const Point2& at, const Point2& velocity = {0, 0}) {
+    return people.emplace_back(Person{id, at, velocity});
+  }
+  Person& person(std::uint64_t id) {
+    for (Person& each : people) {
+      if (each.id == id) return each;
+    }
+    ADD_FAILURE() << "nobody is " << id;
+    return people.front();
+  }
+  void hide(std::uint64_t id) {
+    std::erase_if(people, [&](const Person& each) { return each.id == id; });
+  }
+  const Estimate& once() {
+    return estimate = tracker.update({time, robot, service, people, ahead, behind});
+  }
+  const Estimate& run(double seconds) {
+    for (double end = time + seconds - 1e-9; time < end;) {
+      time += kStep;
+      robot.x += kStep * drives * std::cos(robot.yaw);
+      robot.y += kStep * drives * std::sin(robot.yaw);
+      for (Person& each : people) each.position += kStep * each.velocity;
+      once();
+    }
+    return estimate;
+  }
+  /// The visitor 1 stood before the robot, which has turned away and leads; 1.2 m between them.
+  void guide() {
+    add(1, {1.2, 0.0});
+    run(1.0);
+    ASSERT_EQ(estimate.person, 1U);
+    service = Service::kTalks;
+    run(1.0);
+    service = Service::kGuides;
+    robot.yaw = geometry::kPi;
+    run(0.5);
+    drives = 1.0;
+    person(1).velocity = {-1.0, 0.0};
+    run(4.0);
+    ASSERT_TRUE(sees(1));
+  }
+  bool sees(std::uint64_t id) const {
+    return estimate.presence == Presence::kSeen && estimate.person == id;
+  }
+
+  VisitorTracker tracker{{}};
+  std::vector<Person> people;
+  Pose2 robot;
+  Service service = Service::kNobody;
+  bool ahead = true, behind = true;
+  double time = 100.0, drives = 0.0;
+  Estimate estimate;
+};
+
+class BeforeTheRobot : public Scene {};
+class OnTheWay : public Scene {};
+class Wrong : public Scene {};
+
+TEST_F(BeforeTheRobot, WhoStandsThereForAMomentIsTheVisitor) {
+  EXPECT_EQ(run(1.0).presence, Presence::kNobody);
+  add(7, {1.5, 0.4});
+  run(0.3);
+  EXPECT_EQ(estimate.presence, Presence::kNobody) << "not yet";
+  run(0.3);
+  ASSERT_TRUE(sees(7));
+  EXPECT_NEAR(estimate.place.x(), 1.5, 1e-9);
+  EXPECT_NEAR(estimate.place.y(), 0.4, 1e-9);
+  EXPECT_EQ(estimate.speed, 0.0);
+}
+
+TEST_F(BeforeTheRobot, PlacesAreThoseOfTheRobotsFrame) {
+  robot = {3.0, 2.0, geometry::kPi / 2};
+  add(7, {3.0, 4.0});
+  run(1.0);
+  ASSERT_TRUE(sees(7));
+  EXPECT_NEAR(estimate.place.x(), 2.0, 1e-9);
+  EXPECT_NEAR(estimate.place.y(), 0.0, 1e-9);
+}
+
+TEST_F(BeforeTheRobot, WhoPassesByIsNobody) {
+  add(7, {2.0, -4.0}, {0.0, 1.2});
+  for (int i = 0; i < 60; ++i) {
+    run(0.1);
+    EXPECT_EQ(estimate.presence, Presence::kNobody) << person(7).position.y();
+  }
+}
+
+TEST_F(BeforeTheRobot, WhoComesUpToItIsTheVisitorBeforeStanding) {
+  add(7, {4.5, 0.3}, {-1.2, 0.0});
+  run(1.6);
+  EXPECT_TRUE(sees(7));
+  EXPECT_NEAR(estimate.speed, 1.2, 1e-9);
+}
+
+TEST_F(BeforeTheRobot, WhoStandsBehindOrFarOffIsNobody) {
+  add(7, {-1.5, 0.0});
+  add(8, {3.8, 0.0});
+  add(9, {0.5, 1.5});
+  EXPECT_EQ(run(3.0).presence, Presence::kNobody);
+}
+
+TEST_F(BeforeTheRobot, OfTwoTheNearestUntilTheOtherIsClearlyNearer) {
+  add(1, {1.5, 0.5});
+  add(2, {1.7, -0.5});
+  run(1.0);
+  EXPECT_TRUE(sees(1));
+  person(2).position = {1.3, -0.3};
+  run(1.0);
+  EXPECT_TRUE(sees(1)) << "nearer by a hand only";
+  person(2).position = {0.9, -0.2};
+  run(1.0);
+  EXPECT_TRUE(sees(2));
+}
+
+TEST_F(BeforeTheRobot, WhoIsServedIsNotLeftForSomebodyNearer) {
+  add(1, {1.5, 0.5});
+  run(1.0);
+  service = Service::kTalks;
+  add(2, {0.8, 0.0});
+  run(5.0);
+  EXPECT_TRUE(sees(1));
+  hide(1);
+  run(1.0);
+  EXPECT_TRUE(sees(2)) << "who stands at the screen when the first one is gone";
+}
+
+TEST_F(BeforeTheRobot, WhoIsServedMayStepAsideOrBehind) {
+  add(1, {1.2, 0.0});
+  run(1.0);
+  service = Service::kTalks;
+  person(1).position = {-1.0, -0.8};
+  EXPECT_EQ(run(1.0).presence, Presence::kSeen);
+  EXPECT_LT(estimate.place.x(), 0.0);
+}
+
+TEST_F(BeforeTheRobot, WhoWalksOffIsNoLongerTheVisitorOnceNobodyIsServed) {
+  add(1, {1.2, 0.0});
+  run(1.0);
+  person(1).velocity = {1.3, 0.0};
+  run(1.0);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+}
+
+TEST_F(BeforeTheRobot, WithoutACameraNobodyIsNotKnown) {
+  ahead = false;
+  EXPECT_EQ(run(1.0).presence, Presence::kUnknown);
+  add(1, {1.2, 0.0});
+  EXPECT_EQ(run(1.0).presence, Presence::kSeen);
+}
+
+TEST_F(OnTheWay, IsTheOneWhoWasServed) {
+  guide();
+  add(2, robot.position() + Point2(0.8, 0.0), {-1.0, 0.0});  // walks along between the two
+  run(4.0);
+  EXPECT_TRUE(sees(1));
+  EXPECT_LT(estimate.place.x(), 0.0) << "behind";
+}
+
+TEST_F(OnTheWay, LossIsSaidWithinASecond) {
+  guide();
+  person(1).unseen = 0.0;
+  double since = 0.0;
+  for (; estimate.presence == Presence::kSeen && since < 5.0; since += kStep) {
+    person(1).unseen += kStep;
+    run(kStep / 2);
+  }
+  EXPECT_LT(since, 0.75);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+  hide(1);
+  EXPECT_EQ(run(3.0).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, WhoWentWhereNothingLooksIsNotLost) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {0, 0};
+  const double bearing = geometry::kPi - 2.2;  // the robot looks along -x
+  person(1).position = robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing));
+  run(0.1);
+  hide(1);
+  run(10.0);
+  EXPECT_TRUE(sees(1));
+  EXPECT_NEAR(estimate.place.norm(), 1.2, 1e-9);
+  robot.yaw += 0.5;
+  EXPECT_EQ(run(0.1).presence, Presence::kNobody) << "the rear camera looks there";
+  robot.yaw -= 1.0;
+  EXPECT_EQ(run(0.1).presence, Presence::kNobody) << "the laser looks there";
+  robot.yaw += 0.5;
+  EXPECT_TRUE(sees(1) || run(0.1).presence == Presence::kSeen);
+  run(12.0);
+  EXPECT_EQ(estimate.presence, Presence::kNobody) << "for some time only";
+}
+
+TEST_F(OnTheWay, WhoComesOutFromWhereNothingLooksIsTheVisitor) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {0, 0};
+  const double bearing = geometry::kPi - 2.2;
+  person(1).position = robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing));
+  run(0.1);
+  const Point2 there = person(1).position;
+  hide(1);
+  run(8.0);
+  add(9, there + Point2(0.3, 0.2), {0.4, 0.2});
+  run(0.1);
+  EXPECT_TRUE(sees(9));
+}
+
+TEST_F(OnTheWay, WhoComesBackToWhereNothingLooksIsTheVisitor) {
+  guide();
+  drives = 0.0;
+  hide(1);
+  run(4.0);
+  const double bearing = geometry::kPi - 2.2;
+  add(9, robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing)));
+  run(0.3);
+  for (int i = 0; i < 12; ++i) {
+    person(9).unseen = 0.5 * i;
+    run(0.5);
+  }
+  EXPECT_TRUE(sees(9));
+}
+
+TEST_F(OnTheWay, ARobotThatDrivesOnMissesWhoStayedWhereNothingLooked) {
+  guide();
+  person(1).velocity = {0, 0};
+  const double bearing = geometry::kPi - 2.2;
+  person(1).position = robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing));
+  run(0.1);
+  hide(1);
+  run(1.5);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, WhoPassesARobotThatWaitsIsNot) {
+  guide();
+  drives = 0.0;
+  hide(1);
+  run(3.0);
+  add(6, robot.position() + Point2(4.0, 0.9), {-1.1, 0.0});
+  for (int i = 0; i < 60; ++i) {
+    run(0.1);
+    EXPECT_NE(estimate.presence, Presence::kSeen) << i;
+  }
+}
+
+TEST_F(OnTheWay, HiddenForAMomentIsNoLoss) {
+  guide();
+  person(1).unseen = 0.4;
+  run(0.1);
+  EXPECT_TRUE(sees(1));
+}
+
+TEST_F(OnTheWay, AnotherNumberAtTheSamePlaceIsTheSameVisitor) {
+  guide();
+  const Point2 there = person(1).position;
+  hide(1);
+  run(0.4);
+  add(5, there + Point2(-0.4, 0.1), {-1.0, 0.0});
+  run(0.1);
+  EXPECT_TRUE(sees(5));
+}
+
+TEST_F(OnTheWay, WhoCrossesWhereTheVisitorWasHiddenIsNot) {
+  guide();
+  const Point2 there = person(1).position;
+  hide(1);
+  add(5, there + Point2(0.0, -0.5), {0.0, 1.2});
+  for (int i = 0; i < 20; ++i) {
+    run(0.1);
+    EXPECT_NE(estimate.person, 5U);
+  }
+}
+
+TEST_F(OnTheWay, WhoComesTowardAndPassesIsNot) {
+  guide();
+  hide(1);
+  add(5, robot.position() + Point2(-4.0, 0.8), {1.2, 0.0});
+  for (int i = 0; i < 60; ++i) {
+    run(0.1);
+    EXPECT_NE(estimate.presence, Presence::kSeen) << i;
+  }
+}
+
+TEST_F(OnTheWay, WhoComesUpToTheFrontOfARobotThatWaitsIsNot) {
+  guide();
+  drives = 0.0;
+  hide(1);
+  run(2.0);
+  add(5, robot.position() + Point2(-2.2, 0.0), {0.8, 0.0});
+  for (int i = 0; i < 19; ++i) {
+    run(0.1);
+    EXPECT_NE(estimate.presence, Presence::kSeen) << i;
+  }
+}
+
+TEST_F(OnTheWay, WhoWalksAlongFarBesideIsNot) {
+  guide();
+  hide(1);
+  run(2.0);
+  add(5, robot.position() + Point2(1.5, 2.8), {-1.0, 0.0});
+  EXPECT_EQ(run(3.0).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, LongAfterALossSomebodyAtThatPlaceIsNot) {
+  guide();
+  const Point2 there = person(1).position;
+  hide(1);
+  run(3.0);
+  add(6, there + Point2(-0.8, 0.0), {-1.0, 0.0});
+  EXPECT_EQ(run(0.2).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, WhoStandsBesideTheWayIsNot) {
+  guide();
+  hide(1);
+  add(5, robot.position() + Point2(-1.0, 1.3));
+  run(5.0);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, AVisitorWithABrokenIdentityIsFoundByFollowing) {
+  guide();
+  const Point2 there = person(1).position;
+  hide(1);
+  run(2.5);  // hidden behind others
+  add(6, there + Point2(-1.5, 0.4), {-1.1, 0.0});
+  run(0.4);
+  EXPECT_NE(estimate.presence, Presence::kSeen) << "not at once";
+  run(0.6);
+  EXPECT_TRUE(sees(6));
+}
+
+TEST_F(OnTheWay, SomebodyTooFarFromWhereTheVisitorWasIsNot) {
+  guide();
+  hide(1);
+  run(0.7);
+  drives = 0.0;
+  add(6, robot.position() + Point2(5.8, 0.0), {-0.5, 0.0});
+  run(0.8);
+  EXPECT_NE(estimate.person, 6U);
+}
+
+TEST_F(OnTheWay, TheFirstIdentityCountsWhenItComesBack) {
+  guide();
+  Person first = person(1);
+  hide(1);
+  run(2.0);
+  add(6, first.position + Point2(-1.5, 0.4), {-1.0, 0.0});
+  run(1.0);
+  ASSERT_TRUE(sees(6));
+  first.position = robot.position() + Point2(1.5, 0.0);
+  people.push_back(first);
+  run(0.1);
+  EXPECT_TRUE(sees(1));
+}
+
+TEST_F(OnTheWay, SomebodyMistakenForTheVisitorIsLeftForTheOneWhoFollows) {
+  guide();
+  hide(1);
+  run(2.0);
+  add(6, robot.position() + Point2(2.0, 0.4), {-1.0, 0.0});
+  run(1.0);
+  ASSERT_TRUE(sees(6));
+  add(8, robot.position() + Point2(1.0, 0.0), {-1.0, 0.0});
+  run(2.0);
+  ASSERT_TRUE(sees(6)) << "both follow";
+  hide(8);
+  person(6).velocity = {0, 0};
+  run(1.0);
+  EXPECT_TRUE(sees(6)) << "may tie a lace";
+  add(7, robot.position() + Point2(1.5, -0.3), {-1.0, 0.0});
+  run(2.0);
+  EXPECT_TRUE(sees(7));
+}
+
+TEST_F(OnTheWay, AVisitorWhoTiesALaceIsNotLeftForWhoeverWalksBehind) {
+  guide();
+  person(1).velocity = {0, 0};
+  add(7, robot.position() + Point2(1.0, -0.3), {-1.0, 0.0});
+  run(3.0);
+  EXPECT_TRUE(sees(1));
+}
+
+TEST_F(OnTheWay, WhoStandsBehindARobotThatWaitsIsFoundAgain) {
+  guide();
+  drives = 0.0;
+  const Point2 there = robot.position() + Point2(1.3, 0.0);
+  hide(1);
+  run(3.0);
+  add(6, there);
+  run(4.0);  // who cannot pass waits, too, and turns round
+  EXPECT_NE(estimate.presence, Presence::kSeen);
+  run(1.5);
+  EXPECT_TRUE(sees(6));
+}
+
+TEST_F(OnTheWay, AfterALongWaitTheVisitorMayComeFromAnywhere) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {2.0, 0.0};
+  run(4.0);
+  hide(1);
+  run(6.0);
+  add(6, robot.position() + Point2(1.2, 0.0));
+  run(5.5);
+  EXPECT_TRUE(sees(6));
+}
+
+TEST_F(OnTheWay, RoundACornerTheVisitorIsStillBehind) {
+  guide();
+  robot.yaw =
+      geometry::kPi / 2;  // the robot has turned right and drives on; the visitor comes later
+  run(1.2);
+  person(1).velocity = {0.0, 1.0};
+  run(2.0);
+  EXPECT_TRUE(sees(1));
+  const Point2 there = person(1).position;
+  hide(1);
+  run(2.0);
+  add(9, there + Point2(0.2, 1.8), {0.0, 1.0});
+  run(1.0);
+  EXPECT_TRUE(sees(9));
+}
+
+TEST_F(OnTheWay, WithoutEyesBehindTheVisitorIsUnknown) {
+  guide();
+  behind = false;
+  EXPECT_EQ(run(0.2).presence, Presence::kUnknown);
+  hide(1);
+  EXPECT_EQ(run(3.0).presence, Presence::kUnknown);
+  behind = true;
+  EXPECT_EQ(run(0.2).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, WhoWasNotSeenWhenItBeganIsFoundByFollowing) {
+  service = Service::kGuides;
+  EXPECT_EQ(run(1.0).presence, Presence::kNobody);
+  drives = 1.0;
+  run(1.0);
+  add(4, robot.position() + Point2(-1.2, 0.0), {1.0, 0.0});
+  run(1.5);
+  EXPECT_TRUE(sees(4));
+}
+
+TEST_F(Wrong, PeopleWhoAreNowhereAreLeftOut) {
+  add(1, {kNan, 0.0});
+  add(2, {1.2, 0.0}, {kNan, 0.0});
+  add(3, {1.2, 0.0}).unseen = kNan;
+  add(0, {1.2, 0.0});
+  EXPECT_EQ(run(2.0).presence, Presence::kNobody);
+}
+
+TEST_F(Wrong, APoseThatIsNoneMakesTheVisitorUnknown) {
+  add(1, {1.2, 0.0});
+  run(1.0);
+  robot.x = kNan;
+  EXPECT_EQ(once().presence, Presence::kUnknown);
+  robot.x = 0.0;
+  time += kStep;
+  EXPECT_EQ(once().presence, Presence::kSeen);
+  time = kNan;
+  EXPECT_EQ(once().presence, Presence::kUnknown);
+}
+
+TEST_F(Wrong, AfterAJumpOfTimeNobodyHasStoodThereYet) {
+  add(1, {1.2, 0.0});
+  run(0.35);
+  time += 30.0;
+  EXPECT_EQ(run(0.2).presence, Presence::kNobody);
+  time -= 60.0;
+  once();
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+  EXPECT_EQ(run(0.6).presence, Presence::kSeen);
+}
+
+TEST_F(Wrong, AfterAJumpOfTheOdometryNobodyHasFollowedYet) {
+  guide();
+  hide(1);
+  run(2.0);
+  add(6, robot.position() + Point2(1.1, 0.0), {-1.0, 0.0});
+  run(0.5);
+  robot.x += 0.8;
+  person(6).position.x() += 0.8;
+  run(0.2);
+  EXPECT_NE(estimate.presence, Presence::kSeen);
+}
+
+TEST_F(Wrong, ANumberThatWasGivenAgainIsAnother) {
+  guide();
+  person(1).age = 0.3;  // its tracker was restarted
+  person(1).position = robot.position() + Point2(-3.0, 0.0);
+  person(1).velocity = {1.0, 0.0};
+  run(0.2);
+  EXPECT_FALSE(sees(1));
+}
+
+TEST_F(Wrong, SilenceIsUnknownAndForgetsNobody) {
+  guide();
+  EXPECT_EQ(tracker.lose().presence, Presence::kUnknown);
+  EXPECT_EQ(tracker.lose().person, 1U);
+  run(0.1);
+  EXPECT_TRUE(sees(1));
+}
+
+TEST_F(Wrong, ACrowdAtTheRobotLeavesOneVisitor) {
+  for (std::uint64_t id = 1; id <= 64; ++id) {
+    const double angle = 0.02 * static_cast<double>(id) - 0.65;
+    const double range = 1.0 + 0.03 * static_cast<double>(id);
+    add(id, {range * std::cos(angle), range * std::sin(angle)});
+  }
+  run(1.0);
+  EXPECT_TRUE(sees(1));
+  service = Service::kTalks;
+  run(2.0);
+  EXPECT_TRUE(sees(1));
+}
+
+}  // namespace
+}  // namespace usher::visitor_tracker
