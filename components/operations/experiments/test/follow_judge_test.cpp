@@ -2,13 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace usher::operations {
 namespace {
 
 class Follow : public testing::Test {
  protected:
   void pass(double seconds, double gap, bool waits = false, bool visible = true) {
-    for (int i = 0; i < static_cast<int>(seconds * 10.0 + 0.5); ++i)
+    for (int i = 0; i < std::lround(seconds * 10.0); ++i)
       judge.take({t += 0.1, !waits, waits, gap, visible});
   }
   FollowJudge judge;
