@@ -35,6 +35,12 @@ constexpr double kSameVelocity = 0.7;   // [m/s]
 constexpr double kSameFor = 1.5;        // [s]
 constexpr double kForesees = 0.8;       // [s] of walking on
 constexpr double kAgeError = 0.5;       // [s]
+constexpr double kLeaderForesees = 1.5;  // [s] of walking on
+constexpr double kLeaderHidden = 4.0;    // [s] whoever turns up later is another one
+constexpr double kStrays = 0.3;          // [m/s] by which the place is less certain
+constexpr double kStops = 0.5;           // [m/s] who is slower may have stopped meanwhile
+constexpr double kReturnsWithin = 2.0;   // [m]
+constexpr double kComes = 0.8;           // [m] walked since, by who was there beside the visitor
 
 bool finite(const Person& person) {
   return person.id != 0 && person.position.allFinite() && person.velocity.allFinite() &&
@@ -60,8 +66,9 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
   // A visitor of another time would have walked any distance since then.
   if (broke && passed < 0.0) last_time_ = moment.time;
   time_ = moment.time;
-  if (moment.service == Service::kGuides && service_ != Service::kGuides) first_ = held_;
+  const bool other = moment.service != service_;
   service_ = moment.service;
+  if (other && on_the_way()) first_ = held_;
   remember_way(moment);
   forget_other_people(moment);
   observe(moment, broke ? 0.0 : passed);
@@ -74,6 +81,9 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
       break;
     case Service::kGuides:
       keep_follower(moment.odom_T_base);
+      break;
+    case Service::kFollows:
+      keep_leader(broke ? 0.0 : passed);
       break;
   }
   report(moment);
@@ -137,7 +147,9 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
             [](const Look& a, const Look& b) { return a.person->id < b.person->id; });
   std::erase_if(habits_, [&](const auto& habit) { return find(habit.first) == nullptr; });
   for (Look& look : looks_) {
-    Habit& habit = habits_[look.person->id];
+    Habit& habit =
+        habits_.try_emplace(look.person->id, Habit{.since = time_, .from = look.person->position})
+            .first->second;
     if (seen(&look)) {
       habit.before = before(look) ? habit.before + passed : 0.0;
       habit.follows = std::clamp(
@@ -160,9 +172,9 @@ bool VisitorTracker::blind_at(const Point2& place) const {
 /// Seen now, or gone where nothing looks.
 bool VisitorTracker::seen(const Look* look) const {
   if (look == nullptr) return false;
+  if (service_ == Service::kFollows && look->range > config_.farthest) return false;
   return look->person->unseen <= config_.unseen ||
-         (service_ == Service::kGuides && look->person->unseen <= config_.blind_for &&
-          blind_at(look->place));
+         (on_the_way() && look->person->unseen <= config_.blind_for && blind_at(look->place));
 }
 
 bool VisitorTracker::before(const Look& look) const {
@@ -253,15 +265,77 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
   if (found) hold(*found, time);
 }
 
+/// The robot follows: the same one, else who took the place or came back.
+void VisitorTracker::keep_leader(double passed) {
+  if (const Look* first = find(first_); seen(first)) hold(*first, time_);
+  if (!seen(find(held_))) {
+    const Look* found = held_ == 0 ? nearest_before() : come_from_there();
+    if (!found) found = come_back();
+    if (found) hold(*found, time_);
+  }
+  note_others(passed);
+}
+
+/// Who is there beside the visitor is not the one who turns up when he is hidden.
+void VisitorTracker::note_others(double passed) {
+  const Look* held = find(held_);
+  const bool leads = seen(held);
+  for (const Look& look : looks_) {
+    Habit& habit = habits_[look.person->id];
+    const bool here = seen(&look) && before(look) && look.range <= kReturnsWithin &&
+                      look.speed < config_.stands_below;
+    habit.stands = here ? habit.stands + passed : 0.0;
+    if (leads && (look.person->position - held->person->position).norm() > kSamePlace)
+      habit.beside = look.person->position;
+  }
+}
+
+/// Where the visitor was going to be, so long after the last sighting.
+Point2 VisitorTracker::expected(double gone) const {
+  const double foresees = service_ == Service::kFollows ? kLeaderForesees : kForesees;
+  return last_place_ + std::min(gone, foresees) * last_velocity_;
+}
+
+/// Who first turned up where the visitor was going to be then, and walks on or has stopped.
+const VisitorTracker::Look* VisitorTracker::come_from_there() const {
+  const Look* best = nullptr;
+  double least = 1.0;
+  for (const Look& look : looks_) {
+    const bool new_here = look.habit.since > last_time_;
+    const double gone = (new_here ? look.habit.since : time_) - last_time_;
+    if (!seen(&look) || look.habit.beside || gone > kLeaderHidden) continue;
+    const bool likewise =
+        look.speed < kStops || (look.person->velocity - last_velocity_).norm() <= kSameVelocity;
+    const Point2 place = new_here ? look.habit.from : look.person->position;
+    const double off = (place - expected(gone)).norm() / (kSamePlace + kStrays * gone);
+    if (!likewise || off > least) continue;
+    best = &look;
+    least = off;
+  }
+  return best;
+}
+
+/// Who came and has stood at the robot for a while, the nearest.
+const VisitorTracker::Look* VisitorTracker::come_back() const {
+  const Look* best = nullptr;
+  for (const Look& look : looks_) {
+    const bool stood_there =
+        look.habit.beside && (look.person->position - *look.habit.beside).norm() < kComes;
+    if (look.habit.stands < config_.returns || stood_there) continue;
+    if (!best || look.range < best->range) best = &look;
+  }
+  return best;
+}
+
 /// Somebody who turned up where the visitor was going to be, walking likewise.
 const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base) const {
   const double gone = time_ - last_time_;
   if (held_ == 0 || (gone > kSameFor && !out_of_view(odom_T_base))) return nullptr;
-  const Point2 expected = last_place_ + std::min(gone, kForesees) * last_velocity_;
+  const Point2 there = expected(gone);
   const Look* best = nullptr;
   double least = kSamePlace;
   for (const Look& look : looks_) {
-    const double off = (look.person->position - expected).norm();
+    const double off = (look.person->position - there).norm();
     if (!seen(&look) || off > least) continue;
     if ((look.person->velocity - last_velocity_).norm() > kSameVelocity) continue;
     best = &look;
@@ -286,8 +360,15 @@ const VisitorTracker::Look* VisitorTracker::follower(double least, double neares
 
 /// The visitor was last seen, not long ago, at a place where nothing looks now.
 bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
-  return service_ == Service::kGuides && held_ != 0 && time_ - last_time_ <= config_.blind_for &&
+  return on_the_way() && held_ != 0 && time_ - last_time_ <= config_.blind_for &&
          blind_at(inverse(odom_T_base) * last_place_);
+}
+
+/// A camera looks to where the visitor was last seen, if the robot follows; else ahead.
+bool VisitorTracker::looks_there(const Moment& moment) const {
+  const bool behind = service_ == Service::kFollows && held_ != 0 &&
+                      (inverse(moment.odom_T_base) * last_place_).x() < 0.0;
+  return behind ? moment.looks_behind : moment.looks_ahead;
 }
 
 void VisitorTracker::report(const Moment& moment) {
@@ -307,7 +388,7 @@ void VisitorTracker::report(const Moment& moment) {
   } else if (out_of_view(moment.odom_T_base)) {
     estimate_.presence = Presence::kSeen;
     estimate_.place = inverse(moment.odom_T_base) * last_place_;
-  } else if (guides || moment.looks_ahead) {
+  } else if (guides || looks_there(moment)) {
     estimate_.presence = Presence::kNobody;
   }
 }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,9 +15,10 @@ namespace usher::visitor_tracker {
 
 /// What the robot is about.
 enum class Service : std::uint8_t {
-  kNobody,  ///< it waits for somebody to stand before it
-  kTalks,   ///< a visit goes on
-  kGuides,  ///< a journey goes on: the visitor follows
+  kNobody,   ///< it waits for somebody to stand before it
+  kTalks,    ///< a visit goes on
+  kGuides,   ///< a journey goes on: the visitor follows
+  kFollows,  ///< the robot follows the visitor
 };
 
 /// Somebody whom the people tracker knows, in odom.
@@ -49,6 +51,8 @@ struct Config {
   double blind_for = 20.0;    ///< [s] so long a follower who went there counts as seen
   double trail = 1.5;         ///< [m] beside the robot's way a follower may walk
   double follows = 0.6;       ///< [s] of following until somebody is the one whose identity broke
+  double farthest = 8.0;      ///< [m] whom the robot follows counts as seen up to here
+  double returns = 2.5;       ///< [s] so long stands at the robot whoever is the one that it lost
 };
 
 enum class Presence : std::uint8_t { kUnknown, kNobody, kSeen };
@@ -65,7 +69,9 @@ struct Estimate {
 /// a journey, when the identity broke: whoever turns up where the visitor was going to be, else
 /// whoever walks behind the robot for a while, near enough to where the visitor was last seen. Who
 /// crosses, comes from ahead or stands beside the way is not taken for him. When the first identity
-/// turns up again, it counts.
+/// turns up again, it counts. When the robot follows the visitor: the same one, wherever he goes;
+/// when the identity broke, whoever first turned up where he was going to be, or comes to stand at
+/// the robot for a while. Who was there beside him is another one.
 ///
 /// Nobody is there only where a camera looks; else it is not known. Deterministic; up to 64 people.
 class VisitorTracker {
@@ -84,6 +90,10 @@ class VisitorTracker {
   struct Habit {
     double before = 0.0;   ///< [s] in front without a break
     double follows = 0.0;  ///< [s] behind, less the time that they did not
+    double since = 0.0;    ///< [s] and where somebody was first known
+    geometry::Point2 from = geometry::Point2::Zero();
+    std::optional<geometry::Point2> beside;  ///< where, when the visitor was seen elsewhere
+    double stands = 0.0;                     ///< [s] at the robot without a break
   };
   struct Look {
     const Person* person = nullptr;
@@ -106,8 +116,15 @@ class VisitorTracker {
   void choose_to_serve();
   void keep_served();
   void keep_follower(const geometry::Pose2& odom_T_base);
+  void keep_leader(double passed);
+  void note_others(double passed);
+  const Look* come_from_there() const;
+  const Look* come_back() const;
+  geometry::Point2 expected(double gone) const;
   const Look* same_place(const geometry::Pose2& odom_T_base) const;
   const Look* follower(double least, double nearest) const;
+  bool on_the_way() const { return service_ == Service::kGuides || service_ == Service::kFollows; }
+  bool looks_there(const Moment& moment) const;
   bool seen(const Look* look) const;
   bool blind_at(const geometry::Point2& place) const;
   void hold(const Look& look, double time);
@@ -123,7 +140,7 @@ class VisitorTracker {
   Service service_ = Service::kNobody;
 
   std::uint64_t held_ = 0;   ///< the visitor; 0: none
-  std::uint64_t first_ = 0;  ///< who was the visitor when the journey began
+  std::uint64_t first_ = 0;  ///< who was the visitor when the way began
   double held_since_ = 0.0;  ///< [s]
   double last_time_ = 0.0;   ///< [s] and where the visitor was last seen
   geometry::Point2 last_place_ = geometry::Point2::Zero();

@@ -46,6 +46,10 @@ Config VisitorTrackerComponent::read_config(runtime::Parameters& p) {
                      "So far beside the robot's way a follower may walk.");
   c.follows = p.number("follows", "s", {0.2, 5}, c.follows,
                        "So long must follow whoever is taken for a visitor whose identity broke.");
+  c.farthest = p.number("farthest", "m", {2, 20}, c.farthest,
+                        "The visitor whom the robot follows counts as seen up to here.");
+  c.returns = p.number("returns", "s", {0.5, 10}, c.returns,
+                       "So long stands at the robot whoever is the visitor whom it has lost.");
   return c;
 }
 
@@ -73,6 +77,7 @@ VisitorTrackerComponent::VisitorTrackerComponent(runtime::Host& host)
 Service VisitorTrackerComponent::service() const {
   const auto* guide = guide_.fresh();
   if (guide == nullptr || !guide->serves()) return Service::kNobody;
+  if (guide->follows()) return Service::kFollows;
   return guide->guides() ? Service::kGuides : Service::kTalks;
 }
 

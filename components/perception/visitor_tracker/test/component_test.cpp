@@ -19,7 +19,8 @@ struct Bench {
   runtime::TestHost host{runtime::component_factory<VisitorTrackerComponent>("visitor_tracker")};
   geometry::Pose2 odom_T_base{2.0, 1.0, 0.0};
   double x = 3.5, y = 1.0;  // of the person in odom
-  bool people = true, odometry = true, serves = false, guides = false, guide = true;
+  bool people = true, odometry = true, serves = false, guides = false, follows = false,
+       guide = true;
   bool ahead = true, behind = true;
   float unseen = 0.0F;
 
@@ -30,6 +31,7 @@ struct Bench {
         status.header(wire::header(host.now(), ""));
         status.serves(serves);
         status.guides(guides);
+        status.follows(follows);
         host.publish(topics::kGuideStatus, status);
       }
       nav_msgs::msg::Odometry odom;
@@ -88,6 +90,17 @@ TEST(VisitorTrackerShell, WithTheGuideOnTheWayItKeepsWhoFollows) {
   bench.behind = false;
   bench.run(100);
   EXPECT_EQ(bench.last().presence(), presence::PRESENCE_UNKNOWN) << "nobody looks behind";
+}
+
+TEST(VisitorTrackerShell, WhomTheRobotFollowsStaysTheVisitorFarAway) {
+  Bench bench;
+  bench.run(1000);
+  bench.serves = bench.follows = true;
+  bench.run(600);
+  bench.x = 8.0;
+  bench.run(1000);
+  EXPECT_EQ(bench.last().presence(), presence::PRESENCE_SEEN);
+  EXPECT_NEAR(bench.last().x(), 6.0, 1e-9);
 }
 
 TEST(VisitorTrackerShell, NobodyAndUnknownAreTwoThings) {
