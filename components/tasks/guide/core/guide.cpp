@@ -211,6 +211,7 @@ const Actions& Guide::answer(const Answer& answer, Time now) {
   ++(answer.input == Input::kTouch   ? visit_.touches
      : answer.input == Input::kVoice ? visit_.utterances
                                      : visit_.others);
+  if (actions_.visit && actions_.visit->id == visit_.id) actions_.visit = visit_;  // it ended it
   if (first) ++funnel_.engaged;
   return finish(now);
 }

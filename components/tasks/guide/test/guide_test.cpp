@@ -236,6 +236,16 @@ TEST(Guide, FitsThePaceWaitsCallsAndGoesOn) {
   EXPECT_EQ(rig.guide.visit().waits, 1U);
 }
 
+TEST(Guide, CountsTheAnswerThatEndsTheVisit) {
+  Rig rig;
+  rig.to_location_ask();
+  rig.press("no");
+  rig.press("no");
+  rig.press("no");
+  ASSERT_EQ(rig.visits.size(), 1U) << rig.state();
+  EXPECT_EQ(rig.visits[0].touches, 4U);
+}
+
 TEST(Guide, GivesUpAVisitorWhoDoesNotComeBack) {
   Rig rig;
   rig.see(1.2);
