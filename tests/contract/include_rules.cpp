@@ -67,8 +67,9 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
   }
   // Libraries are no components; those of drivers, tasks and texts have what shells share, too.
   if (starts_with_any(name, {"drivers/base_obedience/core/", "drivers/laser_scanner/core/",
-                             "drivers/serial_frame/core/", "interaction/phrases/core/",
-                             "simulation/rendering/core/", "tasks/service/core/"})) {
+                             "drivers/serial_frame/core/", "interaction/finger/core/",
+                             "interaction/phrases/core/", "simulation/rendering/core/",
+                             "tasks/service/core/"})) {
     return {};
   }
   if (from.room.starts_with("tasks/") && from.layer == "shell" &&
@@ -84,6 +85,11 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
   if (starts_with_any(name, {"wire/", "runtime/api/"}) || is_message(name)) return {};
   // A component with a main program of its own: a device that wants the main thread.
   if (from.layer == "program" && name == "runtime/dds/component_main.hpp") return {};
+  // A simulated visitor speaks with the voice that the robot has.
+  if (from.room == "simulation/visitor" && from.layer == "program" &&
+      starts_with_any(name, {"interaction/speech/engine/", "interaction/speech/core/"})) {
+    return {};
+  }
   if (starts_with_any(name, {"runtime/"})) return "a shell knows the runtime's api only";
   return test ? "what needs another component is tested below tests/"
               : "a component does not know another one";

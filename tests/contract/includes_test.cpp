@@ -31,6 +31,8 @@ TEST(IncludeRules, RefuseWhatBreaksTheHouse) {
   refused("drivers/lms100/device_sim/device.cpp", "\"simulation/world/core/world.hpp\"");
   refused("drivers/lms100/test/lms100_test.cpp", "\"simulation/world/core/world.hpp\"");
   refused("simulation/visitor/shell/component.cpp", "\"simulation/world/core/world.hpp\"");
+  refused("simulation/visitor/shell/component.cpp", "\"interaction/speech/engine/espeak.hpp\"");
+  refused("interaction/tablet/program/main.cpp", "\"interaction/speech/engine/espeak.hpp\"");
   refused("drivers/p3dx/core/link.hpp", "\"drivers/base_obedience/shell/obedient_base.hpp\"");
   refused("control/supervisor/shell/component.cpp",
           "\"drivers/base_obedience/shell/obedient_base.hpp\"");
@@ -69,6 +71,8 @@ TEST(IncludeRules, AllowTheRest) {
           "\"drivers/laser_scanner/shell/scanner_line.hpp\"");
   allowed("drivers/lms100/core/session.hpp", "\"drivers/laser_scanner/core/scan.hpp\"");
   allowed("simulation/world/shell/component.cpp", "\"simulation/world/core/world.hpp\"");
+  allowed("simulation/visitor/program/main.cpp", "\"interaction/speech/engine/espeak.hpp\"");
+  allowed("interaction/tablet/shell/component.hpp", "\"interaction/finger/core/tap.hpp\"");
   allowed("operations/experiments/guide.cpp", "\"simulation/world/core/world.hpp\"");
   allowed("operations/experiments/guide.cpp", "\"runtime/lockstep/lockstep_world.hpp\"");
   allowed("runtime/dds/dds_host.cpp", "<fastdds/dds/domain/DomainParticipant.hpp>");

@@ -40,6 +40,9 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   settings.full_screen = parameters.flag("full_screen", true, "Covers the whole display.");
   settings.pictures = parameters.text(
       "pictures", "", "Folder for a picture of every screen that is passed; empty = none.");
+  open_finger(parameters.text("finger", "",
+                              "Where a simulated visitor's finger touches the screen, for example "
+                              "listen://127.0.0.1:7431; empty = nowhere."));
   screen_ = host.input(topics::kDialogueScreen, {},
                        [this](const auto& screen, const auto&) { take_screen(screen); });
   guide_ = host.input(
@@ -80,6 +83,17 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   }
   window_.open(settings);
   show();
+}
+
+void TabletComponent::open_finger(const std::string& address) {
+  if (address.empty()) return;
+  host_.open_stream(address, {.on_open = [this] { finger_.restart(); },
+                              .on_bytes =
+                                  [this](std::span<const std::uint8_t> bytes) {
+                                    const std::uint64_t before = finger_.rejected();
+                                    for (const auto& tap : finger_.take(bytes)) window_.tap(tap);
+                                    rejected_ += finger_.rejected() - before;
+                                  }});
 }
 
 void TabletComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen) {

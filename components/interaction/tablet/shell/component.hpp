@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "idl/topics.hpp"
+#include "interaction/finger/core/tap.hpp"
 #include "interaction/tablet/core/tablet.hpp"
 #include "interaction/tablet/shell/window.hpp"
 #include "runtime/api/host.hpp"
@@ -24,6 +25,7 @@ class TabletComponent final : public runtime::Component {
   void take_screen(const usher_msgs::msg::DialogueScreen& screen);
   void take_map(const nav_msgs::msg::OccupancyGrid& map);
   void take_plan(const nav_msgs::msg::Path& path);
+  void open_finger(const std::string& address);
   void take_locations(const usher_msgs::msg::Locations& locations);
   void act(const Touched& touched);
   void ask(std::uint8_t command);
@@ -34,6 +36,7 @@ class TabletComponent final : public runtime::Component {
   std::unique_ptr<Window> own_window_;
   Window& window_;
   Tablet core_;
+  finger::Lines finger_;
   View shown_;
   bool held_ = false;
   std::uint64_t ticks_ = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "interaction/finger/core/tap.hpp"
 #include "interaction/tablet/core/floor_plan.hpp"
 #include "interaction/tablet/core/view.hpp"
 
@@ -29,6 +30,8 @@ class Window {
   virtual void show_building(const FloorPlan& plan) = 0;
   virtual void show_places(const std::vector<Place>& places) = 0;
   virtual void show_route(const std::vector<geometry::Point2>& route_in_map) = 0;
+  /// A finger that is no hardware's touches what is drawn: its touch comes back as any other.
+  virtual void tap(const finger::Tap& tap) = 0;
 };
 
 /// No display: for tests and simulations in one thread, which inject touches.
@@ -40,12 +43,14 @@ class NullWindow final : public Window {
   void show_building(const FloorPlan& shown) override { plan = shown; }
   void show_places(const std::vector<Place>& shown) override { places = shown; }
   void show_route(const std::vector<geometry::Point2>& shown) override { route = shown; }
+  void tap(const finger::Tap& tap) override { taps.push_back(tap); }
 
   std::vector<Touch> touches;
   View view;
   FloorPlan plan;
   std::vector<Place> places;
   std::vector<geometry::Point2> route;
+  std::vector<finger::Tap> taps;
 };
 
 }  // namespace usher::tablet

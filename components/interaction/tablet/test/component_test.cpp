@@ -133,6 +133,32 @@ TEST_F(Component, StopsEvenWithoutDialogue) {
   EXPECT_TRUE(window_.view.start_offered);
 }
 
+/// A finger at the end of a line.
+class Finger final : public runtime::LockstepDevice {
+ public:
+  runtime::Bytes answer(std::span<const std::uint8_t>) override { return {}; }
+  runtime::Bytes speak(runtime::Time) override { return std::exchange(says, {}); }
+  runtime::Bytes says;
+};
+
+TEST(ComponentWithAFinger, TouchesWhatIsDrawn) {
+  NullWindow window;
+  const auto finger = std::make_shared<Finger>();
+  const std::string lines = "nonsense\n" + finger::to_line({5, false, "yes"});
+  finger->says.assign(lines.begin(), lines.end());
+  runtime::TestHost host{{"tablet",
+                          [&](runtime::Host& made) {
+                            return std::unique_ptr<runtime::Component>(
+                                std::make_unique<TabletComponent>(made, window));
+                          }},
+                         "texts: " USHER_SOURCE_DIR
+                         "/config/dialogue/en.yaml\nfinger: listen://127.0.0.1:7431",
+                         finger};
+  host.run_for(milliseconds(1100));
+  EXPECT_EQ(window.taps, (std::vector<finger::Tap>{{5, false, "yes"}}));
+  EXPECT_EQ(host.counter("inputs: rejected"), 1U);
+}
+
 TEST_F(Component, ShowsBuildingRouteAndPlaces) {
   nav_msgs::msg::OccupancyGrid map;
   map.header().frame_id("map");

@@ -3,11 +3,14 @@
 #include <QDir>
 #include <QGuiApplication>
 #include <QImage>
+#include <QMouseEvent>
 #include <QQmlApplicationEngine>
+#include <QQuickItem>
 #include <QQuickWindow>
 #include <QTimer>
 #include <chrono>
 #include <csignal>
+#include <deque>
 #include <mutex>
 #include <thread>
 
@@ -22,6 +25,20 @@ namespace {
 constexpr auto kSettled = std::chrono::milliseconds(400);  ///< a screen has been drawn by then
 
 constexpr std::size_t kMostTouches = 64;  ///< between two questions of the component
+
+constexpr std::size_t kMostTaps = 64;                          ///< that wait for the finger
+constexpr auto kTapLasts = std::chrono::milliseconds(80);      ///< of a person's finger
+constexpr auto kBetweenTaps = std::chrono::milliseconds(120);  ///< and until it is there again
+
+/// What is drawn and has this name.
+QQuickItem* visible_item(QQuickItem* item, const QString& name) {
+  if (!item->isVisible() || item->opacity() <= 0.0) return nullptr;
+  if (item->objectName() == name) return item;
+  for (QQuickItem* child : item->childItems()) {
+    if (QQuickItem* found = visible_item(child, name)) return found;
+  }
+  return nullptr;
+}
 
 /// Without a session Qt would end the program; without a graphics driver it draws by itself.
 void choose_platform() {
@@ -49,6 +66,11 @@ class Application::Implementation final : public Window {
     }
     model.on_press = [this](const std::string& id) { touched({false, id}); };
     model.on_typed = [this](const std::string& text) { touched({true, text}); };
+    for (auto* timer : {&press_timer, &release_timer}) timer->setSingleShot(true);
+    release_timer.setInterval(kTapLasts);
+    press_timer.setInterval(kBetweenTaps);
+    QObject::connect(&release_timer, &QTimer::timeout, &model, [this] { lift_finger(); });
+    QObject::connect(&press_timer, &QTimer::timeout, &model, [this] { press_next(); });
     picture_timer.setSingleShot(true);
     picture_timer.setInterval(kSettled);
     QObject::connect(&picture_timer, &QTimer::timeout, &model, [this] { take_picture(); });
@@ -88,6 +110,41 @@ class Application::Implementation final : public Window {
     later([this, route] { model.show_route(route); });
   }
 
+  void tap(const finger::Tap& tap) override {
+    later([this, tap] {
+      if (taps.size() == kMostTaps) return;
+      taps.push_back(tap);
+      if (!release_timer.isActive() && !press_timer.isActive()) press_next();
+    });
+  }
+
+  /// As a touch screen would tell of it: to the window, at a place.
+  void point(QEvent::Type type) {
+    const bool press = type == QEvent::MouseButtonPress;
+    QMouseEvent event(type, finger_at, display->mapToGlobal(finger_at), Qt::LeftButton,
+                      press ? Qt::LeftButton : Qt::NoButton, {});
+    QCoreApplication::sendEvent(display, &event);
+  }
+  void press_next() {
+    while (!taps.empty() && display != nullptr) {
+      const finger::Tap next = taps.front();
+      taps.pop_front();
+      const QString name = (next.key ? "key:" : "button:") + QString::fromStdString(next.target);
+      const auto* item = next.screen_id == model.view().screen_id
+                             ? visible_item(display->contentItem(), name)
+                             : nullptr;
+      if (item == nullptr) continue;
+      finger_at = item->mapRectToScene(item->boundingRect()).center();
+      point(QEvent::MouseButtonPress);
+      release_timer.start();
+      return;
+    }
+  }
+  void lift_finger() {
+    point(QEvent::MouseButtonRelease);
+    press_timer.start();
+  }
+
   void touched(Touch touch) {
     const std::lock_guard lock(mutex);
     if (touches.size() < kMostTouches) touches.push_back(std::move(touch));
@@ -115,7 +172,9 @@ class Application::Implementation final : public Window {
   QQmlApplicationEngine engine;
   QQuickWindow* display = nullptr;
   Settings settings;
-  QTimer picture_timer;
+  std::deque<finger::Tap> taps;
+  QPointF finger_at;
+  QTimer press_timer, release_timer, picture_timer;
   int pictures = 0;
 };
 
