@@ -38,8 +38,10 @@ SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
   Settings settings;
   settings.loudspeaker =
       parameters.text("loudspeaker", "default", "ALSA device, a file that ends in .wav, or none.");
-  settings.microphone =
-      parameters.text("microphone", "default", "ALSA device, a file that ends in .wav, or none.");
+  settings.microphone = parameters.text(
+      "microphone", "default",
+      "ALSA device, a file that ends in .wav, a stream into which somebody plays samples of 16 bit "
+      "and 16 kHz (listen://127.0.0.1:7432), or none.");
   settings.volume = parameters.number("volume", "-", {0.0, 1.0}, 0.8, "Of the robot's voice.");
   settings.voice.voice = parameters.text(
       "voice", "", "Variant of espeak-ng, for example m3 or f2; empty = the language's own.");

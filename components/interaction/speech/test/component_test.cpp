@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "interaction/speech/shell/stream_microphone.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 
@@ -128,6 +129,83 @@ class Speech : public testing::Test {
   bool guide_ = true;
   std::unique_ptr<runtime::TestHost> host_;
 };
+
+/// Somebody who plays into the microphone from the other end of a line, cut anywhere.
+class Mouth final : public runtime::LockstepDevice {
+ public:
+  explicit Mouth(Room& room) : room_(room) {}
+  runtime::Bytes answer(std::span<const std::uint8_t>) override { return {}; }
+  runtime::Bytes speak(runtime::Time) override {
+    runtime::Bytes bytes;
+    for (int i = 0; i < 160; ++i) {  // of each 10 ms
+      const auto sample =
+          static_cast<std::uint16_t>(std::lround(32000.0 * room_.voice * std::sin(0.1 * at_)));
+      bytes.push_back(static_cast<std::uint8_t>(sample & 0xFFU));
+      bytes.push_back(static_cast<std::uint8_t>(sample >> 8U));
+      at_ += 1.0;
+    }
+    const auto odd = static_cast<std::ptrdiff_t>(at_ / 160.0) % 2;
+    runtime::Bytes now = std::exchange(kept_, {});
+    now.insert(now.end(), bytes.begin(), bytes.end() - odd);
+    kept_.assign(bytes.end() - odd, bytes.end());
+    return now;
+  }
+
+ private:
+  Room& room_;
+  double at_ = 0.0;
+  runtime::Bytes kept_;
+};
+
+TEST(SpeechWithAStream, HearsWhoPlaysIntoItAndGoesOnWithoutHim) {
+  Room room;
+  const auto mouth = std::make_shared<Mouth>(room);
+  runtime::TestHost host(
+      {"speech",
+       [&](runtime::Host& made) {
+         Equipment equipment{
+             std::make_unique<StreamMicrophone>(made, std::make_unique<FakeCard>(room)),
+             std::make_unique<NullSynthesizer>(), std::make_unique<FakeRecognizer>(room)};
+         return std::unique_ptr<runtime::Component>(
+             std::make_unique<SpeechComponent>(made, std::move(equipment)));
+       }},
+      "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml\nmicrophone: listen://127.0.0.1:7432",
+      mouth);
+  const auto pass = [&](int tenths) {
+    for (int i = 0; i < tenths; ++i) {
+      usher_msgs::msg::GuideStatus guide;
+      guide.header(wire::header(host.now(), ""));
+      host.publish(topics::kGuideStatus, guide, "guide");
+      host.run_for(milliseconds(100));
+    }
+  };
+  pass(70);
+  usher_msgs::msg::DialogueScreen screen;
+  screen.id(5);
+  screen.language("en");
+  screen.listens(true);
+  screen.options().emplace_back().id("yes");
+  screen.options().back().label("Yes");
+  host.publish(topics::kDialogueScreen, screen, "guide");
+  pass(30);
+  EXPECT_EQ(host.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+  room.hearing = {{{0, -10.0, 0.0}, {1, -20.0, 10.0}}};
+  room.voice = 0.3;
+  pass(6);
+  room.voice = 0.0;
+  pass(10);
+  ASSERT_FALSE(host.written(topics::kDialogueAnswer).empty());
+  EXPECT_EQ(host.written(topics::kDialogueAnswer)[0].option_id(), "yes");
+
+  mouth->plugged = false;
+  pass(10);
+  EXPECT_FALSE(host.last(topics::kSpeechStatus)->understands());
+  EXPECT_NE(host.heartbeat().reason().find("listen://127.0.0.1:7432"), std::string::npos)
+      << host.heartbeat().reason();
+  mouth->plugged = true;
+  pass(70);
+  EXPECT_TRUE(host.last(topics::kSpeechStatus)->understands()) << "whoever plays is back";
+}
 
 TEST_F(Speech, SaysTheScreenWithCaptionsAndTellsWhenItIsFinished) {
   start();
