@@ -82,7 +82,9 @@ std::optional<Choice> Visitor::on_the_way(double now) {
 std::optional<Choice> Visitor::choice(double now) {
   const std::string& state = screen_.state;
   const std::string language = "language:" + character_.language;
-  if (state == "inactive") return ended_ ? std::nullopt : press(language);
+  if (state == "inactive") {
+    return ended_ || character_.waits_for_greeting ? std::nullopt : press(language);
+  }
   if (state == "introduction") {
     return screen_.language == character_.language ? std::nullopt : press(language);
   }

@@ -22,12 +22,13 @@ struct Screen {
 struct Character {
   std::string destination = "lounge";
   std::string language = "en";
-  double reading_time = 1.5;  ///< of each screen
-  bool looks_at_map = false;  ///< wants to see our location first
-  bool asks_where = false;    ///< and where the destination is
-  bool types = false;         ///< searches by name instead of turning pages
-  std::string returns_to;     ///< a second place after the first; empty: none
-  double stops_at = -1.0;     ///< stops the robot; negative: never
+  double reading_time = 1.5;        ///< of each screen
+  bool looks_at_map = false;        ///< wants to see our location first
+  bool asks_where = false;          ///< and where the destination is
+  bool waits_for_greeting = false;  ///< touches nothing before
+  bool types = false;               ///< searches by name instead of turning pages
+  std::string returns_to;           ///< a second place after the first; empty: none
+  double stops_at = -1.0;           ///< stops the robot; negative: never
   double stops_for = 5.0;
   double cancels_at = -1.0;
   double dawdles_at = -1.0;    ///< walks slowly from then on

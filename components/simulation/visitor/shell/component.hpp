@@ -1,8 +1,15 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "simulation/visitor/core/delivery.hpp"
 #include "simulation/visitor/core/visitor.hpp"
+#include "simulation/visitor/shell/limbs.hpp"
 #include "wire/repeater.hpp"
 
 namespace usher::visitor {
@@ -10,20 +17,42 @@ namespace usher::visitor {
 /// A simulated visitor: answers the dialogue and moves a person of the world.
 class VisitorComponent final : public runtime::Component {
  public:
-  explicit VisitorComponent(runtime::Host& host);
+  /// Without finger and mouth: writes its answers itself.
+  explicit VisitorComponent(runtime::Host& host) : VisitorComponent(host, nullptr) {}
+  /// With them, where the parameters say what they reach.
+  VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> voice);
 
  private:
+  enum class Input : std::uint8_t { kTouch, kVoice, kMixed };
   static Character read_character(runtime::Parameters& parameters);
   void take(const usher_msgs::msg::DialogueScreen& screen);
   void step();
+  void give(const Choice& choice);
+  void write(const Choice& choice, Means means);
+  void deliver(double now);
+  bool at_screen(double now);
+  void step_up();
+  void walk(double now);
+  void send(double x, double y, double speed, bool follow);
+  std::string label_of(const std::string& option) const;
 
   runtime::Host& host_;
   Visitor core_;
   std::string person_;
   double speed_;
   std::vector<double> leaves_to_;  ///< x, y [m] in map
-  std::uint8_t input_;
+  double steps_up_to_;             ///< [m] 0: stays where it is
+  double comes_after_;             ///< [s]
+  std::optional<double> invited_at_;
+  bool steps_up_ = false;  ///< is on the way to the screen
+  Input input_ = Input::kTouch;
+  std::uint64_t turns_ = 0;
+  std::unique_ptr<Limbs> limbs_;
+  Delivery delivery_;
+  std::uint64_t& fell_back_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
+  runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
+  runtime::Input<usher_sim_msgs::msg::GroundTruth> truth_;
   wire::Repeater<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_sim_msgs::msg::PersonGoal> walk_;
   Walk walks_ = Walk::kStand;
