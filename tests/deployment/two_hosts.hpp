@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deployment/running_robot.hpp"
+#include "deployment/two_networks.hpp"
+
+namespace usher::test {
+
+/// One robot on two machines: the hosts `nuc` and `tablet` of a manifest, each launched in a
+/// network of its own, and somebody who listens on the nuc's.
+class TwoHosts {
+ public:
+  struct Options {
+    std::string base = "marvin-sim.yaml";  ///< in deploy/
+    std::string lines;                     ///< the rest of the manifest
+    bool secure = false;
+    /// Opens what else is listened to; runs where the observer lives.
+    std::function<void(runtime::Observer&)> listen;
+  };
+  TwoHosts(TwoNetworks& networks, const Folder& folder, const Options& options);
+  ~TwoHosts();
+  TwoHosts(const TwoHosts&) = delete;
+  TwoHosts& operator=(const TwoHosts&) = delete;
+
+  /// Ends both launchers; what was opened by `listen` must have been closed.
+  void stop();
+
+  bool wait_for(const std::function<bool()>& condition, Seconds limit) const;
+  std::optional<usher_msgs::msg::SupervisorStatus> status() const;
+  bool granted() const;
+  std::uint8_t health_of(const std::string& component) const;
+  bool is_ok(const std::string& component) const;
+  bool all_is_well() const;
+  /// A command of the program, typed on the nuc.
+  std::unique_ptr<Process> command(std::vector<std::string> words) const;
+  /// What both launchers said, and who is not well.
+  std::string story() const;
+
+ private:
+  void observe(const Options& options);
+  std::unique_ptr<Process> launch(const std::string& network, const std::string& host) const;
+
+  TwoNetworks& networks_;
+  const Folder& folder_;
+  std::uint32_t domain_;
+  std::string manifest_;
+  std::unique_ptr<Process> nuc_, tablet_;
+  mutable std::mutex mutex_;
+  std::optional<usher_msgs::msg::SupervisorStatus> status_;
+  std::unique_ptr<runtime::Observer> observer_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::SupervisorStatus>> statuses_;
+};
+
+/// The networks; nothing, and a loud line, where the machine does not permit namespaces.
+std::unique_ptr<TwoNetworks> two_networks(TwoNetworks::Kind kind);
+inline constexpr const char* kNoNamespaces = "network namespaces are not permitted here";
+
+}  // namespace usher::test
