@@ -71,7 +71,9 @@ void TwoHosts::observe(const Options& options) {
 bool TwoHosts::wait_for(const std::function<bool()>& condition, Seconds limit) const {
   const auto end = std::chrono::steady_clock::now() + limit * kSanitizerFactor;
   while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
+    for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->wait(std::chrono::milliseconds(0));
+    const bool launched = nuc_->pid() > 0 && tablet_->pid() > 0;
+    if (!launched || std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return true;

@@ -31,6 +31,7 @@ class TwoHosts {
   /// Ends both launchers; what was opened by `listen` must have been closed.
   void stop();
 
+  /// False when the limit passes, or a launcher ends.
   bool wait_for(const std::function<bool()>& condition, Seconds limit) const;
   std::optional<usher_msgs::msg::SupervisorStatus> status() const;
   bool granted() const;

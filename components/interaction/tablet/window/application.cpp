@@ -24,6 +24,8 @@ namespace {
 
 constexpr auto kSettled = std::chrono::milliseconds(400);  ///< a screen has been drawn by then
 
+constexpr int kMostPictures = 999;
+
 constexpr std::size_t kMostTouches = 64;  ///< between two questions of the component
 
 constexpr std::size_t kMostTaps = 64;                          ///< that wait for the finger
@@ -94,8 +96,9 @@ class Application::Implementation final : public Window {
   }
   void show(const View& view) override {
     later([this, view] {
-      const bool another =
-          view.screen_id != model.view().screen_id || view.page != model.view().page;
+      const View& shown = model.view();
+      const bool another = view.screen_id != shown.screen_id || view.page != shown.page ||
+                           view.text != shown.text || view.status != shown.status;
       model.show(view);
       if (another && !settings.pictures.empty()) picture_timer.start();
     });
@@ -156,11 +159,11 @@ class Application::Implementation final : public Window {
   }
 
   void take_picture() {
-    if (display == nullptr) return;
+    if (display == nullptr || pictures == kMostPictures) return;
     const QImage picture = display->grabWindow();
     const QString name = QString("%1/%2-%3.png")
                              .arg(QString::fromStdString(settings.pictures))
-                             .arg(++pictures, 2, 10, QChar('0'))
+                             .arg(++pictures, 3, 10, QChar('0'))
                              .arg(model.state());
     picture.save(name);
   }
