@@ -71,7 +71,8 @@ class Visit {
  public:
   Visit(const std::string& language, std::function<void(const guide::Screen&, const char*)> shown)
       : shown_(std::move(shown)),
-        guide_({}, *phrases::PhraseBook::load(kTexts, kLanguages, "guide", guide::kTextKeys), 1, {},
+        guide_(with_questionnaire(),
+               *phrases::PhraseBook::load(kTexts, kLanguages, "guide", guide::kTextKeys), 1, {},
                {}) {
     EXPECT_TRUE(guide_.set_locations(office(), {}).ok());
     around_.pose = geometry::Pose2{10.0, 5.0, 0.5};
@@ -86,7 +87,14 @@ class Visit {
     press("electronics_lab"), show("-place");
     press("done"), show("");
     wait(41000), show("-still_there");
-    press("stay"), press("yes"), show("");
+    press("stay");
+    around_.visitor = guide::VisitorSighting{true, 1.2, 0.0, 0.0};
+    wait(100), show("-somebody_seen");
+    press("follow_me"), show("");
+    around_.visitor = guide::VisitorSighting{};
+    wait(1500), show("-come_back");
+    around_.visitor.reset();
+    press("done"), press("yes"), press("no"), press("yes"), show("");
     press("more"), show("-page_2");
     press("search"), show("-search");
     press("back"), press("electronics_lab"), show("");
@@ -113,9 +121,16 @@ class Visit {
     around_.supervisor = guide::Supervisor::kAvailable;
     wait(4000), show("");
     press("no"), show("");
+    for (int i = 1; i <= 12; ++i) press("rating:3"), show(("-" + std::to_string(i + 1)).c_str());
+    press("rating:3"), show("");
   }
 
  private:
+  static guide::Parameters with_questionnaire() {
+    guide::Parameters parameters;
+    parameters.questionnaire = true;
+    return parameters;
+  }
   void wait(int ms) {
     for (const int end = now_ + ms; now_ < end;) guide_.step(around_, milliseconds(now_ += 100));
   }
@@ -315,7 +330,7 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
     judge(language + " held");
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-91-held.png"));
   }
-  EXPECT_EQ(states.size(), 15U) << "every state of fig. 7.1";
+  EXPECT_EQ(states.size(), static_cast<std::size_t>(guide::State::kEnd) + 1) << "every state";
 }
 
 TEST_F(Screens, OfTheMeetingAssistantHaveRoomInEveryLanguage) {

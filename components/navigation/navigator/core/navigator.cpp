@@ -15,8 +15,10 @@ constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever rest
 constexpr double kTurned = 0.35;        // [rad] a slow turn is progress too,
 constexpr int kMostTurns = 12;          // but not to turn and turn again
 constexpr double kSlowestKept =
-    0.02;                        // [m/s] slower than this tells nothing about the time of arrival
-constexpr double kBarred = 1.5;  // [s] a recovery that cannot begin ends
+    0.02;                         // [m/s] slower than this tells nothing about the time of arrival
+constexpr double kMoved = 2.0;    // [m] a newer goal so near to the one that runs moves it
+constexpr double kOldPath = 1.0;  // [s] its path is driven on until there is a new one
+constexpr double kBarred = 1.5;   // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
 constexpr double kPersonAhead = 3.0;   // [m] along the path,
 constexpr double kPersonBeside = 0.8;  // [m] beside it: half a robot, half a person and some room
@@ -186,6 +188,8 @@ void Navigator::request(const GoalRequest& goal) {
     old.reason = "replaced by a newer goal";
     decision_.asides.push_back(old);
   }
+  moved_ = open() && status_.client == status.client &&
+           geometry::distance(status_.goal, status.goal) <= kMoved;
   status_ = status;
   goal_max_speed_ = goal.max_speed;
   fresh_ = true;
@@ -229,20 +233,26 @@ void Navigator::start(const Situation& s) {
   started_at_ = s.time;
   longest_ = 0.0;
   pending_.reset();
+  old_path_ = moved_ && phase_ == Phase::kFollowing && motion_.mode == MotionMode::kFollow;
   reply_ = {};
   waiting_for_.clear();
   next_attempt_ = s.time;
   failed_plans_ = 0;
-  route_.clear();
   advanced_ = recovered_at_ = 0.0;
   recoveries_in_a_row_ = 0;
   if (!s.pose || !s.pose->finite() ||
       geometry::distance(*s.pose, stuck_at_) >= config_.recovery_progress)
     tried_here_ = 0;
+  if (old_path_ && s.pose && s.pose->finite()) return ask_plan(s, PlanCause::kNeeded);
   speed_kept_ =
       goal_max_speed_ > 0.0 ? std::min(goal_max_speed_, config_.usual_speed) : config_.usual_speed;
-  set_motion(MotionMode::kStop);
   if (state_ != State::kInitialise) state_ = State::kNewRequest;
+  stop_and_plan(s);
+}
+
+void Navigator::stop_and_plan(const Situation& s) {
+  route_.clear();
+  set_motion(MotionMode::kStop);
   enter(Phase::kPlanning, s.time);
 }
 
@@ -277,6 +287,7 @@ void Navigator::pursue(const Situation& s) {
   if (s.time - started_at_ > limit)
     return finish(GoalState::kFailed, Failure::kTooSlow, text("not there after %.0f s", limit));
   if (pause_if_unfit(s)) return;
+  if (old_path_ && s.time - started_at_ > kOldPath) stop_and_plan(s);
   track(s);
   handle_reply(s);
   if (!open() || arrived(s)) return;
@@ -362,7 +373,7 @@ void Navigator::track(const Situation& s) {
 }
 
 bool Navigator::arrived(const Situation& s) {
-  if (motion_.mode != MotionMode::kFollow) return false;
+  if (motion_.mode != MotionMode::kFollow || old_path_) return false;
   const geometry::Pose2& end = route_.end();
   const bool there =
       geometry::distance(*s.pose, end) <= config_.position_tolerance &&
@@ -417,7 +428,8 @@ void Navigator::handle_reply(const Situation& s) {
 }
 
 void Navigator::handle_failed_plan(const Situation& s, Failure failure, const std::string& reason) {
-  if (phase_ != Phase::kPlanning) return;  // the old path still leads there
+  if (old_path_) stop_and_plan(s);
+  if (phase_ != Phase::kPlanning) return;  // the path still leads there
   waiting_for_ = reason;
   next_attempt_ = s.time + config_.plan_retry;
   if (++failed_plans_ < config_.plan_attempts) {
@@ -436,6 +448,7 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   failed_plans_ = 0;
   const double change = std::abs(route.length() - route_.remaining());
   if (cause == PlanCause::kPeriodic && change <= config_.keep_path * route_.remaining()) return;
+  old_path_ = false;
   route_ = std::move(route);
   route_.track(*s.pose);
   longest_ = std::max(longest_, advanced_ + route_.length());
@@ -588,6 +601,7 @@ void Navigator::enter(Phase phase, double time) {
 }
 
 void Navigator::set_motion(MotionMode mode, double amount) {
+  if (mode != MotionMode::kFollow) old_path_ = false;
   if (mode == MotionMode::kStop && motion_.mode == MotionMode::kStop) return;
   motion_ = {motion_.id + 1, mode, 0.0, amount};
   motion_changed_ = true;
@@ -636,7 +650,7 @@ void Navigator::update_status(const Situation& s) {
       state_ == State::kInitialise || (phase_ != Phase::kFollowing && !waiting_for_.empty());
   status_.state = stands ? GoalState::kWaiting : GoalState::kActive;
   status_.reason = stands ? waiting_for_ : "";
-  if (route_.empty()) return;
+  if (route_.empty() || old_path_) return;
   status_.remaining = route_.remaining();
   const double way = advanced_ + status_.remaining;
   if (way > 0.0) status_.progress = std::max(status_.progress, advanced_ / way);

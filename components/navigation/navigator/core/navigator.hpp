@@ -189,7 +189,9 @@ class Navigator {
 
   /// The newest goal wins; the same id of the same client changes nothing. A goal that is refused
   /// (kBadGoal, kUnknownLocation) is answered in the status, or aside while another one runs, which
-  /// then goes on.
+  /// then goes on. A newer goal of the same client within 2 m of the one that the robot drives to
+  /// moves that goal: it drives on along its path until there is one to the new place, for a second
+  /// at most.
   void request(const GoalRequest& goal);
   /// Another pace for the goal of this id and client while it runs [m/s]; 0 = the planner's own
   /// limit. Returns whether there was one; a pace that is negative or not finite is none.
@@ -226,6 +228,7 @@ class Navigator {
     return status_.state == GoalState::kActive || status_.state == GoalState::kWaiting;
   }
   void start(const Situation& s);
+  void stop_and_plan(const Situation& s);
   void step_state(const Situation& s);
   void pursue(const Situation& s);
   bool pause_if_unfit(const Situation& s);
@@ -259,7 +262,9 @@ class Navigator {
   State state_ = State::kInitialise;
   Phase phase_ = Phase::kPlanning;
   Failure pause_cause_ = Failure::kNone;
-  bool fresh_ = false;  // a goal was requested, but there was no step yet
+  bool fresh_ = false;     // a goal was requested, but there was no step yet
+  bool moved_ = false;     // the goal that runs was replaced by its own client
+  bool old_path_ = false;  // the path leads to the goal before this one
   double phase_since_ = 0.0;
 
   // The goal.

@@ -177,6 +177,61 @@ TEST(Navigator, TakesTheNewestGoal) {
   EXPECT_EQ(rig.navigator.path().back().y, 5.0);
 }
 
+TEST(Navigator, DrivesOnWhileItsClientMovesTheGoal) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(4.0, 1);
+  rig.run(2.0);
+  const auto motions = rig.motions.size();
+  for (std::uint64_t id = 2; id <= 6; ++id) {
+    rig.go(3.0 + 0.5 * static_cast<double>(id), id);
+    rig.run(0.5);
+    EXPECT_EQ(rig.status().id, id);
+    EXPECT_NEAR(rig.s.velocity.v, 0.5, 1e-9);
+  }
+  EXPECT_EQ(rig.motions.size(), motions) << "one motion with a longer path";
+  EXPECT_NEAR(rig.navigator.path().back().x, 6.0, 1e-9);
+  EXPECT_GT(rig.run_to_end(30.0), 0.0);
+  EXPECT_EQ(rig.status().state, GoalState::kSucceeded);
+  EXPECT_NEAR(rig.s.pose->x, 6.0, 0.3);
+}
+
+TEST(Navigator, StandsWhenAMovedGoalHasNoPathOrIsAnotherOne) {
+  const struct {
+    const char* name;
+    void (*answer)(Rig&, const PlanRequest&);
+    double x;
+    const char* client;
+    double stands_after;  // [s]
+  } cases[] = {{"no path", Rig::no_path, 5.0, "test", 0.2},
+               {"planner silent", Rig::silence, 5.0, "test", 1.2},
+               {"far away", Rig::silence, 7.0, "test", 0.1},
+               {"somebody else's", Rig::silence, 5.0, "other", 0.1}};
+  for (const auto& test : cases) {
+    Rig rig;
+    rig.drive = Rig::drive_on;
+    rig.go(4.0, 1);
+    rig.run(2.0);
+    ASSERT_EQ(rig.navigator.motion().mode, MotionMode::kFollow);
+    rig.answer = test.answer;
+    rig.navigator.request({2, test.client, "", {test.x, 0.0, 0.0}, 0.0});
+    rig.run(test.stands_after);
+    EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kStop) << test.name;
+    EXPECT_NE(rig.status().state, GoalState::kSucceeded) << test.name;
+  }
+}
+
+TEST(Navigator, DoesNotArriveAtTheGoalThatWasMoved) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(1.0, 1);
+  rig.run(2.2);
+  rig.answer = Rig::silence;
+  rig.go(2.0, 2);
+  rig.run(0.9);
+  EXPECT_EQ(rig.status().state, GoalState::kActive);
+}
+
 TEST(Navigator, TakesARepeatedGoalOnce) {
   Rig rig;
   rig.drive = Rig::drive_on;

@@ -6,10 +6,11 @@ namespace usher::guide {
 
 namespace {
 
-constexpr std::array<std::string_view, 15> kStates{
+constexpr std::array<std::string_view, 17> kStates{
     "initialise",    "inactive",    "introduction",  "location_ask", "location_options",
     "location_show", "guide_ask",   "guide_options", "guide_start",  "guide_active",
-    "guide_paused",  "guide_error", "guide_success", "end_ask",      "end"};
+    "guide_paused",  "guide_error", "guide_success", "follow_me",    "end_ask",
+    "feedback",      "end"};
 static_assert(kStates.size() == static_cast<std::size_t>(State::kEnd) + 1);
 
 constexpr std::array<std::string_view, 11> kCauses{"ready", "not ready", "visitor", "yes",

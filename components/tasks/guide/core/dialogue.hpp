@@ -7,7 +7,7 @@
 
 namespace usher::guide {
 
-/// The states of fig. 7.1 of the thesis; location options and paused are ours.
+/// The states of fig. 7.1 of the thesis; location options, paused, follow me and feedback are ours.
 enum class State : std::uint8_t {
   kInitialise,       ///< the robot is not ready
   kInactive,         ///< nobody is served; the robot looks for people
@@ -22,8 +22,10 @@ enum class State : std::uint8_t {
   kGuidePaused,  ///< the visitor asked to stop
   kGuideError,   ///< another try?
   kGuideSuccess,
-  kEndAsk,  ///< anything else?
-  kEnd,     ///< goodbye
+  kFollowMe,  ///< the robot goes behind the visitor
+  kEndAsk,    ///< anything else?
+  kFeedback,  ///< the statements of the questionnaire, one by one
+  kEnd,       ///< goodbye
 };
 
 enum class Cause : std::uint8_t {
@@ -74,6 +76,7 @@ inline constexpr std::array kEdges{
     Edge{State::kGuideAsk, State::kGuideOptions, Cause::kYes},
     Edge{State::kGuideAsk, State::kEndAsk, Cause::kNo},
     Edge{State::kGuideAsk, State::kLocationOptions, Cause::kChoice},
+    Edge{State::kGuideAsk, State::kFollowMe, Cause::kChoice},
     Edge{State::kGuideAsk, State::kIntroduction, Cause::kChoice},
     Edge{State::kGuideAsk, State::kEnd, Cause::kTimeout},
     Edge{State::kGuideAsk, State::kEnd, Cause::kLeft},
@@ -102,10 +105,20 @@ inline constexpr std::array kEdges{
     Edge{State::kGuideError, State::kEnd, Cause::kTimeout},
     Edge{State::kGuideError, State::kEnd, Cause::kLeft},
     Edge{State::kGuideSuccess, State::kEndAsk, Cause::kDelay},
+    Edge{State::kFollowMe, State::kEndAsk, Cause::kYes},
+    Edge{State::kFollowMe, State::kEndAsk, Cause::kNo},
+    Edge{State::kFollowMe, State::kGuideError, Cause::kFailure},
+    Edge{State::kFollowMe, State::kEnd, Cause::kLeft},
     Edge{State::kEndAsk, State::kLocationAsk, Cause::kYes},
     Edge{State::kEndAsk, State::kEnd, Cause::kNo},
+    Edge{State::kEndAsk, State::kFeedback, Cause::kNo},
     Edge{State::kEndAsk, State::kEnd, Cause::kTimeout},
     Edge{State::kEndAsk, State::kEnd, Cause::kLeft},
+    Edge{State::kFeedback, State::kFeedback, Cause::kChoice},
+    Edge{State::kFeedback, State::kEnd, Cause::kYes},
+    Edge{State::kFeedback, State::kEnd, Cause::kNo},
+    Edge{State::kFeedback, State::kEnd, Cause::kTimeout},
+    Edge{State::kFeedback, State::kEnd, Cause::kLeft},
     Edge{State::kEnd, State::kLocationAsk, Cause::kChoice},
     Edge{State::kEnd, State::kInactive, Cause::kDelay},
 };

@@ -71,6 +71,11 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
       sentence_ = say(Text::kOneMoment);
       sentence_at_ = now;
     }
+    if (follows()) {
+      first_goal_ = goal_id_ = memory.goal_id;
+      goal_at_ = departed_ = now;
+      sentence_ = say(Text::kWalkAhead);
+    }
   }
   screen_.id = next_id_++;
   speak_screen();
@@ -118,6 +123,7 @@ bool Guide::question() const {
     case State::kGuidePaused:
     case State::kGuideError:
     case State::kEndAsk:
+    case State::kFeedback:
       return true;
     default:
       return false;
@@ -218,7 +224,8 @@ const Actions& Guide::answer(const Answer& answer, Time now) {
 
 AnswerResult Guide::judge(const Answer& answer, Time now) {
   // A stop is never late.
-  const bool stop = answer.option_id == button::kStop && state_ == State::kGuideActive;
+  const bool stop =
+      answer.option_id == button::kStop && (state_ == State::kGuideActive || follows());
   if (answer.screen_id != screen_.id && !stop) return AnswerResult::kLate;
   const auto option = std::find_if(screen_.options.begin(), screen_.options.end(),
                                    [&](const Option& each) { return each.id == answer.option_id; });
@@ -285,6 +292,7 @@ bool Guide::choose(const std::string& option, Time now) {
       return choose_place(option, now);
     case State::kGuideAsk:
       if (option == button::kWhereIs) return to(State::kLocationOptions, Cause::kChoice);
+      if (option == button::kFollowMe) return choose_following(option, now);
       return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
     case State::kGuideOptions:
       if (option == button::kCancel) return to(State::kEndAsk, Cause::kNo);
@@ -292,7 +300,13 @@ bool Guide::choose(const std::string& option, Time now) {
     case State::kGuideError:
       return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
     case State::kEndAsk:
-      return yes ? to(State::kLocationAsk, Cause::kYes) : to(State::kEnd, Cause::kNo);
+      if (yes) return to(State::kLocationAsk, Cause::kYes);
+      return to(parameters_.questionnaire && visit_.arrived > 0 ? State::kFeedback : State::kEnd,
+                Cause::kNo);
+    case State::kFeedback:
+      return rate(option, now);
+    case State::kFollowMe:
+      return choose_following(option, now);
     case State::kEnd:
       begin_visit(false, now);
       return to(State::kLocationAsk, Cause::kChoice);
@@ -355,13 +369,28 @@ bool Guide::choose_on_the_way(const std::string& option, Time now) {
   return true;
 }
 
+/// One statement after the other; whoever has enough goes.
+bool Guide::rate(const std::string& option, Time now) {
+  if (option == button::kCancel) {
+    enter(State::kEnd, Cause::kNo, now);
+    return true;
+  }
+  visit_.ratings.push_back(
+      option == button::kSkip ? std::uint8_t{0} : static_cast<std::uint8_t>(option.back() - '0'));
+  const bool last = visit_.ratings.size() == kStatements;
+  enter(last ? State::kEnd : State::kFeedback, last ? Cause::kYes : Cause::kChoice, now);
+  return true;
+}
+
 // --- Time
 
 const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
   surroundings_ = surroundings;
   watch_encounter(now);
-  if (state_ == State::kGuideStart || journey()) watch_robot(now);
+  if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);
+  if (follows()) watch_following(now);
+  if (follows()) follow_visitor(now);
   if (journey()) move_when_due(now);
   if (journey() && goal_id_ != 0) watch_navigation(now);
   if (state_ == State::kGuideActive && goal_id_ != 0) watch_follower(now);
@@ -442,7 +471,7 @@ void Guide::pass_time(Time now) {
 
 const Actions& Guide::refused(Time now) {
   begin();
-  const bool before = journey() && !acknowledged_;
+  const bool before = on_the_way() && !acknowledged_;
   if (state_ == State::kGuideStart || before) fail(Text::kPartSilent, Cause::kFailure, now);
   return finish(now);
 }

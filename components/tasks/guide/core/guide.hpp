@@ -18,6 +18,7 @@
 #include "tasks/guide/core/places.hpp"
 #include "tasks/guide/core/screen.hpp"
 #include "tasks/guide/core/texts.hpp"
+#include "tasks/guide/core/trail.hpp"
 #include "tasks/guide/core/visit.hpp"
 #include "tasks/service/core/robot.hpp"
 
@@ -44,6 +45,8 @@ struct Parameters {
   std::size_t options_on_screen = 8;  ///< {>= 4} more places go on further pages
   std::size_t recent = 3;             ///< places that were reached lately come first
   FollowLimits follow;
+  double behind = 1.2;         ///< [m] so far behind a visitor whom the robot follows
+  bool questionnaire = false;  ///< at the end of a visit that arrived, asks what was thought of it
 };
 
 using service::Request;
@@ -77,7 +80,8 @@ struct Surroundings {
 
 struct Goal {
   std::uint64_t id = 0;
-  std::string location;
+  std::string location;                 ///< empty: the pose
+  std::optional<geometry::Pose2> pose;  ///< in map
 };
 
 /// What a step asks of the others.
@@ -129,6 +133,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   bool serves() const { return visit_.id != 0 && visit_.outcome == Outcome::kOpen; }
   /// A journey goes on: the visitor follows.
   bool guides() const { return journey(); }
+  /// The robot follows the visitor.
+  bool follows() const { return state_ == State::kFollowMe; }
   const Visit& visit() const { return visit_; }
   const Funnel& funnel() const { return funnel_; }
   Memory memory() const;
@@ -153,6 +159,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void build_journey(Screen& screen) const;
   void build_map(Screen& screen) const;
   void build_languages(Screen& screen) const;
+  void build_statement(Screen& screen) const;
   std::string status() const;
   void add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const;
   std::string say(Text text) const;
@@ -170,12 +177,17 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   bool choose_service(const std::string& option, Time now);
   bool choose_place(const std::string& option, Time now);
   bool choose_on_the_way(const std::string& option, Time now);
+  bool choose_following(const std::string& option, Time now);
+  bool rate(const std::string& option, Time now);
   void choose_language(std::size_t language);
 
   // The way.
   bool ready() const { return surroundings_.supervisor == Supervisor::kAvailable && known(); }
   bool known() const { return !locations_.empty(); }
   bool journey() const { return state_ == State::kGuideActive || state_ == State::kGuidePaused; }
+  bool on_the_way() const { return journey() || follows(); }
+  /// What the supervisor shows as the goal.
+  std::string goal_name() const { return follows() ? "visitor" : place_.name; }
   bool question() const;
   Time patience() const {
     return state_ == State::kGuidePaused ? parameters_.pause : parameters_.answer;
@@ -187,6 +199,9 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void watch_robot(Time now);
   void watch_navigation(Time now);
   void watch_follower(Time now);
+  void follow_visitor(Time now);
+  void watch_following(Time now);
+  void go_behind(Time now);
   void watch_obstacle(Time now);
   void watch_encounter(Time now);
   void refresh_journey(Time now);
@@ -238,6 +253,12 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::uint32_t replans_at_plea_ = 0;
   bool pleads_ = false;
   FollowCheck follow_;
+  Trail trail_;                   ///< of the visitor whom the robot follows
+  std::uint64_t first_goal_ = 0;  ///< of this following; its goals up to goal_id_ are all ours
+  std::optional<geometry::Point2> going_to_;
+  Time goal_given_at_{};
+  int goals_failed_ = 0;  ///< in a row
+  std::optional<Time> unseen_since_;
   std::uint32_t calls_heard_ = 0;
   std::string sentence_;  ///< the newest on the way
   Time sentence_at_{};

@@ -89,8 +89,8 @@ void Guide::watch_robot(Time now) {
     return fail(Text::kOperatorTookOver, Cause::kFailure, now);
   }
   // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
-  const bool held =
-      supervisor != Supervisor::kNavigation && (supervisor != Supervisor::kAvailable || journey());
+  const bool held = supervisor != Supervisor::kNavigation &&
+                    (supervisor != Supervisor::kAvailable || on_the_way());
   if (!held) {
     held_since_.reset();
     return;
@@ -99,10 +99,10 @@ void Guide::watch_robot(Time now) {
   const Time lasted = now - *held_since_;
   if (lasted >= parameters_.recovery) return fail(Text::kPartSilent, Cause::kFailure, now);
   // One that was restarted knows nothing of this journey.
-  if (journey() && supervisor == Supervisor::kAvailable && lasted >= kAskAgainAfter &&
+  if (on_the_way() && supervisor == Supervisor::kAvailable && lasted >= kAskAgainAfter &&
       now - asked_again_ >= kAskAgainEvery) {
     asked_again_ = now;
-    actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
+    actions_.requests.push_back({RequestKind::kNavigationStart, goal_name()});
     actions_.requests.push_back({RequestKind::kNavigationGo, {}});
   }
 }

@@ -1,6 +1,7 @@
 #include <charconv>
 #include <map>
 
+#include "tasks/guide/core/texts.hpp"
 #include "tasks/guide/core/visit.hpp"
 
 namespace usher::guide {
@@ -44,6 +45,9 @@ std::string to_text(const Memory& memory) {
   number("visit_started", visit.started);
   number("visit_arrived", visit.arrived);
   number("waits", visit.waits);
+  std::string ratings;
+  for (const std::uint8_t rating : visit.ratings) ratings += static_cast<char>('0' + rating);
+  line("ratings", ratings);
   number("greeted", memory.funnel.greeted);
   number("engaged", memory.funnel.engaged);
   number("started", memory.funnel.started);
@@ -94,6 +98,10 @@ Result<Memory> memory_from_text(std::string_view text) {
     const auto key = line.substr(0, space), value = line.substr(space + 1);
     if (const auto field = texts.find(key); field != texts.end()) {
       *field->second = value;
+    } else if (key == "ratings") {
+      if (value.size() > kStatements || value.find_first_not_of("012345") != value.npos)
+        return wrong("ratings of 0 to 5");
+      for (const char c : value) m.visit.ratings.push_back(static_cast<std::uint8_t>(c - '0'));
     } else if (key == "recent") {
       if (m.recent.size() < kMostRecent) m.recent.emplace_back(value);
     } else if (const auto wide = numbers.find(key); wide != numbers.end()) {

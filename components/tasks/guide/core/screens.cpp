@@ -56,6 +56,8 @@ std::string Guide::status() const {
       return say(Text::kWaitingForHuman);
     case State::kGuideActive:
       return say(stopped_ || move_at_ ? Text::kStanding : Text::kDriving);
+    case State::kFollowMe:
+      return say(goal_id_ == 0 ? Text::kStanding : Text::kDriving);
     case State::kGuidePaused:
       return say(Text::kStanding);
     case State::kIntroduction:
@@ -133,6 +135,21 @@ void Guide::build_map(Screen& screen) const {
   add(screen, button::kDone, Text::kDone, OptionKind::kYes, Panel::kSecondary);
 }
 
+void Guide::build_statement(Screen& screen) const {
+  const std::size_t number = visit_.ratings.size();
+  screen.title = phrases_.phrase(language_, static_cast<std::size_t>(Text::kStatement) + number);
+  screen.text = phrases::filled(say(Text::kDoYouAgree), {{"n", std::to_string(number + 1)},
+                                                         {"all", std::to_string(kStatements)}});
+  for (int agreement = 5; agreement >= 1; --agreement) {
+    const auto label =
+        static_cast<std::size_t>(Text::kAgree) + static_cast<std::size_t>(agreement) - 1;
+    screen.options.push_back({button::rating(agreement), phrases_.phrase(language_, label),
+                              OptionKind::kOption, Panel::kPrimary, false});
+  }
+  add(screen, button::kSkip, Text::kSkip, OptionKind::kOption, Panel::kPrimary);
+  add(screen, button::kCancel, Text::kNoThanks, OptionKind::kNo, Panel::kSecondary);
+}
+
 void Guide::build_journey(Screen& screen) const {
   screen.content = Content::kJourney;
   screen.progress = screen_.progress;
@@ -194,6 +211,14 @@ Screen Guide::build(Time now) const {
       screen.title = say(Text::kGuideAsk);
       yes_or_no();
       secondary(button::kWhereIs, Text::kWhereIs);
+      if (human() == Human::kYes)
+        add(screen, button::kFollowMe, Text::kFollowMe, OptionKind::kOption, Panel::kPrimary);
+      break;
+    case State::kFollowMe:
+      screen.title = say(Text::kFollowing);
+      screen.text = sentence_;
+      add(screen, button::kDone, Text::kDone, OptionKind::kYes, Panel::kPrimary);
+      add(screen, button::kStop, Text::kStop, OptionKind::kNo, Panel::kPrimary);
       break;
     case State::kGuideStart:
       screen.place = place_.name;
@@ -223,8 +248,12 @@ Screen Guide::build(Time now) const {
       screen.title = say(Text::kAnythingElse);
       yes_or_no();
       break;
+    case State::kFeedback:
+      build_statement(screen);
+      break;
     case State::kEnd:
       screen.title = say(Text::kSeeYou);
+      if (visit_.ratings.size() == kStatements) screen.text = say(Text::kThanksForAnswers);
       if (lost_visitor_) screen.text = say(Text::kLostYou);
       secondary(button::kAgain, Text::kAgain);
       break;
@@ -234,7 +263,7 @@ Screen Guide::build(Time now) const {
       add(screen, button::kLanguages, Text::kLanguages, OptionKind::kOption, Panel::kService);
     }
   }
-  if (question() || state_ == State::kGuideActive) {
+  if (question() || state_ == State::kGuideActive || follows()) {
     add(screen, button::kRepeat, Text::kRepeat, OptionKind::kOption, Panel::kService);
   }
   if (question() && warned_) {

@@ -76,9 +76,21 @@ enum class Text : std::size_t {
   kGuideMe,
   kLanguages,
   kAgain,
+  kFollowing,
+  kWalkAhead,
+  kComeBack,
+  kDoYouAgree,
+  kThanksForAnswers,
+  kFollowMe,
+  kSkip,
+  kNoThanks,
+  kAgree,                   ///< the first of five, from strongly disagrees on
+  kStatement = kAgree + 5,  ///< the first of kStatements, in the order of table 7.1
 };
 
-inline constexpr std::array<std::string_view, 68> kTextKeys{"hello",
+inline constexpr std::size_t kStatements = 13;
+
+inline constexpr std::array<std::string_view, 94> kTextKeys{"hello",
                                                             "choose_language",
                                                             "not_ready",
                                                             "no_places",
@@ -145,7 +157,33 @@ inline constexpr std::array<std::string_view, 68> kTextKeys{"hello",
                                                             "where_is",
                                                             "guide_me",
                                                             "languages",
-                                                            "again"};
-static_assert(static_cast<std::size_t>(Text::kAgain) + 1 == kTextKeys.size());
+                                                            "again",
+                                                            "following",
+                                                            "walk_ahead",
+                                                            "come_back",
+                                                            "do_you_agree",
+                                                            "thanks_for_answers",
+                                                            "follow_me",
+                                                            "skip",
+                                                            "no_thanks",
+                                                            "agree_1",
+                                                            "agree_2",
+                                                            "agree_3",
+                                                            "agree_4",
+                                                            "agree_5",
+                                                            "statement_1",
+                                                            "statement_2",
+                                                            "statement_3",
+                                                            "statement_4",
+                                                            "statement_5",
+                                                            "statement_6",
+                                                            "statement_7",
+                                                            "statement_8",
+                                                            "statement_9",
+                                                            "statement_10",
+                                                            "statement_11",
+                                                            "statement_12",
+                                                            "statement_13"};
+static_assert(static_cast<std::size_t>(Text::kStatement) + kStatements == kTextKeys.size());
 
 }  // namespace usher::guide

@@ -3,6 +3,7 @@
 #include "interaction/phrases/shell/read_phrases.hpp"
 #include "tasks/service/shell/messages.hpp"
 #include "wire/conversions.hpp"
+#include "wire/frames.hpp"
 
 namespace usher::guide {
 
@@ -55,6 +56,11 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   time("follow_grace", p.follow.grace, "After a departure, while the visitor steps behind.");
   time("follow_call", p.follow.call, "Waiting for so long it calls, and again.");
   time("follow_give_up", p.follow.give_up, "Waiting for so long it gives up.");
+  number("follow_behind", "m", {0.8, 4}, p.behind,
+         "So far behind a visitor whom the robot follows.");
+  p.questionnaire = parameters.flag(
+      "questionnaire", p.questionnaire,
+      "At the end of a visit that arrived: the 13 statements of the thesis' questionnaire.");
   return p;
 }
 
@@ -199,6 +205,10 @@ void GuideComponent::act(const Actions& actions) {
     usher_msgs::msg::NavigateGoal goal;
     goal.id(actions.goal->id);
     goal.location(actions.goal->location);
+    if (const auto& pose = actions.goal->pose) {
+      goal.pose().header(wire::header(host_.now(), frames::kMap));
+      goal.pose().pose(wire::to_message(*pose));
+    }
     goal.max_speed(max_speed_);
     goals_.give_up();
     goals_.ask(std::move(goal));
@@ -225,7 +235,7 @@ void GuideComponent::act(const Actions& actions) {
   if (actions.screen_changed) publish_screen();
   // Who turns the robot or watches the visitor must not be a second late.
   if (core_.seeks() != told_.seeks() || core_.serves() != told_.serves() ||
-      core_.guides() != told_.guides()) {
+      core_.guides() != told_.guides() || core_.follows() != told_.follows()) {
     publish_status();
   }
 }
@@ -255,6 +265,10 @@ usher_msgs::msg::GuideVisit GuideComponent::to_message(const Visit& visit) const
   message.eta_error(static_cast<float>(visit.eta_error));
   message.waits(visit.waits);
   message.largest_gap(static_cast<float>(visit.largest_gap));
+  if (!visit.ratings.empty()) {
+    message.ratings(visit.ratings);
+    message.ratings().resize(kStatements);  // who went before the end skipped the rest
+  }
   return message;
 }
 
@@ -264,6 +278,7 @@ void GuideComponent::publish_status() {
   message.seeks(core_.seeks());
   message.serves(core_.serves());
   message.guides(core_.guides());
+  message.follows(core_.follows());
   const Funnel& funnel = core_.funnel();
   message.greeted(funnel.greeted);
   message.engaged(funnel.engaged);

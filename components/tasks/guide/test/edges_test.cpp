@@ -42,6 +42,16 @@ const Step kToOptions{[](Rig& r) { r.to_options(); }, State::kGuideOptions, ""};
 const Step kGone{[](Rig& r) { r.see_nobody(), r.wait(15100); }, State::kEnd, ""};
 const Step kGoneFromStart{[](Rig& r) { r.see_nobody(), r.wait(15100); }, State::kEnd, "end"};
 
+const Step kFollowing{[](Rig& r) { r.to_following(); }, State::kFollowMe, ""};
+const Step kFeedback{[](Rig& r) {
+                       Parameters asks;
+                       asks.questionnaire = true;
+                       r.guide = Guide(asks, book(), 1, {}, {});
+                       EXPECT_TRUE(r.guide.set_locations(rooms(), r.now()).ok());
+                       r.wait(100), r.to_feedback(), r.taken();
+                     },
+                     State::kFeedback, ""};
+
 const std::vector<Case>& cases() {
   static const std::vector<Case> kCases{
       {"the questionnaire's seven tasks",
@@ -123,6 +133,32 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.wait(61000); }, State::kEnd, "end on cancel"},
         {[](Rig& r) { r.around.supervisor = Supervisor::kAvailable, r.wait(4000); },
          State::kInactive, ""}}},
+      {"walks ahead, is there",
+       {kFollowing,
+        {[](Rig& r) { r.see(2.5), r.wait(1000); }, State::kFollowMe, "goal:pose"},
+        {[](Rig& r) { r.navigate(GoalState::kActive); }, State::kFollowMe, ""},
+        PRESS("done", kEndAsk, "end cancel")}},
+      {"walks ahead, stops the robot", {kFollowing, PRESS("stop", kEndAsk, "end")}},
+      {"walks ahead, the robot fails",
+       {kFollowing,
+        {[](Rig& r) { r.around.supervisor = Supervisor::kFault, r.wait(100); }, State::kGuideError,
+         "end"}}},
+      {"walks ahead, is lost",
+       {kFollowing,
+        {[](Rig& r) { r.see_nobody(), r.wait(1500); }, State::kFollowMe, "goal:pose"},
+        {[](Rig& r) { r.navigate(GoalState::kSucceeded), r.wait(60000); }, State::kEnd, "end"}}},
+      {"says what it was like",
+       {kFeedback,
+        PRESS("rating:5", kFeedback),
+        PRESS("skip", kFeedback),
+        {[](Rig& r) {
+           for (int i = 0; i < 11; ++i) r.press("rating:2");
+         },
+         State::kEnd, ""}}},
+      {"has no time for questions",
+       {kFeedback, PRESS("rating:1", kFeedback), PRESS("cancel", kEnd)}},
+      {"no answer: what it was like", {kFeedback, WAIT(60000, kEnd)}},
+      {"leaves: what it was like", {kFeedback, kGone}},
       {"no answer: location", {kToLocationAsk, WAIT(60000, kEnd)}},
       {"no answer: map", {kToLocationAsk, PRESS("yes", kLocationShow), WAIT(60000, kEnd)}},
       {"no answer: which place",

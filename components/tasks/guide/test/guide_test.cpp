@@ -506,12 +506,141 @@ TEST(Guide, RefusesPlacesThatNoButtonCanName) {
   EXPECT_FALSE(guide.set_locations({{"a", "A", {0, 0}}, {"a", "B", {0, 0}}}, Time(0)).ok());
 }
 
+TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{4.0, 1.0, 0.0};
+  rig.to_following();
+  EXPECT_TRUE(rig.guide.follows());
+  EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
+  rig.see(1.25), rig.wait(3000);
+  EXPECT_EQ(rig.taken(), "") << "he stands before it";
+  rig.see(3.0), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  EXPECT_NEAR(rig.goal_pose->x, 4.0 + 3.0 - 1.2, 1e-9);
+  EXPECT_NEAR(rig.goal_pose->yaw, 0.0, 1e-9);
+  rig.navigate(GoalState::kActive);
+  const auto first = rig.goal;
+  rig.see(3.1), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "") << "a step is no new goal";
+  rig.around.visitor = VisitorSighting{true, 3.0, 2.0, 1.0};  // round a corner to the left
+  rig.wait(100);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  EXPECT_GT(rig.goal, first);
+  EXPECT_NEAR(rig.goal_pose->position().x(), 7.05, 0.06) << "along his way, not across";
+  EXPECT_NEAR(rig.goal_pose->yaw, 1.6, 0.1);
+  rig.wait(1000);  // the navigator still speaks of the goal before
+  EXPECT_EQ(rig.state(), "follow_me");
+  rig.navigate(GoalState::kActive);
+  rig.see(1.0), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "cancel") << "he has stopped";
+  rig.press("done");
+  EXPECT_EQ(rig.taken(), "end");
+  EXPECT_EQ(rig.guide.visit().arrived, 1U);
+  EXPECT_FALSE(rig.guide.follows());
+}
+
+TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.pose = geometry::Pose2{1.8, 0.0, 0.0};
+  rig.taken(), rig.said.clear();
+  rig.see_nobody(), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "") << "hidden for a moment";
+  rig.wait(400);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  EXPECT_NEAR(rig.goal_pose->x, 2.7, 1e-9);
+  EXPECT_EQ(rig.guide.screen().text, "I cannot see you. Please come back to me.");
+  rig.navigate(GoalState::kSucceeded);
+  rig.wait(10500);
+  EXPECT_EQ(rig.said, std::vector<std::string>(3, "I cannot see you. Please come back to me."));
+  rig.see(1.5), rig.wait(200);
+  EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Tell me when we are there.");
+}
+
+TEST(Guide, FollowsOnlyWhomItSees) {
+  Rig rig;
+  rig.to_location_ask(), rig.press("no");
+  EXPECT_FALSE(rig.offers("follow_me")) << "nobody looks";
+  rig.see_nobody(), rig.wait(100);
+  EXPECT_FALSE(rig.offers("follow_me"));
+  rig.see(1.0), rig.wait(100);
+  EXPECT_TRUE(rig.offers("follow_me"));
+}
+
+TEST(Guide, EndsAFollowingThatHasNoWay) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(rig.state(), "follow_me") << i;
+    rig.see(3.0), rig.wait(1100);
+    rig.navigate(GoalState::kFailed);
+  }
+  EXPECT_EQ(rig.state(), "guide_error");
+}
+
+TEST(Guide, AFollowingThatWasRestartedGoesOn) {
+  Rig before;
+  before.to_following();
+  before.see(3.0), before.wait(1100);
+  Rig after({}, before.guide.memory(), 1000000);
+  EXPECT_EQ(after.state(), "follow_me");
+  after.around.supervisor = Supervisor::kNavigation;
+  after.goal = before.goal;
+  after.navigate(GoalState::kActive);
+  after.taken();
+  after.see(4.0), after.wait(1000);
+  EXPECT_EQ(after.taken(), "goal:pose");
+}
+
+TEST(Guide, AsksWhatWasThoughtOfTheVisitAndKeepsTheAnswers) {
+  Parameters asks;
+  asks.questionnaire = true;
+  Rig rig(asks);
+  rig.to_feedback();
+  EXPECT_EQ(rig.guide.screen().title, "MARVIN's voice was easy to understand.");
+  EXPECT_EQ(rig.guide.screen().text, "Do you agree? Statement 1 of 13.");
+  rig.press("rating:4");
+  const auto late = rig.guide.screen().id;
+  rig.press("skip");
+  rig.guide.answer({late, "rating:1", "", Input::kTouch}, rig.now());
+  EXPECT_EQ(rig.guide.last_result(), AnswerResult::kLate) << "one touch, one statement";
+  const auto memory = memory_from_text(to_text(rig.guide.memory()));
+  ASSERT_TRUE(memory.ok()) << memory.error();
+  Rig again(asks, *memory, 1000000);
+  EXPECT_EQ(again.guide.screen().title, "The touch interface text was large enough to read.");
+  for (int i = 0; i < 11; ++i) again.press("rating:" + std::to_string(i % 5 + 1));
+  EXPECT_EQ(again.state(), "end");
+  EXPECT_EQ(again.guide.screen().text, "Thank you for your answers.");
+  ASSERT_EQ(again.visits.size(), 1U);
+  EXPECT_EQ(again.visits[0].ratings,
+            (std::vector<std::uint8_t>{4, 0, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5, 1}));
+  Rig silent;
+  silent.to_feedback();
+  EXPECT_EQ(silent.state(), "end") << "only where the site wants it";
+  Rig nowhere(asks);
+  nowhere.to_options(), nowhere.press("cancel"), nowhere.press("no");
+  EXPECT_EQ(nowhere.state(), "end") << "only of a visit that arrived";
+}
+
+TEST(Guide, RefusesRatingsThatAreNone) {
+  const std::string good = to_text(Memory{});
+  for (const char* bad : {"6", "12345012345012", "a"}) {
+    EXPECT_FALSE(memory_from_text(good + "ratings " + bad + "\n").ok()) << bad;
+  }
+}
+
 // Whatever visitor, navigator and supervisor do: option ids are unique, the screen's id never goes
 // back, what is said is short, and a robot left alone comes to rest.
 TEST(Guide, HasNoDeadEnd) {
   Random random(11);
+  Parameters asks;
+  asks.questionnaire = true;
   for (int run = 0; run < 300; ++run) {
-    Rig rig;
+    Rig rig(asks);
     std::uint64_t last_id = 0;
     for (int i = 0; i < 200; ++i) {
       const auto options = rig.guide.screen().options;
@@ -534,7 +663,7 @@ TEST(Guide, HasNoDeadEnd) {
         const Memory memory = rig.guide.memory();
         const auto read = memory_from_text(to_text(memory));
         ASSERT_TRUE(read.ok()) << read.error();
-        Guide again({}, book({"en", "de"}), rig.guide.screen().id + 100, *read, rig.now());
+        Guide again(asks, book({"en", "de"}), rig.guide.screen().id + 100, *read, rig.now());
         rig.guide = std::move(again);
         ASSERT_TRUE(rig.guide.set_locations(rooms(), rig.now()).ok());
       }

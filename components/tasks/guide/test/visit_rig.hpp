@@ -42,6 +42,7 @@ class Rig {
   int now_ms = 0;
   std::string done;  ///< actions since the last taken()
   std::uint64_t goal = 0;
+  std::optional<geometry::Pose2> goal_pose;
   std::vector<std::string> said;
   std::vector<guide::Visit> visits;
   double pace = -1.0;
@@ -83,6 +84,14 @@ class Rig {
     done.clear();
   }
 
+  void to_following() {
+    see(1.2), to_location_ask(), press("no"), press("follow_me");
+    around.supervisor = Supervisor::kNavigation;
+    wait(100);
+    done.clear();
+  }
+  void to_feedback() { to_active(), navigate(GoalState::kSucceeded), wait(4000), press("no"); }
+
   void note(const Actions& actions) {
     for (const Request& request : actions.requests) {
       const char* const names[] = {"start", "go", "end", "stop", "on"};
@@ -91,7 +100,8 @@ class Rig {
     }
     if (actions.goal) {
       goal = actions.goal->id;
-      add("goal:" + actions.goal->location);
+      goal_pose = actions.goal->pose;
+      add("goal:" + (goal_pose ? "pose" : actions.goal->location));
     }
     if (actions.cancel) {
       EXPECT_EQ(*actions.cancel, goal);

@@ -1,0 +1,137 @@
+// "Follow me": the robot goes behind the visitor, along his way.
+#include <algorithm>
+
+#include "tasks/guide/core/buttons.hpp"
+#include "tasks/guide/core/guide.hpp"
+
+namespace usher::guide {
+
+namespace {
+
+constexpr Time kGoalEvery = std::chrono::milliseconds(700);
+constexpr double kGoalStep = 0.3;  ///< [m] a goal nearer to the last one, or to the robot, is none
+constexpr double kLookFrom = 0.3;  ///< [m] before the place where an unseen visitor was last
+constexpr int kMostGoalsFailed = 5;  ///< in a row
+
+}  // namespace
+
+bool Guide::choose_following(const std::string& option, Time now) {
+  if (follows()) {  // whether he says "we are there" or "stop": here he wants the robot to be
+    visit_.travel_time += now - departed_;
+    if (visit_.arrived++ == 0) ++funnel_.arrived;
+    leave_journey();
+    enter(State::kEndAsk, option == button::kDone ? Cause::kYes : Cause::kNo, now);
+    return true;
+  }
+  place_ = {};
+  goal_id_ = first_goal_ = 0;
+  acknowledged_ = false;
+  goals_failed_ = 0;
+  trail_ = {};
+  going_to_.reset();
+  unseen_since_.reset();
+  held_since_.reset();
+  unheard_since_.reset();
+  departed_ = asked_again_ = now;
+  move_at_ = now + parameters_.tone;
+  sentence_ = say(Text::kWalkAhead);
+  sentence_at_ = now;
+  if (visit_.started++ == 0) ++funnel_.started;
+  enter(State::kFollowMe, Cause::kChoice, now);
+  screen_.tone = Tone::kMoving;
+  actions_.requests.push_back({RequestKind::kNavigationStart, goal_name()});
+  actions_.requests.push_back({RequestKind::kNavigationGo, {}});
+  return true;
+}
+
+/// What became of the newest goal. One after the other replaces the one before it, so all from
+/// the first on are ours.
+void Guide::watch_following(Time now) {
+  if (goal_id_ == 0) return;
+  const auto& navigation = surroundings_.navigation;
+  if (!navigation || navigation->goal_id != goal_id_) {
+    const bool taken = navigation && (navigation->state == GoalState::kActive ||
+                                      navigation->state == GoalState::kWaiting);
+    const bool ours =
+        navigation && navigation->goal_id >= first_goal_ && navigation->goal_id < goal_id_;
+    if (taken && !ours && acknowledged_) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    if (now - goal_at_ >= parameters_.acknowledge) fail(Text::kPartSilent, Cause::kFailure, now);
+    return;
+  }
+  acknowledged_ = true;
+  switch (navigation->state) {
+    case GoalState::kSucceeded:
+    case GoalState::kCancelled:
+      goals_failed_ = 0;
+      goal_id_ = 0;
+      break;
+    case GoalState::kFailed:
+      goal_id_ = 0;
+      going_to_.reset();
+      if (++goals_failed_ >= kMostGoalsFailed) fail(Text::kNoWay, Cause::kFailure, now);
+      break;
+    case GoalState::kReplaced:
+      fail(Text::kOtherGoal, Cause::kFailure, now);
+      break;
+    case GoalState::kIdle:
+    case GoalState::kActive:
+    case GoalState::kWaiting:
+      goal_at_ = now;  // heard
+      break;
+  }
+}
+
+void Guide::follow_visitor(Time now) {
+  const auto& visitor = surroundings_.visitor;
+  const auto& pose = surroundings_.pose;
+  if (pose && trail_.empty()) trail_.begin(pose->position());
+  if (visitor && visitor->seen && pose) {
+    if (unseen_since_ && sentence_ != say(Text::kWalkAhead)) {
+      say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
+    }
+    unseen_since_.reset();
+    trail_.see(*pose * geometry::Point2{visitor->x, visitor->y});
+  } else if (!unseen_since_) {
+    unseen_since_ = now;
+  }
+  const bool lost = unseen_since_ && now - *unseen_since_ >= parameters_.follow.unseen;
+  if (lost && now - *unseen_since_ >= parameters_.follow.give_up) {
+    lost_visitor_ = true;
+    visit_.travel_time += now - departed_;
+    leave_journey();
+    return enter(State::kEnd, Cause::kLeft, now);
+  }
+  if (lost &&
+      (sentence_ != say(Text::kComeBack) || now - sentence_at_ >= parameters_.follow.call)) {
+    say_on_the_way(Text::kComeBack, Tone::kCall, now);
+  }
+  if (move_at_ && now >= *move_at_) move_at_.reset();
+  if (!move_at_ && pose) go_behind(now);
+}
+
+void Guide::go_behind(Time now) {
+  const geometry::Point2 robot = surroundings_.pose->position();
+  const auto& visitor = surroundings_.visitor;
+  const bool seen = visitor && visitor->seen;
+  if (seen &&
+      std::hypot(visitor->x, visitor->y) < parameters_.behind) {  // he has stopped or come back
+    if (goal_id_ != 0) actions_.cancel = goal_id_;
+    goal_id_ = 0;
+    going_to_.reset();
+    return;
+  }
+  // One who went round a corner is looked for where he was last.
+  const bool unseen = unseen_since_ && now - *unseen_since_ >= parameters_.follow.unseen;
+  const auto place = trail_.behind(unseen ? kLookFrom : parameters_.behind);
+  if (!place || (place->position() - robot).norm() < kGoalStep) return;
+  if (going_to_ && (place->position() - *going_to_).norm() < kGoalStep) return;
+  if (going_to_ && now - goal_given_at_ < kGoalEvery) return;
+  going_to_ = place->position();
+  goal_id_ = next_id_++;
+  if (first_goal_ == 0) first_goal_ = goal_id_;
+  goal_at_ = goal_given_at_ = now;
+  actions_.goal = Goal{goal_id_, {}, *place};
+  actions_.remember = true;
+}
+
+}  // namespace usher::guide
