@@ -51,4 +51,17 @@ Item {
             border.color: Theme.yes
         }
     }
+    // The smile's ends are round: on the middle of the ring, where it is cut.
+    Repeater {
+        model: face.happy ? 2 : 0
+        Rectangle {
+            required property int index
+            x: face.width * 0.5 + (index === 0 ? -1 : 1) * face.height * 0.1677 - width / 2
+            y: face.height * 0.66 - height / 2
+            width: face.height * 0.035
+            height: width
+            radius: width / 2
+            color: Theme.yes
+        }
+    }
 }
