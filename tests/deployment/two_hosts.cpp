@@ -34,10 +34,8 @@ TwoHosts::~TwoHosts() { stop(); }
 void TwoHosts::stop() {
   statuses_.reset();
   observer_.reset();
-  for (auto* launcher : {nuc_.get(), tablet_.get()}) {
-    launcher->signal(SIGTERM);
-    launcher->wait(std::chrono::seconds(10));
-  }
+  for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->signal(SIGTERM);
+  for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->wait(std::chrono::seconds(30));
 }
 
 /// Each machine has a run directory of its own.

@@ -33,9 +33,11 @@ constexpr double kMapError = 0.5;       // [m]
 constexpr double kGoalError = 0.4;      // [m]
 constexpr double kVisitorBehind = 3.5;  // [m]
 constexpr double kTorsoError = 2.0 * kDegree;
-constexpr double kSpokenAfter = 4.0;  // [s] a screen that stays so long is said
-constexpr double kLeastSound = 10.0;  // [s] of the robot's voice in a visit
-constexpr double kLag = 0.5;          // [s] that the simulation may fall behind
+constexpr double kSpokenAfter = 4.0;     // [s] a screen that stays so long is said
+constexpr double kLeastSound = 10.0;     // [s] of the robot's voice in a visit
+constexpr double kLeastLoudness = 0.01;  // of full scale, pauses included
+constexpr double kBusy = 1.5;            // times slower than alone
+constexpr double kLag = 0.5;             // [s] that the simulation may fall behind
 const geometry::Point2 kReception{10.2, 4.6}, kFoyer{4.5, 4.5};
 
 /// The tasks of appendix B as the states that show them; the robot leads in between.
@@ -280,7 +282,8 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
   if (!networks) GTEST_SKIP() << kNoNamespaces;
   const std::string pictures = USHER_BINARY_DIR "/hri_visits/" + input;
   std::vector<std::string> complaints;
-  // A machine that was busy meanwhile may have fallen behind: such a run does not count.
+  // On a machine that is busy with other things sentences come late, and whoever shall stop is
+  // killed before it has written its file: such a run does not count.
   for (int attempt = 0; attempt < 2; ++attempt) {
     std::filesystem::remove_all(pictures);
     const Folder folder;
@@ -293,7 +296,9 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
     if (!over) complaints.push_back("the visit did not end\n" + robot.story());
     robot.stop();
     const auto said = speech::read_wav_file(folder.path() + "/said.wav");
-    if (!said || said->duration() < kLeastSound || speech::rms(said->samples) < 0.01)
+    if (!said)
+      complaints.push_back("objective 4: nothing came from the loudspeaker: " + said.error());
+    else if (said->duration() < kLeastSound || speech::rms(said->samples) < kLeastLoudness)
       complaints.emplace_back("objective 4: the loudspeaker was silent");
     for (const char* state : {"location_show", "guide_active", "guide_success"}) {
       std::error_code none;
@@ -303,7 +308,8 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
           });
       if (!pictured) complaints.push_back(std::string("objective 5: no picture of ") + state);
     }
-    if (complaints.empty() || witness.lag() < kLag) break;
+    if (complaints.empty() || (witness.lag() < kLag && slowdown() < kBusy)) break;
+    std::printf("the machine was busy: %s\n", testing::PrintToString(complaints).c_str());
   }
   EXPECT_THAT(complaints, testing::IsEmpty());
 }

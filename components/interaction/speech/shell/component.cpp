@@ -19,6 +19,7 @@ constexpr auto kStep = milliseconds(20);
 constexpr auto kDialogueAge = milliseconds(3000);
 constexpr std::uint64_t kLevelEvery = 2;    // steps: 25 Hz
 constexpr std::uint64_t kStatusEvery = 25;  // steps, when nothing changes: 2 Hz
+constexpr std::uint64_t kMostSkipped = 50;  // steps that are made up for: 1 s
 constexpr std::uint64_t kRetryEvery = 250;  // steps between two tries to open a device: 5 s
 constexpr std::size_t kMostJobs = 4;        // that wait for voice or recognizer
 constexpr double kDucked = 0.25;            // of the volume, while somebody speaks
@@ -96,7 +97,7 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
   supervisor_ = host.input(
       topics::kSupervisorStatus, {.optional = true},
       [this](const auto& status, const auto&) { requests_.answered(status.last_request()); });
-  timer_ = host.timer("step", kStep, [this](auto) { tick(); });
+  timer_ = host.timer("step", kStep, [this](std::uint64_t skipped) { tick(skipped); });
   player_.set_gain(settings_.volume);
   if (recognizer_ == nullptr) models_trouble_ = "there is no recognizer";
   if (const auto kept = host.kept(kHoldKey); kept && !kept->empty()) conversation_.hold_again();
@@ -269,13 +270,16 @@ void SpeechComponent::recognize_next() {
       });
 }
 
-void SpeechComponent::tick() {
+void SpeechComponent::tick(std::uint64_t skipped) {
   if (++ticks_ == 1) load();
   if (ticks_ % kRetryEvery == 1) open_devices();
   conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
   conversation_.hear_dialogue(guide_.fresh() != nullptr || meeting_.fresh() != nullptr);
-  play();
-  hear();
+  // A sound card of its own has gone on meanwhile; files have not.
+  for (std::uint64_t i = 0; i <= std::min(skipped, kMostSkipped); ++i) {
+    play();
+    hear();
+  }
   const bool sounds = player_.sounds(card_->unheard()) || synthesizing_ || !to_say_.empty();
   conversation_.step(sounds, now());
   fulfil();

@@ -35,7 +35,7 @@ class SpeechComponent final : public runtime::Component {
   Time now() const { return host_.now().time_since_epoch(); }
   void load();
   void take_screen(const usher_msgs::msg::DialogueScreen& screen);
-  void tick();
+  void tick(std::uint64_t skipped);
   void play();
   void hear();
   void fulfil();

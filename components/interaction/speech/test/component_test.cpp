@@ -226,6 +226,16 @@ TEST_F(Speech, SaysTheScreenWithCaptionsAndTellsWhenItIsFinished) {
   EXPECT_GT(room_.heard_peak, 3000.0) << "the tone that says: I listen";
 }
 
+TEST_F(Speech, SpeaksAsFastAsTimePassesOnABusyMachine) {
+  start();
+  show(5, {"yes", "no"}, "Would you like to see our location?");  // 2.3 s
+  for (int i = 0; i < 14; ++i) {
+    host_->world().hang("speech", milliseconds(150));
+    pass(0.2);
+  }
+  EXPECT_TRUE(status().finished());
+}
+
 TEST_F(Speech, TellsTheLevelWhileItSounds) {
   start();
   show(5, {"yes"}, "Hm");
