@@ -28,8 +28,10 @@ constexpr int kMostPictures = 999;
 
 constexpr std::size_t kMostTouches = 64;  ///< between two questions of the component
 
-constexpr std::size_t kMostTaps = 64;                          ///< that wait for the finger
-constexpr auto kTapLasts = std::chrono::milliseconds(80);      ///< of a person's finger
+constexpr std::size_t kMostTaps = 64;                      ///< that wait for the finger
+constexpr auto kTapLasts = std::chrono::milliseconds(80);  ///< of a person's finger
+/// Frames after which a view has been drawn: the first may have been on its way already.
+constexpr int kDrawn = 2;
 constexpr auto kBetweenTaps = std::chrono::milliseconds(120);  ///< and until it is there again
 
 /// What is drawn and has this name.
@@ -66,6 +68,11 @@ class Application::Implementation final : public Window {
     if (!engine.rootObjects().isEmpty()) {
       display = qobject_cast<QQuickWindow*>(engine.rootObjects().constFirst());
     }
+    if (display != nullptr) {
+      QObject::connect(display, &QQuickWindow::frameSwapped, &model, [this] {
+        if (++drawn < kDrawn) display->update();
+      });
+    }
     model.on_press = [this](const std::string& id) { touched({false, id}); };
     model.on_typed = [this](const std::string& text) { touched({true, text}); };
     for (auto* timer : {&press_timer, &release_timer}) timer->setSingleShot(true);
@@ -99,6 +106,7 @@ class Application::Implementation final : public Window {
       const View& shown = model.view();
       const bool another = view.screen_id != shown.screen_id || view.page != shown.page ||
                            view.text != shown.text || view.status != shown.status;
+      if (view != shown) drawn = 0;
       model.show(view);
       if (another && !settings.pictures.empty()) picture_timer.start();
     });
@@ -130,6 +138,11 @@ class Application::Implementation final : public Window {
   }
   void press_next() {
     while (!taps.empty() && display != nullptr) {
+      if (drawn < kDrawn) {  // nobody touches a button before it has its place
+        display->update();
+        press_timer.start();
+        return;
+      }
       const finger::Tap next = taps.front();
       taps.pop_front();
       const QString name = (next.key ? "key:" : "button:") + QString::fromStdString(next.target);
@@ -177,6 +190,7 @@ class Application::Implementation final : public Window {
   Settings settings;
   std::deque<finger::Tap> taps;
   QPointF finger_at;
+  int drawn = 0;  ///< frames since the view changed
   QTimer press_timer, release_timer, picture_timer;
   int pictures = 0;
 };
