@@ -22,6 +22,11 @@ const std::vector<Experiment>& experiments() {
        "MARVIN with its depth cameras guides visitors who follow, dawdle, tie a lace, walk away, "
        "lock-step: gaps, losses noticed, ETA; --only follows | dawdles | lace | returns | leaves",
        run_follow_experiment},
+      {"visits",
+       "Seeded visits with whatever visitors do, lock-step: each must end, politely or at the "
+       "place; --seeds N, --only follows | map | types | dawdles | lace | returns | leaves | stops "
+       "| forgets | cancels | blocks | crowd | leads | again | silent",
+       run_visits_experiment},
       {"buildings",
        "Ten goals on each map of a real building, lock-step; --seeds N goals of N seeds, --only "
        "NAME one building",

@@ -6,7 +6,9 @@ namespace usher::visitor {
 
 namespace {
 
-constexpr int kMostTries = 2;  ///< after an error
+constexpr int kMostTries = 2;     ///< after an error
+constexpr int kSome = 4;          ///< statements, then it has enough
+constexpr double kComesUp = 4.0;  ///< [s] that the robot needs to where its leader stands
 
 bool due(double at, double since) { return at >= 0.0 && since >= at; }
 
@@ -21,11 +23,15 @@ void Visitor::see(const Screen& screen, double now) {
   seen_at_ = now;
   answered_ = typed_ = false;
   if (screen.state == character_.gives_up_in) gave_up_ = true;
-  if (screen.state == "guide_active" && !departed_at_) departed_at_ = now;
+  if ((screen.state == "guide_active" || screen.state == "follow_me") && !departed_at_)
+    departed_at_ = now;
   if (screen.state == "guide_paused") stopped_at_ = now;
   if (screen.state == "guide_success") ++arrivals_;
   if (screen.state == "guide_error") ++errors_;
-  if (screen.state == "guide_success" || screen.state == "guide_error") departed_at_.reset();
+  if (screen.state == "guide_success" || screen.state == "guide_error" ||
+      screen.state == "end_ask") {
+    departed_at_.reset();
+  }
   if (screen.state == "end" || screen.state == "inactive") ended_ = screen.state == "end";
 }
 
@@ -79,6 +85,13 @@ std::optional<Choice> Visitor::on_the_way(double now) {
   return std::nullopt;
 }
 
+std::optional<Choice> Visitor::rate() {
+  if (character_.rates == "none" || (character_.rates == "some" && rated_ >= kSome))
+    return press("cancel");
+  ++rated_;
+  return press(rated_ % 6 == 0 ? "skip" : "rating:" + std::to_string(rated_ % 5 + 1));
+}
+
 std::optional<Choice> Visitor::choice(double now) {
   const std::string& state = screen_.state;
   const std::string language = "language:" + character_.language;
@@ -90,7 +103,7 @@ std::optional<Choice> Visitor::choice(double now) {
   }
   if (state == "location_ask") {
     if (character_.looks_at_map && arrivals_ == 0) return press("yes");
-    return press("guide_me");
+    return press(character_.leads ? "no" : "guide_me");
   }
   if (state == "location_show") {
     if (character_.asks_where && !asked_where_) {
@@ -100,7 +113,12 @@ std::optional<Choice> Visitor::choice(double now) {
     return asked_where_ && offers("guide_me") ? press("guide_me") : press("done");
   }
   if (state == "location_options" || state == "guide_options") return choose_place();
-  if (state == "guide_ask") return press("yes");
+  if (state == "guide_ask")
+    return press(character_.leads && !led_at_ && offers("follow_me") ? "follow_me" : "yes");
+  if (state == "follow_me") {
+    return led_at_ && now - *led_at_ >= kComesUp ? press("done") : std::nullopt;
+  }
+  if (state == "feedback") return rate();
   if (state == "guide_start") return press("start");
   if (state == "guide_active" || state == "guide_paused") return on_the_way(now);
   if (state == "guide_error") return press(errors_ < kMostTries ? "yes" : "no");
@@ -111,8 +129,15 @@ std::optional<Choice> Visitor::choice(double now) {
   return std::nullopt;
 }
 
+bool Visitor::crowded(double now) const {
+  if (!departed_at_ || character_.crowd_at < 0.0) return false;
+  const double since = now - *departed_at_ - character_.crowd_at;
+  return since >= 0.0 && since < character_.crowd_for;
+}
+
 Walk Visitor::walk(double now) const {
   if (!departed_at_) return Walk::kStand;
+  if (screen_.state == "follow_me") return led_at_ ? Walk::kStand : Walk::kLead;
   const double since = now - *departed_at_;
   const double away = since - character_.walks_away_at;
   const bool back = character_.walks_away_for >= 0.0 && away >= character_.walks_away_for;
@@ -121,6 +146,8 @@ Walk Visitor::walk(double now) const {
       since < character_.ties_lace_at + character_.ties_lace_for) {
     return Walk::kStand;
   }
+  if (due(character_.blocks_at, since) && since < character_.blocks_at + character_.blocks_for)
+    return Walk::kBlock;
   return due(character_.dawdles_at, since) ? Walk::kDawdle : Walk::kFollow;
 }
 

@@ -36,7 +36,13 @@ struct Character {
   double ties_lace_for = 12.0;
   double walks_away_at = -1.0;
   double walks_away_for = -1.0;  ///< then follows again; negative: never comes back
-  std::string gives_up_in;       ///< answers nothing more from this state of the dialogue on
+  double blocks_at = -1.0;       ///< steps before the robot and stands there
+  double blocks_for = 10.0;
+  double crowd_at = -1.0;  ///< others gather round the robot
+  double crowd_for = 10.0;
+  bool leads = false;          ///< wants the robot to follow instead
+  std::string rates = "none";  ///< statements of the questionnaire: none, some, all
+  std::string gives_up_in;     ///< answers nothing more from this state of the dialogue on
 };
 
 struct Choice {
@@ -44,7 +50,7 @@ struct Choice {
   std::string text;  ///< typed, for a line
 };
 
-enum class Walk : std::uint8_t { kStand, kFollow, kDawdle, kAway };
+enum class Walk : std::uint8_t { kStand, kFollow, kDawdle, kAway, kBlock, kLead };
 
 /// A visitor who wants to go to a place: reads each screen for a while, then answers it once.
 /// Times of calls are seconds on any clock that does not go back.
@@ -56,15 +62,21 @@ class Visitor {
   /// What to choose now, if anything.
   std::optional<Choice> answer(double now);
   std::uint64_t screen_id() const { return screen_.id; }
+  const Character& character() const { return character_; }
 
   /// Stands until the first departure, then follows until the end, unless its character is another.
   Walk walk(double now) const;
   bool arrived() const { return arrivals_ > 0; }
+  /// Whether others stand round the robot now.
+  bool crowded(double now) const;
+  /// It has led the robot to where it wanted to; it says so when the robot has come up.
+  void led(double now) { led_at_ = led_at_ ? led_at_ : now; }
 
  private:
   std::optional<Choice> choice(double now);
   std::optional<Choice> choose_place();
   std::optional<Choice> on_the_way(double now);
+  std::optional<Choice> rate();
   bool offers(std::string_view option) const;
   std::optional<Choice> press(std::string_view option) const;
   const std::string& wanted() const;
@@ -77,7 +89,8 @@ class Visitor {
   bool gave_up_ = false;
   std::optional<double> departed_at_, stopped_at_;
   bool asked_where_ = false, stopped_ = false, ended_ = false;
-  int arrivals_ = 0, errors_ = 0;
+  std::optional<double> led_at_;
+  int arrivals_ = 0, errors_ = 0, rated_ = 0;
 };
 
 }  // namespace usher::visitor

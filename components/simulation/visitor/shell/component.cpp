@@ -1,5 +1,8 @@
 #include "simulation/visitor/shell/component.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "simulation/visitor/core/step_up.hpp"
 #include "wire/conversions.hpp"
 
@@ -11,6 +14,10 @@ constexpr auto kStep = std::chrono::milliseconds(200);
 constexpr auto kSpeechAge = std::chrono::milliseconds(3000);
 constexpr auto kTruthAge = std::chrono::milliseconds(500);
 constexpr double kDawdling = 0.5;  ///< [m/s]
+constexpr double kBlocksAt = 1.2;  ///< [m] before the robot's middle
+constexpr double kThere = 0.5;     ///< [m] from a point it has come by
+constexpr double kLeadsBy = 3.5;   ///< [m] farther ahead of the robot it waits
+constexpr double kRound = 1.1;     ///< [m] from the robot's middle others stand
 namespace input = usher_msgs::msg::DialogueAnswer_Constants;
 
 double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
@@ -41,6 +48,13 @@ Character VisitorComponent::read_character(runtime::Parameters& parameters) {
   time("dawdles_at", c.dawdles_at, "Walks slowly from then on; -1 = never.");
   time("ties_lace_at", c.ties_lace_at, "Stands to tie a lace; -1 = never.");
   time("ties_lace_for", c.ties_lace_for, "How long.");
+  time("blocks_at", c.blocks_at, "Steps before the robot; -1 = never.");
+  time("blocks_for", c.blocks_for, "How long.");
+  time("crowd_at", c.crowd_at, "The world's bystanders gather round the robot; -1 = never.");
+  time("crowd_for", c.crowd_for, "How long.");
+  c.leads = parameters.flag("leads", false, "Wants the robot to follow, along leads_along.");
+  c.rates = parameters.choice("rates", {"none", "some", "all"}, "none",
+                              "Statements of the questionnaire that it answers.");
   time("walks_away_at", c.walks_away_at, "Leaves the robot; -1 = never.");
   time("walks_away_for", c.walks_away_for, "And comes back after so long; -1 = never.");
   return c;
@@ -69,6 +83,10 @@ VisitorComponent::VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> v
   if (voice != nullptr) limbs_ = std::make_unique<Limbs>(host, std::move(voice), finger, mouth);
   leaves_to_ = parameters.numbers("leaves_to", "m", {-1000, 1000}, 2, 2, {3.7, 6.0},
                                   "Where the visitor goes who leaves the robot.");
+  leads_along_ = parameters.numbers("leads_along", "m", {-1000, 1000}, 2, 40,
+                                    {5.0, 8.0, 5.0, 10.0, 14.0, 10.0},
+                                    "x, y of the points that it leads the robot by.");
+  if (leads_along_.size() % 2 != 0) host.fault("leads_along must have pairs of x, y");
   steps_up_to_ = parameters.number("steps_up_to", "m", {0, 5}, 0.0,
                                    "So near it stands before the robot's screen unless the robot "
                                    "guides; 0 = it stays where it is.");
@@ -79,7 +97,8 @@ VisitorComponent::VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> v
   speech_ = host.input(
       topics::kSpeechStatus,
       {.max_age = kSpeechAge, .on_loss = "touches what it wanted to say", .optional = true});
-  if (steps_up_to_ > 0.0) {
+  const Character& c = core_.character();
+  if (steps_up_to_ > 0.0 || c.leads || c.blocks_at >= 0.0 || c.crowd_at >= 0.0) {
     truth_ = host.input(topics::kSimGroundTruth,
                         {.max_age = kTruthAge, .on_loss = "stays where it is", .optional = true});
   }
@@ -167,14 +186,32 @@ void VisitorComponent::step() {
   walk(now);
 }
 
-void VisitorComponent::send(double x, double y, double speed, bool follow) {
+void VisitorComponent::send(const std::string& whom, const geometry::Point2& place, double speed,
+                            bool follow) {
   usher_sim_msgs::msg::PersonGoal goal;
-  goal.name(person_);
+  goal.name(whom);
   goal.speed(speed);
-  goal.x(x);
-  goal.y(y);
+  goal.x(place.x());
+  goal.y(place.y());
   goal.follow(follow);
   walk_.publish(goal);
+}
+
+std::optional<geometry::Pose2> VisitorComponent::robot() const {
+  const auto* truth = truth_.fresh();
+  if (truth == nullptr) return std::nullopt;
+  const auto pose = wire::to_planar(truth->pose());
+  if (!pose) return std::nullopt;
+  return *pose;
+}
+
+std::optional<geometry::Point2> VisitorComponent::place_of(const std::string& whom) const {
+  const auto* truth = truth_.fresh();
+  if (truth == nullptr) return std::nullopt;
+  for (const auto& person : truth->people()) {
+    if (person.name() == whom) return geometry::Point2(person.x(), person.y());
+  }
+  return std::nullopt;
 }
 
 /// From the first time that the robot waited for somebody for a while; not on the way.
@@ -185,37 +222,80 @@ bool VisitorComponent::at_screen(double now) {
   return invited_at_ && now >= *invited_at_ + comes_after_;
 }
 
-void VisitorComponent::step_up() {
-  const auto* truth = truth_.fresh();
-  const auto robot = truth != nullptr ? wire::to_planar(truth->pose())
-                                      : Result<geometry::Pose2>(Error{"nobody tells"});
-  if (!robot) return;
-  for (const auto& person : truth->people()) {
-    if (person.name() != person_) continue;
-    const auto place = visitor::step_up(*robot, {person.x(), person.y()}, steps_up_to_);
-    if (place) {
-      send(place->x(), place->y(), speed_, false);
-    } else if (steps_up_) {
-      send(person.x(), person.y(), 0.0, false);
+void VisitorComponent::step_up(double range) {
+  const auto before = robot();
+  const auto here = place_of(person_);
+  if (!before || !here) return;
+  const auto place = visitor::step_up(*before, *here, range);
+  if (place) {
+    send(person_, *place, speed_);
+  } else if (steps_up_) {
+    send(person_, *here, 0.0);
+  }
+  steps_up_ = place.has_value();
+}
+
+/// Walks ahead, and waits for a robot that stays behind.
+void VisitorComponent::lead(double now) {
+  const auto behind = robot();
+  const auto here = place_of(person_);
+  if (!behind || !here) return;
+  const auto next = [&] {
+    return geometry::Point2(leads_along_[2 * led_past_], leads_along_[2 * led_past_ + 1]);
+  };
+  if (2 * led_past_ < leads_along_.size() && (*here - next()).norm() < kThere) ++led_past_;
+  if (2 * led_past_ >= leads_along_.size()) {
+    core_.led(now);
+    send(person_, *here, 0.0);
+  } else {
+    const bool waits = (*here - behind->position()).norm() > kLeadsBy;
+    send(person_, next(), waits ? 0.0 : speed_);
+  }
+}
+
+/// The bystanders come and stand round the robot; later they go back.
+void VisitorComponent::gather(bool crowded) {
+  const auto in_the_middle = robot();
+  if (crowded == gathered_ && !crowded) return;
+  if (crowded && !gathered_) {
+    for (const auto& person : truth_.latest()->people()) {
+      if (person.name().starts_with("bystander_"))
+        bystanders_[person.name()] = {person.x(), person.y()};
     }
-    steps_up_ = place.has_value();
+  }
+  gathered_ = crowded;
+  double angle = 0.0;
+  for (const auto& [name, home] : bystanders_) {
+    const geometry::Point2 round(kRound * std::cos(angle), kRound * std::sin(angle));
+    angle += 2.0 * std::numbers::pi / static_cast<double>(bystanders_.size());
+    if (!crowded) {
+      send(name, home, speed_);
+    } else if (in_the_middle) {
+      send(name, *in_the_middle * round, speed_);
+    }
   }
 }
 
 void VisitorComponent::walk(double now) {
+  if (core_.character().crowd_at >= 0.0 && truth_.fresh() != nullptr) gather(core_.crowded(now));
   const Walk walk = core_.walk(now);
-  if (walk == Walk::kStand && at_screen(now)) {
-    walks_ = walk;
-    step_up();
-    return;
-  }
-  if (walk == Walk::kStand && walks_ == Walk::kStand) return;
+  const bool stood = walk == Walk::kStand && walks_ == Walk::kStand;
   walks_ = walk;
-  send(leaves_to_[0], leaves_to_[1],
-       walk == Walk::kStand    ? 0.0
-       : walk == Walk::kDawdle ? kDawdling
-                               : speed_,
-       walk == Walk::kFollow || walk == Walk::kDawdle);
+  switch (walk) {
+    case Walk::kStand:
+      if (at_screen(now)) return step_up(steps_up_to_);
+      if (!stood) send(person_, {leaves_to_[0], leaves_to_[1]}, 0.0);
+      return;
+    case Walk::kBlock:
+      return step_up(kBlocksAt);
+    case Walk::kLead:
+      return lead(now);
+    case Walk::kFollow:
+    case Walk::kDawdle:
+    case Walk::kAway:
+      return send(person_, {leaves_to_[0], leaves_to_[1]},
+                  walk == Walk::kDawdle ? kDawdling : speed_, walk != Walk::kAway);
+  }
 }
 
 }  // namespace usher::visitor

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "foundation/geometry/pose2.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "simulation/visitor/core/delivery.hpp"
@@ -31,9 +33,16 @@ class VisitorComponent final : public runtime::Component {
   void write(const Choice& choice, Means means);
   void deliver(double now);
   bool at_screen(double now);
-  void step_up();
+  /// Where the robot and somebody are, if it is told.
+  std::optional<geometry::Pose2> robot() const;
+  std::optional<geometry::Point2> place_of(const std::string& whom) const;
+  void step_up(double range);
   void walk(double now);
-  void send(double x, double y, double speed, bool follow);
+  void block();
+  void lead(double now);
+  void gather(bool crowded);
+  void send(const std::string& whom, const geometry::Point2& place, double speed,
+            bool follow = false);
   std::string label_of(const std::string& option) const;
 
   runtime::Host& host_;
@@ -44,7 +53,11 @@ class VisitorComponent final : public runtime::Component {
   double steps_up_to_;             ///< [m] 0: stays where it is
   double comes_after_;             ///< [s]
   std::optional<double> invited_at_;
-  bool steps_up_ = false;  ///< is on the way to the screen
+  bool steps_up_ = false;                               ///< is on the way to the screen
+  std::vector<double> leads_along_;                     ///< x, y [m] in map, one after the other
+  std::size_t led_past_ = 0;                            ///< points of it
+  std::map<std::string, geometry::Point2> bystanders_;  ///< and where they stood before
+  bool gathered_ = false;
   Input input_ = Input::kTouch;
   std::uint64_t turns_ = 0;
   std::unique_ptr<Limbs> limbs_;

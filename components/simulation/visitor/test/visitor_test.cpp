@@ -140,5 +140,65 @@ TEST(Visitor, GivesUpWhereItsCharacterDoes) {
   EXPECT_EQ(chosen(visitor, 70.0), "");
 }
 
+TEST(Visitor, LeadsTheRobotAndSaysWhenTheyAreThere) {
+  Character leader = kitchen();
+  leader.leads = true;
+  Visitor visitor(leader);
+  visitor.see(screen(1, "location_ask", {"yes", "no", "guide_me"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "no");
+  visitor.see(screen(2, "guide_ask", {"yes", "no", "follow_me"}), 1.0);
+  EXPECT_EQ(chosen(visitor, 1.0), "follow_me");
+  visitor.see(screen(3, "follow_me", {"done", "stop"}), 2.0);
+  EXPECT_EQ(visitor.walk(2.0), Walk::kLead);
+  EXPECT_EQ(chosen(visitor, 60.0), "");
+  visitor.led(60.0), visitor.led(61.0);
+  EXPECT_EQ(visitor.walk(61.0), Walk::kStand);
+  EXPECT_EQ(chosen(visitor, 63.9), "") << "the robot comes up";
+  EXPECT_EQ(chosen(visitor, 64.0), "done");
+  visitor.see(screen(4, "end_ask", {"yes", "no"}), 65.0);
+  EXPECT_EQ(visitor.walk(66.0), Walk::kStand);
+  Visitor unseen(leader);
+  unseen.see(screen(1, "guide_ask", {"yes", "no"}), 0.0);
+  EXPECT_EQ(chosen(unseen, 0.0), "yes") << "a robot that sees nobody cannot follow";
+}
+
+TEST(Visitor, BlocksTheWayAndIsCrowdedForAWhile) {
+  Character crowded = kitchen();
+  crowded.blocks_at = 5.0, crowded.blocks_for = 10.0;
+  crowded.crowd_at = 8.0, crowded.crowd_for = 2.0;
+  Visitor visitor(crowded);
+  EXPECT_FALSE(visitor.crowded(9.0)) << "not before the departure";
+  visitor.see(screen(1, "guide_active", {"stop"}), 100.0);
+  EXPECT_EQ(visitor.walk(104.9), Walk::kFollow);
+  EXPECT_EQ(visitor.walk(105.0), Walk::kBlock);
+  EXPECT_EQ(visitor.walk(115.0), Walk::kFollow);
+  EXPECT_FALSE(visitor.crowded(107.9));
+  EXPECT_TRUE(visitor.crowded(108.0));
+  EXPECT_FALSE(visitor.crowded(110.0));
+}
+
+TEST(Visitor, AnswersSomeAllOrNoneOfTheStatements) {
+  const struct {
+    const char* rates;
+    int answered;
+  } cases[] = {{"none", 0}, {"some", 4}, {"all", 13}};
+  for (const auto& test : cases) {
+    Character polite = kitchen();
+    polite.rates = test.rates;
+    Visitor visitor(polite);
+    std::vector<std::string> options{"skip", "cancel"};
+    for (int i = 1; i <= 5; ++i) options.push_back("rating:" + std::to_string(i));
+    int answered = 0;
+    for (std::uint64_t id = 1; id <= 13; ++id) {
+      visitor.see(screen(id, "feedback", options), static_cast<double>(id));
+      const std::string choice = chosen(visitor, static_cast<double>(id));
+      ASSERT_FALSE(choice.empty());
+      if (choice == "cancel") break;
+      ++answered;
+    }
+    EXPECT_EQ(answered, test.answered) << test.rates;
+  }
+}
+
 }  // namespace
 }  // namespace usher::visitor

@@ -115,6 +115,10 @@ std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
       p.file("site.map", "", "YAML of the site's map, in map_server form.");
   const std::string people_file = p.file("site.people", "", "Who walks there (people.yaml).");
   const bool with_people = p.flag("people", false, "Whether anybody walks there.");
+  const auto bystanders =
+      p.numbers("bystanders", "m", {-1000, 1000}, 0, 20, {},
+                "x, y of more people, who stand there until they are sent: bystander_1 and so on.");
+  if (bystanders.size() % 2 != 0) host.fault("bystanders must have pairs of x, y");
   const auto start = p.numbers("site.initial_pose", "-", {-1e4, 1e4}, 3, 3, {0, 0, 0},
                                "Where the robot usually starts: x in m, y in m, yaw in rad.");
   if (building_file.empty() && map_file.empty()) return nullptr;
@@ -124,6 +128,12 @@ std::unique_ptr<World> WorldComponent::make(runtime::Host& host) {
     auto loaded = load_people(people_file);
     if (!loaded) host.fault(loaded.error());
     people = std::move(loaded).value();
+    for (std::size_t i = 0; i + 1 < bystanders.size(); i += 2) {
+      PersonPlan plan;
+      plan.name = "bystander_" + std::to_string(i / 2 + 1);
+      plan.start = {bystanders[i], bystanders[i + 1]};
+      people.push_back(std::move(plan));
+    }
   }
   const Pose2 robot{start[0], start[1], start[2]};
   const std::uint64_t seed = seed_ = host.random("world").next();

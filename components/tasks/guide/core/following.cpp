@@ -90,7 +90,7 @@ void Guide::follow_visitor(Time now) {
       say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
     }
     unseen_since_.reset();
-    trail_.see(*pose * geometry::Point2{visitor->x, visitor->y});
+    if (visitor->in_map) trail_.see(*visitor->in_map);
   } else if (!unseen_since_) {
     unseen_since_ = now;
   }

@@ -68,6 +68,8 @@ struct VisitorSighting {
   bool seen = false;
   double x = 0.0, y = 0.0;  ///< [m] from the robot; x ahead
   double speed = kNothing;  ///< [m/s] in the map
+  /// [m] in map, where the robot was when it saw him; nothing: not known.
+  std::optional<geometry::Point2> in_map = std::nullopt;
 };
 
 /// What is known of the rest of the robot.

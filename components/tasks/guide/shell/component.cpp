@@ -17,7 +17,14 @@ constexpr auto kNavigationAge = milliseconds(2000);
 constexpr auto kFollowAge = milliseconds(1000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kVisitorAge = milliseconds(500);
+constexpr auto kPoseAge = milliseconds(1000);
 constexpr const char* kMemory = "dialogue";
+constexpr const char* kLog = "visits.csv";
+
+std::string kept_text(runtime::Host& host, const char* key) {
+  const auto kept = host.kept(key);
+  return kept ? std::string(reinterpret_cast<const char*>(kept->data()), kept->size()) : "";
+}
 
 }  // namespace
 
@@ -71,10 +78,7 @@ Guide GuideComponent::make(runtime::Host& host) {
   if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
     host.fault("follow_near and follow_resume must be below follow_far");
   Memory memory;
-  if (const auto kept = host.kept(kMemory)) {
-    auto read = memory_from_text({reinterpret_cast<const char*>(kept->data()), kept->size()});
-    if (read) memory = std::move(read).value();
-  }
+  if (auto read = memory_from_text(kept_text(host, kMemory))) memory = std::move(read).value();
   // Ids above all that were used before a restart.
   const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
   return Guide(p, std::move(phrases), first_id, memory, host.now().time_since_epoch());
@@ -83,10 +87,12 @@ Guide GuideComponent::make(runtime::Host& host) {
 GuideComponent::GuideComponent(runtime::Host& host)
     : host_(host),
       core_(make(host)),
+      log_(kept_text(host, kLog)),
       max_speed_(static_cast<float>(core_.parameters().speed)),
       ignored_answers_(host.health().counter("answers: ignored")),
       rejected_locations_(host.health().counter("locations: rejected")),
       forgotten_(host.health().counter("memory: not kept")),
+      transforms_(host),
       requests_(host, topics::kSupervisorRequest),
       goals_(host, topics::kNavigateGoal) {
   supervisor_ = host.input(
@@ -111,11 +117,11 @@ GuideComponent::GuideComponent(runtime::Host& host)
       host.input(topics::kLocalizationStatus, {.max_age = kLocalizationAge,
                                                .on_loss = "says that it does not know where it is",
                                                .optional = true});
-  pose_ = host.input(topics::kAmclPose, {.optional = true});
   visitor_ = host.input(topics::kVisitor,
                         {.max_age = kVisitorAge,
                          .on_loss = "greets nobody, waits for nobody: the visitor is unknown",
-                         .optional = true});
+                         .optional = true},
+                        [this](const auto& visitor, const auto&) { place(visitor); });
   answers_ = host.input(topics::kDialogueAnswer, {.optional = true},
                         [this](const auto& answer, const auto&) { take_answer(answer); });
   screen_ = host.output(topics::kDialogueScreen);
@@ -157,15 +163,27 @@ Surroundings GuideComponent::surroundings() const {
   const auto* visitor = visitor_.fresh();
   if (visitor != nullptr && visitor->presence() != seen::PRESENCE_UNKNOWN) {
     s.visitor = VisitorSighting{visitor->presence() == seen::PRESENCE_SEEN, visitor->x(),
-                                visitor->y(), visitor->speed()};
+                                visitor->y(), visitor->speed(), visitor_in_map_};
   }
   const auto* localization = localization_.fresh();
-  const auto* pose = pose_.latest();
-  if (localization != nullptr && pose != nullptr &&
+  if (localization != nullptr &&
       localization->state() != usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST) {
-    if (const auto planar = wire::to_planar(pose->pose().pose())) s.pose = *planar;
+    s.pose = transforms_.newest_planar(frames::kMap, frames::kBaseFootprint, kPoseAge);
   }
   return s;
+}
+
+/// In map, by where the robot was when it saw him: while it turns, a moment makes half a metre.
+void GuideComponent::place(const usher_msgs::msg::Visitor& visitor) {
+  if (visitor.presence() != usher_msgs::msg::Visitor_Constants::PRESENCE_SEEN) {
+    visitor_in_map_.reset();
+    return;
+  }
+  transforms_.when_known(frames::kMap, frames::kBaseFootprint,
+                         wire::from_message(visitor.header().stamp()),
+                         [this, at = geometry::Point2(visitor.x(), visitor.y())](const auto& pose) {
+                           visitor_in_map_ = geometry::to_plane(pose) * at;
+                         });
 }
 
 void GuideComponent::take_locations(const usher_msgs::msg::Locations& message) {
@@ -230,6 +248,9 @@ void GuideComponent::act(const Actions& actions) {
   if (actions.remember) remember();
   if (actions.visit) {
     visits_.publish(to_message(*actions.visit));
+    log_.add(*actions.visit, core_.screen().language,
+             runtime::seconds(host_.now().time_since_epoch()));
+    keep(kLog, log_.text());
     publish_status();
   }
   if (actions.screen_changed) publish_screen();
@@ -240,10 +261,11 @@ void GuideComponent::act(const Actions& actions) {
   }
 }
 
-void GuideComponent::remember() {
-  const std::string text = to_text(core_.memory());
+void GuideComponent::remember() { keep(kMemory, to_text(core_.memory())); }
+
+void GuideComponent::keep(const char* key, const std::string& text) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
-  if (!host_.keep(kMemory, {bytes, text.size()})) ++forgotten_;
+  if (!host_.keep(key, {bytes, text.size()})) ++forgotten_;
 }
 
 usher_msgs::msg::GuideVisit GuideComponent::to_message(const Visit& visit) const {

@@ -3,7 +3,9 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "tasks/guide/core/guide.hpp"
+#include "tasks/guide/core/visit_log.hpp"
 #include "wire/repeater.hpp"
+#include "wire/transform_input.hpp"
 
 namespace usher::guide {
 
@@ -17,6 +19,7 @@ class GuideComponent final : public runtime::Component {
   static Guide make(runtime::Host& host);
   Time now() const { return host_.now().time_since_epoch(); }
   Surroundings surroundings() const;
+  void place(const usher_msgs::msg::Visitor& visitor);
   void take_locations(const usher_msgs::msg::Locations& message);
   void take_supervisor(const usher_msgs::msg::SupervisorStatus& status);
   void take_answer(const usher_msgs::msg::DialogueAnswer& answer);
@@ -24,26 +27,28 @@ class GuideComponent final : public runtime::Component {
   void step() { act(core_.step(surroundings(), now())); }
   void act(const Actions& actions);
   void remember();
+  void keep(const char* key, const std::string& text);
   void publish_screen();
   void publish_status();
   usher_msgs::msg::GuideVisit to_message(const Visit& visit) const;
 
   runtime::Host& host_;
   Guide core_;
+  VisitLog log_;
   float max_speed_;
   std::uint64_t& ignored_answers_;
   std::uint64_t& rejected_locations_;
   std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
-  usher_msgs::msg::GuideStatus told_;  ///< the newest status
-  std::optional<std::uint64_t> goal_;  ///< the one that runs
+  usher_msgs::msg::GuideStatus told_;               ///< the newest status
+  std::optional<geometry::Point2> visitor_in_map_;  ///< [m]
 
+  wire::TransformInput transforms_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
   runtime::Input<usher_msgs::msg::FollowStatus> follow_;
   runtime::Input<usher_msgs::msg::Locations> locations_;
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
-  runtime::Input<geometry_msgs::msg::PoseWithCovarianceStamped> pose_;
   runtime::Input<usher_msgs::msg::Visitor> visitor_;
   runtime::Input<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_msgs::msg::DialogueScreen> screen_;

@@ -522,7 +522,7 @@ TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   const auto first = rig.goal;
   rig.see(3.1), rig.wait(1000);
   EXPECT_EQ(rig.taken(), "") << "a step is no new goal";
-  rig.around.visitor = VisitorSighting{true, 3.0, 2.0, 1.0};  // round a corner to the left
+  rig.see_at(3.0, 2.0, 1.0);  // round a corner to the left
   rig.wait(100);
   EXPECT_EQ(rig.taken(), "goal:pose");
   EXPECT_GT(rig.goal, first);

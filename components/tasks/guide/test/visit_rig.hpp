@@ -68,7 +68,11 @@ class Rig {
     around.navigation->state = state;
     wait(100);
   }
-  void see(double x, double speed = 0.0) { around.visitor = VisitorSighting{true, x, 0.0, speed}; }
+  void see(double x, double speed = 0.0) { see_at(x, 0.0, speed); }
+  void see_at(double x, double y, double speed) {
+    around.visitor = VisitorSighting{true, x, y, speed};
+    if (around.pose) around.visitor->in_map = *around.pose * geometry::Point2{x, y};
+  }
   void see_nobody() { around.visitor = VisitorSighting{}; }
 
   // Shortcuts into the dialogue; each asserts nothing.
