@@ -34,6 +34,7 @@ struct Experiment {
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options);

@@ -27,6 +27,10 @@ const std::vector<Experiment>& experiments() {
        "place; --seeds N, --only follows | map | types | dawdles | lace | returns | leaves | stops "
        "| forgets | cancels | blocks | crowd | leads | again | silent",
        run_visits_experiment},
+      {"usability",
+       "The seven tasks of the thesis' usability study by touch, by voice and by turns, lock-step: "
+       "success, times, touches, table 7.1 beside them; --only touch | voice | mixed",
+       run_usability_experiment},
       {"buildings",
        "Ten goals on each map of a real building, lock-step; --seeds N goals of N seeds, --only "
        "NAME one building",
