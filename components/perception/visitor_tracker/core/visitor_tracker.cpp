@@ -21,7 +21,20 @@ constexpr double kFollowWithin = 6.0;  // [m]
 constexpr double kWaitsWithin =
     2.0;  // [m] who stands so near behind a robot that stands, waits for it
 constexpr double kBlindWithin = 2.5;  // [m] farther somebody would have been seen on the way there
-constexpr double kWaitsCount = 0.12;  // and counts so much less than who walks
+constexpr double kWaits = 3.0;        // [s] so long, for a visitor who was lost near the robot
+constexpr double kWaitsLong = 5.0;    // [s] elsewhere: longer than somebody who cannot pass
+constexpr double kStrangerWaits = 6.0;  // [s] who came from ahead or was seen beside the visitor
+constexpr double kStaysPut = 0.6;       // [m]
+constexpr double kCameraEnds = 0.6;  // [rad] to either side: from here on only who walks is noticed
+constexpr double kStepsAside = 0.4;  // [m/s] by which somebody moves about where nobody looks
+constexpr double kAside = 0.3;       // [m] at once
+constexpr double kFarAside = 1.0;    // [m] at most
+constexpr double kWalksOff = 0.6;    // [m/s] away from the robot
+constexpr double kHidden = 0.7;      // [s] a number that shows up elsewhere after that ...
+constexpr double kElsewhere = 1.5;   // [m] ... is not his
+constexpr std::uint64_t kLost = std::numeric_limits<std::uint64_t>::max();  // nobody's number
+constexpr double kSighted = 0.15;     // [s] an older sighting is none
+constexpr double kGoneAhead = 1.0;    // [m] who is there and does not follow was never the visitor
 constexpr double kMostFollows = 1.5;  // [s]
 constexpr double kNearer = 0.4;       // [m] another one must be, to be served instead
 constexpr double kLeave = 0.5;        // [m] beyond the border until who stood before the robot left
@@ -51,7 +64,7 @@ bool finite(const Person& person) {
 
 const Estimate& VisitorTracker::lose() {
   estimate_ = {};
-  estimate_.person = held_;
+  estimate_.person = held_ == kLost ? 0 : held_;
   return estimate_;
 }
 
@@ -81,6 +94,7 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
       break;
     case Service::kGuides:
       keep_follower(moment.odom_T_base);
+      note_others(0.0);
       break;
     case Service::kFollows:
       keep_leader(broke ? 0.0 : passed);
@@ -147,9 +161,16 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
             [](const Look& a, const Look& b) { return a.person->id < b.person->id; });
   std::erase_if(habits_, [&](const auto& habit) { return find(habit.first) == nullptr; });
   for (Look& look : looks_) {
-    Habit& habit =
-        habits_.try_emplace(look.person->id, Habit{.since = time_, .from = look.person->position})
-            .first->second;
+    Habit& habit = habits_
+                       .try_emplace(look.person->id, Habit{.since = time_,
+                                                           .from = look.person->position,
+                                                           .from_ahead = look.place.x() > kAhead})
+                       .first->second;
+    const bool near = seen(&look) && !drives && look.range <= kWaitsWithin &&
+                      look.place.x() <= kAhead &&
+                      (look.person->position - habit.anchor).norm() <= kStaysPut;
+    habit.stays = near ? habit.stays + passed : 0.0;
+    if (!near) habit.anchor = look.person->position;
     if (seen(&look)) {
       habit.before = before(look) ? habit.before + passed : 0.0;
       habit.follows = std::clamp(
@@ -161,12 +182,14 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
   }
 }
 
-/// Beside the robot neither laser nor rear camera look. Who left that place would have been seen,
-/// and a robot that drives on leaves it behind.
-bool VisitorTracker::blind_at(const Point2& place) const {
+/// Beside the robot, at bearings from `from` on, nothing looks; somewhere within `around` [m] of
+/// the place that is so. Who left it would have been seen, and a robot that drives on leaves it
+/// behind.
+bool VisitorTracker::blind_at(const Point2& place, double from, double around) const {
   const double bearing = std::abs(std::atan2(place.y(), place.x()));
-  return place.norm() <= kBlindWithin && bearing >= config_.blind_from &&
-         bearing <= config_.blind_to;
+  const double off = std::max({0.0, from - bearing, bearing - config_.blind_to});
+  return place.norm() <= kBlindWithin &&
+         place.norm() * std::sin(std::min(off, geometry::kPi / 2)) <= around;
 }
 
 /// Seen now, or gone where nothing looks.
@@ -174,7 +197,8 @@ bool VisitorTracker::seen(const Look* look) const {
   if (look == nullptr) return false;
   if (service_ == Service::kFollows && look->range > config_.farthest) return false;
   return look->person->unseen <= config_.unseen ||
-         (on_the_way() && look->person->unseen <= config_.blind_for && blind_at(look->place));
+         (on_the_way() && look->person->unseen <= config_.blind_for &&
+          blind_at(look->place, config_.blind_from, 0.0));
 }
 
 bool VisitorTracker::before(const Look& look) const {
@@ -194,10 +218,9 @@ double VisitorTracker::following(const Look& look, const Pose2& odom_T_base, boo
   if (!by_the_way) return -1.0;
   const bool comes = look.speed >= kWalks &&
                      to_robot.dot(look.person->velocity) >= kAlong * look.speed * to_robot.norm();
-  // Behind a robot that stands whoever passes comes near; who stays there waits for it.
+  // Behind a robot that stands whoever passes comes near.
   if (moves) return comes ? 1.0 : -1.0;
-  if (comes) return 0.0;
-  return look.speed < kWalks && look.range <= kWaitsWithin ? kWaitsCount : -1.0;
+  return comes || look.range <= kWaitsWithin ? 0.0 : -1.0;
 }
 
 const VisitorTracker::Look* VisitorTracker::find(std::uint64_t id) const {
@@ -240,29 +263,59 @@ void VisitorTracker::keep_served() {
   if (const Look* nearest = nearest_before()) hold(*nearest, time_);
 }
 
+/// The people tracker gave the number of the visitor, who stands where nothing looks, to somebody
+/// who came along elsewhere: it is nobody's any more.
+void VisitorTracker::distrust(const Pose2& odom_T_base) {
+  const bool hidden = out_of_view(odom_T_base);
+  for (const Look& look : looks_) {
+    const auto id = look.person->id;
+    if (!hidden || (id != first_ && id != held_) || look.person->unseen > kSighted) continue;
+    const double gone = time_ - look.person->unseen - last_time_;
+    if (gone < kHidden || (look.person->position - last_place_).norm() <= kElsewhere) continue;
+    habits_[id].beside = look.person->position;
+    held_ = first_ = kLost;
+  }
+}
+
 void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
-  const double time = time_;
-  const Look* first = find(first_);
-  if (seen(first)) return hold(*first, time);
-  const Look* held = find(held_);
-  if (seen(held)) {
+  distrust(odom_T_base);
+  if (const Look* first = find(first_); seen(first)) return hold(*first, time_);
+  if (const Look* held = find(held_); seen(held)) {
     // Somebody took the visitor's place who does not follow: it was another one.
-    const bool mistaken = held->habit.follows <= 0.0;
-    const Look* other = mistaken ? follower(kMistaken * config_.follows, kFollowWithin) : nullptr;
-    if (other && other->range < held->range) hold(*other, time);
+    if (held->habit.follows > 0.0) return;
+    const Look* other = follower(kMistaken * config_.follows, kFollowWithin, true);
+    if (other && other->range < held->range) return hold(*other, time_);
+    if (held->place.x() > kGoneAhead && held_ != first_) {
+      habits_[held_].beside = held->person->position;
+      held_ = first_;
+    }
     return;
   }
   if (held_ == 0) {
     // Who began the journey was not seen.
-    if (const Look* nearest = nearest_before(); nearest && !moves(time))
-      return hold(*nearest, time);
+    if (const Look* nearest = nearest_before(); nearest && !moves(time_))
+      return hold(*nearest, time_);
   }
   const Look* found = same_place(odom_T_base);
-  if (!found) {
-    const double reach = kReach + kWalk * (time - last_time_);
-    found = follower(config_.follows, held_ == 0 ? kFollowWithin : reach);
+  if (!found && !out_of_view(odom_T_base)) {
+    const double reach = kReach + kWalk * (time_ - last_time_);
+    found = follower(config_.follows, held_ == 0 ? kFollowWithin : reach, false);
   }
-  if (found) hold(*found, time);
+  if (!found) found = waits(odom_T_base);
+  if (found) hold(*found, time_);
+}
+
+/// Who has stayed behind or beside the robot that stands, the nearest.
+const VisitorTracker::Look* VisitorTracker::waits(const Pose2& odom_T_base) const {
+  const bool near = (last_place_ - odom_T_base.position()).norm() <= kBlindWithin;
+  const double least = near ? kWaits : kWaitsLong;
+  const Look* best = nullptr;
+  for (const Look& look : looks_) {
+    const bool stranger = look.habit.beside || look.habit.from_ahead;
+    if (look.habit.stays < (stranger ? kStrangerWaits : least)) continue;
+    if (!best || look.range < best->range) best = &look;
+  }
+  return best;
 }
 
 /// The robot follows: the same one, else who took the place or came back.
@@ -330,13 +383,14 @@ const VisitorTracker::Look* VisitorTracker::come_back() const {
 /// Somebody who turned up where the visitor was going to be, walking likewise.
 const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base) const {
   const double gone = time_ - last_time_;
-  if (held_ == 0 || (gone > kSameFor && !out_of_view(odom_T_base))) return nullptr;
-  const Point2 there = expected(gone);
+  const bool hidden = out_of_view(odom_T_base);
+  if (held_ == 0 || (gone > kSameFor && !hidden)) return nullptr;
+  const Point2 there = hidden ? last_place_ : expected(gone);
   const Look* best = nullptr;
-  double least = kSamePlace;
+  double least = hidden ? kFarAside : kSamePlace;
   for (const Look& look : looks_) {
     const double off = (look.person->position - there).norm();
-    if (!seen(&look) || off > least) continue;
+    if (!seen(&look) || look.habit.beside || off > least) continue;
     if ((look.person->velocity - last_velocity_).norm() > kSameVelocity) continue;
     best = &look;
     least = off;
@@ -345,12 +399,12 @@ const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base)
 }
 
 /// Who has followed for so long [s], nearest to where the visitor was last seen and no farther from
-/// there than `nearest` [m].
-const VisitorTracker::Look* VisitorTracker::follower(double least, double nearest) const {
+/// there than `nearest` [m]. Who was seen beside the visitor only if `any`.
+const VisitorTracker::Look* VisitorTracker::follower(double least, double nearest, bool any) const {
   const Look* best = nullptr;
   for (const Look& look : looks_) {
     const double off = held_ == 0 ? look.range : (look.person->position - last_place_).norm();
-    const bool new_one = look.person->id != held_ && seen(&look);
+    const bool new_one = look.person->id != held_ && seen(&look) && (any || !look.habit.beside);
     if (!new_one || look.habit.follows < least || off > nearest) continue;
     best = &look;
     nearest = off;
@@ -358,10 +412,18 @@ const VisitorTracker::Look* VisitorTracker::follower(double least, double neares
   return best;
 }
 
-/// The visitor was last seen, not long ago, at a place where nothing looks now.
+/// The visitor was last seen, not walking off, where nothing looks now, or nearly so. While the
+/// robot stands he may have stepped aside, and only a camera notices somebody who stands.
 bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
-  return on_the_way() && held_ != 0 && time_ - last_time_ <= config_.blind_for &&
-         blind_at(inverse(odom_T_base) * last_place_);
+  const double gone = time_ - last_time_;
+  if (!on_the_way() || held_ == 0 || gone > config_.blind_for) return false;
+  const Point2 place = inverse(odom_T_base) * last_place_;
+  const Point2 away = last_place_ - odom_T_base.position();
+  const bool stays = service_ == Service::kGuides && !moves(time_) &&
+                     last_velocity_.dot(away) <= kWalksOff * away.norm();
+  const double aside = service_ == Service::kGuides ? kAside : 0.0;
+  if (!stays) return blind_at(place, config_.blind_from, aside);
+  return blind_at(place, kCameraEnds, std::min(kAside + kStepsAside * gone, kFarAside));
 }
 
 /// A camera looks to where the visitor was last seen, if the robot follows; else ahead.
@@ -373,10 +435,10 @@ bool VisitorTracker::looks_there(const Moment& moment) const {
 
 void VisitorTracker::report(const Moment& moment) {
   estimate_ = {};
-  estimate_.person = held_;
+  estimate_.person = held_ == kLost ? 0 : held_;
   const Look* held = find(held_);
   const bool guides = service_ == Service::kGuides;
-  if (seen(held)) {
+  if (held && held->person->unseen <= kSighted) {
     last_time_ = moment.time - held->person->unseen;
     last_place_ = held->person->position;
     last_velocity_ = held->person->velocity;

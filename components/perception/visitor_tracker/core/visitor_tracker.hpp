@@ -48,7 +48,7 @@ struct Config {
   double unseen = 0.5;        ///< [s] then the visitor counts as not seen
   double blind_from = 1.75;   ///< [rad] to either side, where nothing looks; the laser sees less
   double blind_to = 2.6;      ///< [rad] and the rear camera more
-  double blind_for = 20.0;    ///< [s] so long a follower who went there counts as seen
+  double blind_for = 60.0;    ///< [s] so long a follower who went there counts as seen
   double trail = 1.5;         ///< [m] beside the robot's way a follower may walk
   double follows = 0.6;       ///< [s] of following until somebody is the one whose identity broke
   double farthest = 8.0;      ///< [m] whom the robot follows counts as seen up to here
@@ -92,8 +92,11 @@ class VisitorTracker {
     double follows = 0.0;  ///< [s] behind, less the time that they did not
     double since = 0.0;    ///< [s] and where somebody was first known
     geometry::Point2 from = geometry::Point2::Zero();
+    bool from_ahead = false;
     std::optional<geometry::Point2> beside;  ///< where, when the visitor was seen elsewhere
-    double stands = 0.0;                     ///< [s] at the robot without a break
+    geometry::Point2 anchor = geometry::Point2::Zero();
+    double stays = 0.0;   ///< [s] near `anchor` and the robot, which stands
+    double stands = 0.0;  ///< [s] at the robot without a break
   };
   struct Look {
     const Person* person = nullptr;
@@ -116,17 +119,19 @@ class VisitorTracker {
   void choose_to_serve();
   void keep_served();
   void keep_follower(const geometry::Pose2& odom_T_base);
+  const Look* waits(const geometry::Pose2& odom_T_base) const;
+  void distrust(const geometry::Pose2& odom_T_base);
   void keep_leader(double passed);
   void note_others(double passed);
   const Look* come_from_there() const;
   const Look* come_back() const;
   geometry::Point2 expected(double gone) const;
   const Look* same_place(const geometry::Pose2& odom_T_base) const;
-  const Look* follower(double least, double nearest) const;
+  const Look* follower(double least, double nearest, bool any) const;
   bool on_the_way() const { return service_ == Service::kGuides || service_ == Service::kFollows; }
   bool looks_there(const Moment& moment) const;
   bool seen(const Look* look) const;
-  bool blind_at(const geometry::Point2& place) const;
+  bool blind_at(const geometry::Point2& place, double from, double around) const;
   void hold(const Look& look, double time);
   bool out_of_view(const geometry::Pose2& odom_T_base) const;
   void report(const Moment& moment);
@@ -142,7 +147,7 @@ class VisitorTracker {
   std::uint64_t held_ = 0;   ///< the visitor; 0: none
   std::uint64_t first_ = 0;  ///< who was the visitor when the way began
   double held_since_ = 0.0;  ///< [s]
-  double last_time_ = 0.0;   ///< [s] and where the visitor was last seen
+  double last_time_ = 0.0;   ///< [s] and where a sensor last showed the visitor
   geometry::Point2 last_place_ = geometry::Point2::Zero();
   geometry::Point2 last_velocity_ = geometry::Point2::Zero();
   Estimate estimate_;

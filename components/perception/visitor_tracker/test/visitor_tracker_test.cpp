@@ -71,6 +71,18 @@ class Scene : public testing::Test {
     run(4.0);
     ASSERT_TRUE(sees(1));
   }
+  /// The visitor 1 has stayed 4 m behind and is not seen any more; the robot waits.
+  void lose_far_behind() {
+    guide();
+    person(1).velocity = {0, 0};
+    run(3.0);
+    drives = 0.0;
+    hide(1);
+  }
+  void put(std::uint64_t id, double range, double bearing) {
+    person(id).position = robot.position() + range * Point2(std::cos(robot.yaw + bearing),
+                                                            std::sin(robot.yaw + bearing));
+  }
   bool sees(std::uint64_t id) const {
     return estimate.presence == Presence::kSeen && estimate.person == id;
   }
@@ -207,21 +219,65 @@ TEST_F(OnTheWay, WhoWentWhereNothingLooksIsNotLost) {
   guide();
   drives = 0.0;
   person(1).velocity = {0, 0};
-  const double bearing = geometry::kPi - 2.2;  // the robot looks along -x
-  person(1).position = robot.position() + 1.2 * Point2(std::cos(bearing), std::sin(bearing));
+  put(1, 2.2, 2.2);
   run(0.1);
   hide(1);
   run(10.0);
   EXPECT_TRUE(sees(1));
-  EXPECT_NEAR(estimate.place.norm(), 1.2, 1e-9);
-  robot.yaw += 0.5;
+  EXPECT_NEAR(estimate.place.norm(), 2.2, 1e-9);
+  robot.yaw += 2.2 - 3.1;
   EXPECT_EQ(run(0.1).presence, Presence::kNobody) << "the rear camera looks there";
-  robot.yaw -= 1.0;
-  EXPECT_EQ(run(0.1).presence, Presence::kNobody) << "the laser looks there";
-  robot.yaw += 0.5;
-  EXPECT_TRUE(sees(1) || run(0.1).presence == Presence::kSeen);
-  run(12.0);
+  robot.yaw += 3.1 - 0.1;
+  EXPECT_EQ(run(0.1).presence, Presence::kNobody) << "the Kinect looks there";
+  robot.yaw += 0.1 - 1.2;
+  run(0.1);
+  EXPECT_TRUE(sees(1)) << "where only the laser looks nobody notices who stands";
+  run(52.0);
   EXPECT_EQ(estimate.presence, Presence::kNobody) << "for some time only";
+}
+
+TEST_F(OnTheWay, WhoStandsAtARobotThatTurnsMayHaveSteppedAside) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {0, 0};
+  put(1, 1.0, 2.7);  // just in the rear camera's view
+  run(0.1);
+  hide(1);
+  run(0.6);
+  EXPECT_TRUE(sees(1));
+  drives = 1.0;
+  run(1.5);
+  EXPECT_EQ(estimate.presence, Presence::kNobody) << "he would have come out behind it";
+}
+
+TEST_F(OnTheWay, WhoWasWalkingOffHasNotSteppedAside) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {1.2, 0.0};
+  run(0.3);
+  hide(1);
+  EXPECT_EQ(run(0.1).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, HisNumberGivenToSomebodyElsewhereIsNotHis) {
+  guide();
+  drives = 0.0;
+  person(1).velocity = {0, 0};
+  put(1, 1.0, 2.2);
+  run(0.1);
+  Person other = person(1);
+  hide(1);
+  run(2.0);
+  other.position = robot.position() + Point2(4.0, 0.5);
+  other.velocity = {1.0, 0.0};
+  people.push_back(other);
+  run(0.2);
+  EXPECT_EQ(estimate.presence, Presence::kSeen);
+  EXPECT_EQ(estimate.person, 0U);
+  EXPECT_NEAR(estimate.place.norm(), 1.0, 1e-9) << "where he was";
+  add(8, robot.position() + Point2(0.9, -0.4));
+  run(0.1);
+  EXPECT_TRUE(sees(8));
 }
 
 TEST_F(OnTheWay, WhoComesOutFromWhereNothingLooksIsTheVisitor) {
@@ -266,9 +322,7 @@ TEST_F(OnTheWay, ARobotThatDrivesOnMissesWhoStayedWhereNothingLooked) {
 }
 
 TEST_F(OnTheWay, WhoPassesARobotThatWaitsIsNot) {
-  guide();
-  drives = 0.0;
-  hide(1);
+  lose_far_behind();
   run(3.0);
   add(6, robot.position() + Point2(4.0, 0.9), {-1.1, 0.0});
   for (int i = 0; i < 60; ++i) {
@@ -316,9 +370,7 @@ TEST_F(OnTheWay, WhoComesTowardAndPassesIsNot) {
 }
 
 TEST_F(OnTheWay, WhoComesUpToTheFrontOfARobotThatWaitsIsNot) {
-  guide();
-  drives = 0.0;
-  hide(1);
+  lose_far_behind();
   run(2.0);
   add(5, robot.position() + Point2(-2.2, 0.0), {0.8, 0.0});
   for (int i = 0; i < 19; ++i) {
@@ -416,16 +468,66 @@ TEST_F(OnTheWay, AVisitorWhoTiesALaceIsNotLeftForWhoeverWalksBehind) {
 }
 
 TEST_F(OnTheWay, WhoStandsBehindARobotThatWaitsIsFoundAgain) {
-  guide();
-  drives = 0.0;
-  const Point2 there = robot.position() + Point2(1.3, 0.0);
-  hide(1);
+  lose_far_behind();
   run(3.0);
-  add(6, there);
+  add(6, robot.position() + Point2(1.3, 0.0));
   run(4.0);  // who cannot pass waits, too, and turns round
   EXPECT_NE(estimate.presence, Presence::kSeen);
+  person(6).velocity = {0.0, 0.4};  // as the tracker has it of somebody so near, who only stands
+  person(6).position -= Point2(0.0, 0.2);
   run(1.5);
   EXPECT_TRUE(sees(6));
+}
+
+TEST_F(OnTheWay, WhoCameFromAheadOrWasSeenBesideTheVisitorMustWaitLonger) {
+  guide();
+  person(1).velocity = {0, 0};
+  add(5, person(1).position + Point2(0.0, 1.0));
+  run(3.0);
+  drives = 0.0;
+  hide(1);
+  add(6, robot.position() + Point2(-1.5, 0.5), {1.5, 0.0});
+  run(1.5);
+  person(6).velocity = {0, 0};
+  person(5).position = robot.position() + Point2(1.0, -0.5);
+  EXPECT_EQ(run(5.5).presence, Presence::kNobody);
+  hide(6);
+  run(1.0);
+  EXPECT_TRUE(sees(5));
+}
+
+TEST_F(OnTheWay, WhoWasLostNearTheRobotIsFoundAgainSooner) {
+  guide();
+  person(1).velocity = {1.2, 0.0};
+  drives = 0.0;
+  run(0.4);
+  hide(1);
+  run(2.0);
+  ASSERT_EQ(estimate.presence, Presence::kNobody);
+  add(6, robot.position() + Point2(1.3, -0.9));
+  run(3.3);
+  EXPECT_TRUE(sees(6));
+}
+
+TEST_F(OnTheWay, SomebodyWhoFollowedBesideTheVisitorIsNotTakenForHim) {
+  guide();
+  add(5, person(1).position + Point2(-0.2, 0.9), {-1.0, 0.0});
+  run(3.0);
+  hide(1);
+  EXPECT_EQ(run(3.0).presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, SomebodyMistakenForTheVisitorWhoWalksOnAheadIsLeft) {
+  guide();
+  hide(1);
+  run(2.0);
+  add(6, robot.position() + Point2(2.0, 0.4), {-1.0, 0.0});
+  run(1.0);
+  ASSERT_TRUE(sees(6));
+  person(6).position = robot.position() + Point2(-1.5, 0.8);
+  person(6).velocity = {-1.5, 0.0};
+  run(2.0);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
 }
 
 TEST_F(OnTheWay, AfterALongWaitTheVisitorMayComeFromAnywhere) {
