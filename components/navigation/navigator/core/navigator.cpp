@@ -15,10 +15,14 @@ constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever rest
 constexpr double kTurned = 0.35;        // [rad] a slow turn is progress too,
 constexpr int kMostTurns = 12;          // but not to turn and turn again
 constexpr double kSlowestKept =
-    0.02;                         // [m/s] slower than this tells nothing about the time of arrival
-constexpr double kMoved = 2.0;    // [m] a newer goal so near to the one that runs moves it
-constexpr double kOldPath = 1.0;  // [s] its path is driven on until there is a new one
-constexpr double kBarred = 1.5;   // [s] a recovery that cannot begin ends
+    0.02;                          // [m/s] slower than this tells nothing about the time of arrival
+constexpr double kStarted = 0.5;   // [m] of the way
+constexpr double kApproach = 1.0;  // [m] before its end
+constexpr double kStands = 0.1;    // [m/s]
+constexpr double kTurns = 0.1;     // [rad/s]
+constexpr double kMoved = 2.0;     // [m] a newer goal so near to the one that runs moves it
+constexpr double kOldPath = 1.0;   // [s] its path is driven on until there is a new one
+constexpr double kBarred = 1.5;    // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
 constexpr double kPersonAhead = 3.0;   // [m] along the path,
 constexpr double kPersonBeside = 0.8;  // [m] beside it: half a robot, half a person and some room
@@ -67,6 +71,9 @@ Status check(const NavigatorConfig& c) {
                  {"time_base", c.time_base, 1.0, 36000.0},
                  {"time_factor", c.time_factor, 1.0, 1000.0},
                  {"usual_speed", c.usual_speed, 0.05, 5.0},
+                 {"turn_time", c.turn_time, 0.0, 60.0},
+                 {"start_time", c.start_time, 0.0, 60.0},
+                 {"approach_time", c.approach_time, 0.0, 60.0},
                  {"speed_memory", c.speed_memory, 0.1, 600.0},
                  {"degraded_speed", c.degraded_speed, 0.05, 5.0}});
 }
@@ -354,7 +361,9 @@ void Navigator::track(const Situation& s) {
   const double elapsed = std::clamp(s.time - last_step_, 0.0, 1.0);
   const double advance = route_.track(*s.pose);
   advanced_ = std::max(0.0, advanced_ + advance);
-  if (elapsed > 0.0) {
+  // What turns take is counted apart.
+  const bool turns = std::abs(s.velocity.v) < kStands && std::abs(s.velocity.w) > kTurns;
+  if (elapsed > 0.0 && !turns) {
     const double speed = std::clamp(advance / elapsed, 0.0, 5.0);
     speed_kept_ += (speed - speed_kept_) * (1.0 - std::exp(-elapsed / config_.speed_memory));
   }
@@ -643,6 +652,15 @@ void Navigator::finish(GoalState outcome, Failure failure, const std::string& re
                                             : State::kInactive;
 }
 
+/// The way at the speed kept lately, and what turns, start and approach take besides.
+double Navigator::time_left(const Situation& s) const {
+  if (speed_kept_ < kSlowestKept) return std::numeric_limits<double>::quiet_NaN();
+  const double turning = s.pose && s.pose->finite() ? route_.turning_left(s.pose->yaw) : 0.0;
+  const double start = advanced_ < kStarted ? config_.start_time : 0.0;
+  const double approach = config_.approach_time * std::min(1.0, route_.remaining() / kApproach);
+  return route_.remaining() / speed_kept_ + config_.turn_time * turning + start + approach;
+}
+
 void Navigator::update_status(const Situation& s) {
   if (!open()) return;
   if (state_ == State::kInitialise) waiting_for_ = no_word_from(s.missing) + " yet";
@@ -654,8 +672,7 @@ void Navigator::update_status(const Situation& s) {
   status_.remaining = route_.remaining();
   const double way = advanced_ + status_.remaining;
   if (way > 0.0) status_.progress = std::max(status_.progress, advanced_ / way);
-  status_.eta = speed_kept_ >= kSlowestKept ? status_.remaining / speed_kept_
-                                            : std::numeric_limits<double>::quiet_NaN();
+  status_.eta = time_left(s);
 }
 
 }  // namespace usher::navigator

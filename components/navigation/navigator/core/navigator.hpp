@@ -53,7 +53,10 @@ struct NavigatorConfig {
   double time_base = 180.0;     ///< [s] a goal may take this long, and ...
   double time_factor = 8.0;     ///< ... this many times its longest path at the usual speed
 
-  double usual_speed = 0.6;     ///< [m/s] kept on average: the first guess for the time of arrival
+  double usual_speed = 0.6;     ///< [m/s] kept on average along the way, stops for people included
+  double turn_time = 2.5;       ///< [s/rad] that a turn takes besides
+  double start_time = 3.0;      ///< [s] from standing to driving
+  double approach_time = 5.0;   ///< [s] that the last metre takes besides
   double speed_memory = 15.0;   ///< [s] time constant of the measured one
   double degraded_speed = 0.5;  ///< [m/s] limit while localization is degraded
 };
@@ -253,6 +256,7 @@ class Navigator {
   void limit_speed(const Situation& s);
   void send_motion(const Situation& s);
   void finish(GoalState outcome, Failure failure, const std::string& reason);
+  double time_left(const Situation& s) const;
   void update_status(const Situation& s);
 
   NavigatorConfig config_;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace usher::navigator {
 namespace {
 constexpr double kBehind = 0.5;      // [m]
 constexpr double kAhead = 3.0;       // [m]
+constexpr double kChord = 0.4;       // [m]
 constexpr double kLostOffset = 1.0;  // [m]
 }  // namespace
 
@@ -18,6 +20,29 @@ void Route::set(std::vector<geometry::Pose2> path) {
   for (std::size_t i = 1; i < path_.size(); ++i)
     length_.push_back(length_.back() + geometry::distance(path_[i - 1], path_[i]));
   place_ = offset_ = 0.0;
+  measure_chords();
+}
+
+/// A last piece shorter than a chord has no heading of its own.
+void Route::measure_chords() {
+  chords_.clear();
+  geometry::Point2 begin = path_.front().position();
+  for (std::size_t i = 1; i < path_.size(); ++i) {
+    const double end = kChord * static_cast<double>(chords_.size() + 1);
+    if (length_[i] < end) continue;
+    const geometry::Point2 way = path_[i].position() - begin;
+    chords_.resize(static_cast<std::size_t>(length_[i] / kChord), std::atan2(way.y(), way.x()));
+    begin = path_[i].position();
+  }
+}
+
+double Route::turning_left(double yaw) const {
+  double turning = 0.0;
+  for (auto i = static_cast<std::size_t>(place_ / kChord); i < chords_.size(); ++i) {
+    turning += std::abs(geometry::shortest_turn(yaw, chords_[i]));
+    yaw = chords_[i];
+  }
+  return turning + std::abs(geometry::shortest_turn(yaw, path_.back().yaw));
 }
 
 Route::Projection Route::project(const geometry::Point2& point, double from, double to) const {

@@ -32,6 +32,10 @@ class Route {
   double distance_ahead(const geometry::Point2& point, double reach) const {
     return project(point, place_, place_ + reach).distance;
   }
+  /// [rad] that the robot at `yaw` has still to turn, in both senses together: to the path, along
+  /// it (in chords of 0.4 m: corners of a grid's path are none) and at its end. Not for an empty
+  /// path.
+  double turning_left(double yaw) const;
   double offset() const { return offset_; }  ///< [m] of the robot from the path, when last tracked
 
  private:
@@ -39,10 +43,12 @@ class Route {
     double place;
     double distance;
   };
+  void measure_chords();
   Projection project(const geometry::Point2& point, double from, double to) const;
 
   std::vector<geometry::Pose2> path_;
   std::vector<double> length_;  // [m] from the beginning to each pose
+  std::vector<double> chords_;  // [rad] heading of each chord of the path
   double place_ = 0.0;          // [m] from the beginning
   double offset_ = 0.0;
 };

@@ -57,7 +57,10 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
   number("time_base", "s", 1, 36000, c.time_base, "A goal may take this long, and the following.");
   number("time_factor", "-", 1, 100, c.time_factor, "This many times its path at the usual speed.");
   number("usual_speed", "m/s", 0.05, 2, c.usual_speed,
-         "Kept on average: the first guess for the time of arrival.");
+         "Kept on average along the way, stops for people included.");
+  number("turn_time", "s", 0, 60, c.turn_time, "That a turn of one radian takes besides.");
+  number("start_time", "s", 0, 60, c.start_time, "From standing to driving.");
+  number("approach_time", "s", 0, 60, c.approach_time, "That the last metre takes besides.");
   number("near_enough", "m", 0, 2, c.near_enough,
          "Blocked so near the goal that no recovery helps, it has arrived.");
   c.most_recoveries =

@@ -61,6 +61,35 @@ TEST(Navigator, ProgressNeverFallsAndTheTimeLeftIsTrue) {
   EXPECT_NEAR(rig.s.time - begin, eta, 0.1 * eta);
 }
 
+TEST(Navigator, AtDepartureItCountsTheTurnsAndBothEnds) {
+  NavigatorConfig config;
+  config.usual_speed = 0.5;
+  config.turn_time = 3.0;
+  config.start_time = 2.0;
+  config.approach_time = 4.0;
+  Rig rig(config);
+  rig.s.pose->yaw = geometry::kPi / 2;
+  rig.go(10.0);
+  rig.run(0.3);
+  EXPECT_NEAR(rig.status().eta, 20.0 + 3.0 * geometry::kPi / 2 + 2.0 + 4.0, 0.3);
+  rig.s.pose = Pose2{9.5, 0.0, 0.0};
+  rig.step();
+  EXPECT_NEAR(rig.status().eta, 0.5 / 0.5 + 2.0, 1.5) << "half of the last metre";
+}
+
+TEST(Navigator, TurningInPlaceIsNoSlowDriving) {
+  Rig rig;
+  rig.go(30.0);
+  rig.run(1.0);
+  const double eta = rig.status().eta;
+  rig.s.velocity = {0.0, 0.5};
+  rig.run(5.0);
+  EXPECT_NEAR(rig.status().eta, eta, 0.5);
+  rig.s.velocity = {0.0, 0.0};
+  rig.run(5.0);
+  EXPECT_GT(rig.status().eta, eta + 10.0) << "standing counts";
+}
+
 TEST(Navigator, ArrivesOnlyWithinBothTolerancesAndAtRest) {
   const struct {
     const char* name;

@@ -27,6 +27,32 @@ TEST(Route, MeasuresWhatIsLeftAndHowFarOff) {
   EXPECT_NEAR(route.offset(), 2.0, 1e-9);
 }
 
+TEST(Route, KnowsHowMuchTheRobotHasStillToTurn) {
+  std::vector<geometry::Pose2> path = straight(4.0, 0.05);
+  for (int i = 1; i <= 60; ++i) path.push_back({4.0, i * 0.05, 0.0});
+  path.back().yaw = 0.0;
+  const double quarter = geometry::kPi / 2;
+  Route route;
+  route.set(path);
+  EXPECT_NEAR(route.turning_left(0.0), 2 * quarter, 1e-6) << "the corner, and back at the end";
+  EXPECT_NEAR(route.turning_left(geometry::kPi), 4 * quarter, 1e-6) << "to the path";
+  route.track({4.0, 0.5, 0.0});
+  EXPECT_NEAR(route.turning_left(quarter), quarter, 1e-6);
+  route.track({4.0, 3.0, 0.0});
+  EXPECT_NEAR(route.turning_left(0.3), 0.3, 1e-6);
+  route.set({{1.0, 1.0, 0.5}});
+  EXPECT_NEAR(route.turning_left(0.0), 0.5, 1e-9);
+}
+
+TEST(Route, TheStepsOfAGridAreNoTurns) {
+  std::vector<geometry::Pose2> path;
+  path.reserve(100);
+  for (int i = 0; i < 100; ++i) path.push_back({i * 0.05, i % 2 * 0.05, 0.0});
+  Route route;
+  route.set(path);
+  EXPECT_LT(route.turning_left(0.0), 2.0);
+}
+
 TEST(Route, IsNotCutShortWhereItCrossesItself) {
   // 4 m out and back again beside itself.
   std::vector<geometry::Pose2> path = straight(4.0, 0.1);
