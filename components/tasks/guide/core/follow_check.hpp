@@ -17,10 +17,10 @@ struct FollowLimits {
   double far = 4.0;      ///< [m] here it stops and waits; braking takes it 1.5 m farther
   double resume = 2.5;   ///< [m] it goes on when the visitor is nearer than this
   double slowest = 0.4;  ///< [m/s] pace just before it stops
-  Time unseen = std::chrono::milliseconds(1200);  ///< nobody there for so long: waits
-  Time grace = std::chrono::seconds(8);           ///< after a departure the visitor steps behind
-  Time call = std::chrono::seconds(5);            ///< waiting for so long: calls, and again
-  Time give_up = std::chrono::seconds(60);        ///< waiting for so long: the visitor is lost
+  Time unseen = std::chrono::milliseconds(900);  ///< nobody there for so long: waits
+  Time grace = std::chrono::seconds(8);          ///< after a departure the visitor steps behind
+  Time call = std::chrono::seconds(5);           ///< waiting for so long: calls, and again
+  Time give_up = std::chrono::seconds(60);       ///< waiting for so long: the visitor is lost
 };
 
 /// The visitor as seen while guiding.
