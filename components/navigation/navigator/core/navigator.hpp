@@ -53,7 +53,7 @@ struct NavigatorConfig {
   double time_base = 180.0;     ///< [s] a goal may take this long, and ...
   double time_factor = 8.0;     ///< ... this many times its longest path at the usual speed
 
-  double usual_speed = 0.6;     ///< [m/s] kept on average along the way, stops for people included
+  double usual_speed = 0.5;     ///< [m/s] kept on average along the way, stops for people included
   double turn_time = 2.5;       ///< [s/rad] that a turn takes besides
   double start_time = 3.0;      ///< [s] from standing to driving
   double approach_time = 5.0;   ///< [s] that the last metre takes besides

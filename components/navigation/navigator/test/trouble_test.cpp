@@ -119,7 +119,7 @@ TEST(NavigatorInTrouble, FailsInTheEndWithTheReason) {
            rig.s.pose->x = std::fmod(rig.s.time, 2.0);
          };
        },
-       Failure::kTooSlow, "not there after 2", 180.0, 400.0},
+       Failure::kTooSlow, "not there after 3", 180.0, 400.0},
   };
   std::set<Failure> seen = {Failure::kNone, Failure::kBadGoal, Failure::kUnknownLocation};
   for (const auto& row : table) {
