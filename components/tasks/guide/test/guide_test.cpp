@@ -547,9 +547,9 @@ TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {
   rig.navigate(GoalState::kSucceeded);
   rig.around.pose = geometry::Pose2{1.8, 0.0, 0.0};
   rig.taken(), rig.said.clear();
-  rig.see_nobody(), rig.wait(1000);
+  rig.see_nobody(), rig.wait(700);
   EXPECT_EQ(rig.taken(), "") << "hidden for a moment";
-  rig.wait(400);
+  rig.wait(700);
   EXPECT_EQ(rig.taken(), "goal:pose");
   EXPECT_NEAR(rig.goal_pose->x, 2.7, 1e-9);
   EXPECT_EQ(rig.guide.screen().text, "I cannot see you. Please come back to me.");
