@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostClients = 32;
 constexpr std::size_t kMostTyped = 80;  ///< [byte]
-constexpr std::size_t kMostRemembered = 8;
+constexpr double kFaced = 0.26;         ///< [rad] so far to the side somebody is faced
 
 /// Where a guide goes on that was restarted in `state`.
 State resumed(std::optional<State> state) {
@@ -112,6 +112,12 @@ bool Guide::there(const VisitorSighting& visitor) const {
   return visitor.seen && std::hypot(visitor.x, visitor.y) <= 2.0 * parameters_.greet_within;
 }
 
+std::optional<double> Guide::turns_to() const {
+  const auto& visitor = surroundings_.visitor;
+  if (!turns_ || !visitor || !visitor->seen) return std::nullopt;
+  return std::atan2(visitor->y, visitor->x);
+}
+
 bool Guide::question() const {
   switch (state_) {
     case State::kLocationAsk:
@@ -160,6 +166,7 @@ void Guide::enter(State state, Cause cause, Time now) {
   state_ = state;
   since_ = now;
   warned_ = false;
+  turns_ = state == State::kGuideSuccess || (state == State::kEndAsk && turns_);
   if (state == State::kEnd) end_visit(cause, now);
   if (!journey()) {
     screen_.progress = state == State::kGuideSuccess ? 1.0 : -1.0;
@@ -388,6 +395,7 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
   surroundings_ = surroundings;
   watch_encounter(now);
+  if (const auto bearing = turns_to(); bearing && std::abs(*bearing) <= kFaced) turns_ = false;
   if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);
   if (follows()) watch_following(now);
   if (follows()) follow_visitor(now);

@@ -137,6 +137,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   bool guides() const { return journey(); }
   /// The robot follows the visitor.
   bool follows() const { return state_ == State::kFollowMe; }
+  /// The bearing of the visitor [rad], whom the robot turns to on arrival; nothing: to nobody.
+  std::optional<double> turns_to() const;
   const Visit& visit() const { return visit_; }
   const Funnel& funnel() const { return funnel_; }
   Memory memory() const;
@@ -236,6 +238,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::vector<std::string> recent_;
   bool greeted_ = false;  ///< the visitor who is there was greeted already
   bool lost_visitor_ = false;
+  bool turns_ = false;  ///< to the visitor, on arrival
   std::optional<Time> near_since_, nobody_since_;
 
   // This journey.

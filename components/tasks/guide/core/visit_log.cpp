@@ -11,7 +11,7 @@ namespace usher::guide {
 
 namespace {
 
-constexpr std::size_t kMost = 512 * 1024;  ///< [byte]
+constexpr std::size_t kMost = std::size_t{512} * 1024;  ///< [byte]
 constexpr std::array kOutcomes{"open", "left", "ended", "arrived", "given up"};
 
 std::string head() {

@@ -129,6 +129,7 @@ GuideComponent::GuideComponent(runtime::Host& host)
   visits_ = host.output(topics::kGuideVisit);
   pace_ = host.output(topics::kNavigatePace);
   cancel_ = host.output(topics::kNavigateCancel);
+  target_ = host.output(topics::kInteractionTarget);
   timer_ = host.timer("step", milliseconds(100), [this](auto) { tick(); });
   publish_screen();
   publish_status();
@@ -136,6 +137,13 @@ GuideComponent::GuideComponent(runtime::Host& host)
 
 void GuideComponent::tick() {
   step();
+  if (const auto bearing = core_.turns_to()) {
+    usher_msgs::msg::FaceTarget target;
+    target.header(wire::header(host_.now(), frames::kBaseFootprint));
+    target.mode(usher_msgs::msg::FaceTarget_Constants::MODE_FACE);
+    target.bearing(*bearing);
+    target_.publish(target);
+  }
   if (++ticks_ % 10 == 0) publish_status();
   const bool heard = supervisor_.fresh() != nullptr && navigation_.fresh() != nullptr;
   host_.health().set(heard ? HealthState::kOk : HealthState::kDegraded,

@@ -58,6 +58,7 @@ class GuideComponent final : public runtime::Component {
   wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;
   wire::Repeater<usher_msgs::msg::NavigateGoal> goals_;
   runtime::Output<usher_msgs::msg::GoalCancel> cancel_;
+  runtime::Output<usher_msgs::msg::FaceTarget> target_;
   runtime::Timer timer_;
 };
 

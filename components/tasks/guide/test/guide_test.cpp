@@ -506,6 +506,25 @@ TEST(Guide, RefusesPlacesThatNoButtonCanName) {
   EXPECT_FALSE(guide.set_locations({{"a", "A", {0, 0}}, {"a", "B", {0, 0}}}, Time(0)).ok());
 }
 
+TEST(Guide, TurnsToTheVisitorOnArrival) {
+  Rig rig;
+  rig.see(-1.5), rig.to_active();
+  EXPECT_FALSE(rig.guide.turns_to());
+  rig.navigate(GoalState::kSucceeded);
+  rig.see_at(-1.0, 1.0, 0.0), rig.wait(100);
+  ASSERT_TRUE(rig.guide.turns_to());
+  EXPECT_NEAR(*rig.guide.turns_to(), 2.356, 1e-3);
+  rig.see_nobody(), rig.wait(100);
+  EXPECT_FALSE(rig.guide.turns_to()) << "nobody is there to face";
+  rig.see(-1.0), rig.wait(4000);
+  EXPECT_EQ(rig.state(), "end_ask");
+  EXPECT_TRUE(rig.guide.turns_to());
+  rig.see(1.2), rig.wait(100);
+  EXPECT_FALSE(rig.guide.turns_to()) << "it faces him";
+  rig.see(-1.0), rig.wait(100);
+  EXPECT_FALSE(rig.guide.turns_to()) << "and does not turn after him";
+}
+
 TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   Rig rig;
   rig.around.pose = geometry::Pose2{4.0, 1.0, 0.0};
