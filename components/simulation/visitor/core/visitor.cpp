@@ -6,9 +6,10 @@ namespace usher::visitor {
 
 namespace {
 
-constexpr int kMostTries = 2;     ///< after an error
-constexpr int kSome = 4;          ///< statements, then it has enough
-constexpr double kComesUp = 4.0;  ///< [s] that the robot needs to where its leader stands
+constexpr int kMostTries = 2;       ///< after an error
+constexpr int kSome = 4;            ///< statements, then it has enough
+constexpr double kCatchesUp = 6.0;  ///< [s] of a follower from the robot's farthest gap
+constexpr double kComesUp = 4.0;    ///< [s] that the robot needs to where its leader stands
 
 bool due(double at, double since) { return at >= 0.0 && since >= at; }
 
@@ -18,6 +19,10 @@ void Visitor::see(const Screen& screen, double now) {
   const bool another = screen.id != screen_.id;
   const bool more_hits = typed_ && screen.options != screen_.options;
   screen_ = screen;
+  if (!offers("stay"))
+    awaited_at_.reset();
+  else if (!awaited_at_)
+    awaited_at_ = now;
   if (more_hits) answered_ = false;
   if (!another) return;
   seen_at_ = now;
@@ -75,6 +80,12 @@ std::optional<Choice> Visitor::on_the_way(double now) {
   if (screen_.state == "guide_paused") {
     if (stopped_at_ && now - *stopped_at_ < character_.stops_for) return std::nullopt;
     return answered_ ? std::nullopt : press("continue");
+  }
+  // The robot waits for somebody who has come up and stands where it does not look.
+  if (offers("stay") && awaited_at_ && now - *awaited_at_ >= kCatchesUp &&
+      walk(now) == Walk::kFollow) {
+    awaited_at_ = now;
+    return press("stay");
   }
   if (answered_) return std::nullopt;
   if (due(character_.cancels_at, since)) return press("cancel");

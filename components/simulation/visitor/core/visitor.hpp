@@ -89,7 +89,7 @@ class Visitor {
   bool gave_up_ = false;
   std::optional<double> departed_at_, stopped_at_;
   bool asked_where_ = false, stopped_ = false, ended_ = false;
-  std::optional<double> led_at_;
+  std::optional<double> led_at_, awaited_at_;
   int arrivals_ = 0, errors_ = 0, rated_ = 0;
 };
 

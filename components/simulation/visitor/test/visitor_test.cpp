@@ -140,6 +140,19 @@ TEST(Visitor, GivesUpWhereItsCharacterDoes) {
   EXPECT_EQ(chosen(visitor, 70.0), "");
 }
 
+TEST(Visitor, SaysThatHeIsThereToARobotThatWaitsForHim) {
+  Character lace = kitchen();
+  lace.ties_lace_at = 20.0, lace.ties_lace_for = 30.0;
+  Visitor visitor(lace);
+  visitor.see(screen(1, "guide_active", {"stop"}), 0.0);
+  visitor.see(screen(1, "guide_active", {"stop", "stay"}), 5.0);
+  EXPECT_EQ(chosen(visitor, 10.9), "") << "he comes up";
+  EXPECT_EQ(chosen(visitor, 11.0), "stay");
+  EXPECT_EQ(chosen(visitor, 12.0), "") << "once is enough for a while";
+  EXPECT_EQ(chosen(visitor, 30.0), "") << "he ties his lace";
+  EXPECT_EQ(chosen(visitor, 50.0), "stay");
+}
+
 TEST(Visitor, LeadsTheRobotAndSaysWhenTheyAreThere) {
   Character leader = kitchen();
   leader.leads = true;

@@ -259,6 +259,7 @@ bool Guide::choose_service(const std::string& option, Time now) {
   if (option == button::kStay) {
     since_ = now;
     warned_ = false;
+    if (state_ == State::kGuideActive) go_on(now);
     return true;
   }
   if (option == button::kLanguages) {
@@ -366,10 +367,7 @@ bool Guide::choose_on_the_way(const std::string& option, Time now) {
     actions_.requests.push_back({RequestKind::kNavigationGo, {}});
     depart(now);
   } else {
-    sentence_ = say(Text::kHereWeGo);
-    sentence_at_ = now;
-    move_at_ = now + parameters_.tone;
-    follow_.depart(now);
+    go_on(now);
     enter(State::kGuideActive, Cause::kYes, now);
     screen_.tone = Tone::kMoving;
   }

@@ -199,6 +199,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void depart(Time now);
   void move_when_due(Time now);
   void stop_robot();
+  void go_on(Time now);
   void fail(Text reason, Cause cause, Time now);
   void watch_robot(Time now);
   void watch_navigation(Time now);

@@ -65,6 +65,13 @@ void Guide::stop_robot() {
   actions_.remember = true;
 }
 
+/// After a stop, with the time of a departure for the visitor to step behind.
+void Guide::go_on(Time now) {
+  say_on_the_way(Text::kHereWeGo, Tone::kMoving, now);
+  move_at_ = now + parameters_.tone;
+  follow_.depart(now);
+}
+
 /// Gives up the goal, if there is one. A stop of this visitor must not hold the robot for the next.
 void Guide::leave_journey() {
   if (goal_id_ != 0) actions_.cancel = goal_id_;

@@ -18,6 +18,7 @@ std::string Guide::say_place(Text text) const {
 std::string Guide::way_words(double meters) const {
   const double step = meters > 20.0 ? 5.0 : 1.0;  // nobody wants to hear "37 metres"
   const auto rounded = static_cast<long>(std::round(std::min(meters, 1e6) / step) * step);
+  if (rounded == 1) return say(Text::kOneMeter);
   return phrases::filled(say(Text::kMeters), {{"n", std::to_string(rounded)}});
 }
 
@@ -163,6 +164,9 @@ void Guide::build_journey(Screen& screen) const {
     add(screen, button::kContinue, Text::kGoOn, OptionKind::kYes, Panel::kPrimary);
   } else {
     add(screen, button::kStop, Text::kStop, OptionKind::kNo, Panel::kPrimary);
+  }
+  if (!paused && follow_.waits()) {  // he may stand where nothing looks
+    add(screen, button::kStay, Text::kStay, OptionKind::kYes, Panel::kService);
   }
   add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
 }

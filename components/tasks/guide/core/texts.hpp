@@ -52,6 +52,7 @@ enum class Text : std::size_t {
   kPartSilent,
   kOtherGoal,
   kMeters,
+  kOneMeter,
   kOneMinute,
   kMinutes,
   kLessThanAMinute,
@@ -90,7 +91,7 @@ enum class Text : std::size_t {
 
 inline constexpr std::size_t kStatements = 13;
 
-inline constexpr std::array<std::string_view, 94> kTextKeys{"hello",
+inline constexpr std::array<std::string_view, 95> kTextKeys{"hello",
                                                             "choose_language",
                                                             "not_ready",
                                                             "no_places",
@@ -134,6 +135,7 @@ inline constexpr std::array<std::string_view, 94> kTextKeys{"hello",
                                                             "part_silent",
                                                             "other_goal",
                                                             "meters",
+                                                            "one_meter",
                                                             "one_minute",
                                                             "minutes",
                                                             "less_than_a_minute",

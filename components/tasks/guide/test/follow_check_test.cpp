@@ -25,8 +25,8 @@ TEST_F(Follow, FitsThePaceToTheGap) {
   pass(1.5, 100);
   EXPECT_EQ(check.pace(1.15), 1.15);
   double last = 1.15;
-  for (double gap = 2.1; gap < 4.0; gap += 0.1) {
-    pass(gap, 100);
+  for (int decimetres = 21; decimetres < 40; ++decimetres) {
+    pass(0.1 * decimetres, 100);
     EXPECT_EQ(check.state(), Follower::kLagging);
     EXPECT_LE(check.pace(1.15), last);
     EXPECT_GE(check.pace(1.15), 0.4);

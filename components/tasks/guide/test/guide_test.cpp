@@ -165,6 +165,18 @@ TEST(Guide, TellsTimeAndWayAtTheStartAndAtTheEnd) {
   EXPECT_NEAR(rig.guide.visit().eta_error, 41.0 / 60.0 - 1.0, 0.05);
 }
 
+TEST(Guide, CountsMetresAsPeopleDo) {
+  Rig rig;
+  rig.to_active();
+  rig.around.navigation->eta = 3.0;
+  for (const auto& [way, words] :
+       {std::pair{17.4, "It is 17 metres,"}, std::pair{1.2, "It is one metre,"}}) {
+    rig.around.navigation->remaining = way;
+    rig.wait(5000);
+    EXPECT_TRUE(rig.guide.screen().text.starts_with(words)) << rig.guide.screen().text;
+  }
+}
+
 TEST(Guide, ShowsProgressUnderTheSameScreenAndNotTooOften) {
   Rig rig;
   rig.to_active();
@@ -244,6 +256,25 @@ TEST(Guide, CountsTheAnswerThatEndsTheVisit) {
   rig.press("no");
   ASSERT_EQ(rig.visits.size(), 1U) << rig.state();
   EXPECT_EQ(rig.visits[0].touches, 4U);
+}
+
+TEST(Guide, GoesOnWithAVisitorWhomItDoesNotSeeButWhoSaysThatHeIsThere) {
+  Rig rig;
+  rig.see(-1.0), rig.to_active();
+  EXPECT_FALSE(rig.offers("stay"));
+  rig.see_nobody(), rig.wait(9000);
+  EXPECT_EQ(rig.taken(), "stop");
+  ASSERT_TRUE(rig.offers("stay"));
+  rig.press("stay");
+  EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
+  EXPECT_EQ(rig.guide.screen().text, "Here we go.");
+  rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "on");
+  EXPECT_FALSE(rig.offers("stay"));
+  rig.wait(5000);
+  EXPECT_EQ(rig.taken(), "") << "he has time to step behind";
+  rig.wait(4000);
+  EXPECT_EQ(rig.taken(), "stop") << "but nobody does";
 }
 
 TEST(Guide, GivesUpAVisitorWhoDoesNotComeBack) {
