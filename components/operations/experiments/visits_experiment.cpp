@@ -115,9 +115,6 @@ struct Visit {
   std::size_t ratings = 0;
   std::uint32_t contacts = 0, touched = 0;
   std::uint64_t digest = 0;
-
-  /// Came to an end, or waits for somebody without moving.
-  bool well() const { return (ended || stands) && contacts == 0; }
 };
 
 Result<Visit> visit(Deployment deployment, const Manner& manner, const std::string& place,
@@ -189,6 +186,7 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
   if (!deployment) return Error{deployment.error()};
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};
+  if (places->size() < 2) return Error{"the site needs two places, one to start from"};
   const auto map = site_map(*deployment);
   if (!map) return Error{map.error()};
   // A manner, or one visit of it: leads_13.
@@ -223,7 +221,7 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
     auto each = run_visit(i, i < manners.size() ? options.out + "/" + name : std::string());
     if (!each) return Error{each.error()};
     std::string said;
-    if (!each->well() || !each->ended) {
+    if (!each->ended || each->contacts > 0) {
       said = name + " to " + each->place + ": " + each->state + ", contacts " +
              std::to_string(each->contacts) + "; again with usher experiment visits --only " +
              name + "_" + std::to_string(first + i) + "\n" + each->complaints;

@@ -240,6 +240,7 @@ void Navigator::start(const Situation& s) {
   started_at_ = s.time;
   longest_ = 0.0;
   pending_.reset();
+  if (!old_path_) old_path_since_ = s.time;  // however often the goal moves meanwhile
   old_path_ = moved_ && phase_ == Phase::kFollowing && motion_.mode == MotionMode::kFollow;
   reply_ = {};
   waiting_for_.clear();
@@ -294,7 +295,7 @@ void Navigator::pursue(const Situation& s) {
   if (s.time - started_at_ > limit)
     return finish(GoalState::kFailed, Failure::kTooSlow, text("not there after %.0f s", limit));
   if (pause_if_unfit(s)) return;
-  if (old_path_ && s.time - started_at_ > kOldPath) stop_and_plan(s);
+  if (old_path_ && s.time - old_path_since_ > kOldPath) stop_and_plan(s);
   track(s);
   handle_reply(s);
   if (!open() || arrived(s)) return;

@@ -266,9 +266,10 @@ class Navigator {
   State state_ = State::kInitialise;
   Phase phase_ = Phase::kPlanning;
   Failure pause_cause_ = Failure::kNone;
-  bool fresh_ = false;     // a goal was requested, but there was no step yet
-  bool moved_ = false;     // the goal that runs was replaced by its own client
-  bool old_path_ = false;  // the path leads to the goal before this one
+  bool fresh_ = false;           // a goal was requested, but there was no step yet
+  bool moved_ = false;           // the goal that runs was replaced by its own client
+  double old_path_since_ = 0.0;  // [s]
+  bool old_path_ = false;        // the path leads to the goal before this one
   double phase_since_ = 0.0;
 
   // The goal.

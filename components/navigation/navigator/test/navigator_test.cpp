@@ -250,6 +250,20 @@ TEST(Navigator, StandsWhenAMovedGoalHasNoPathOrIsAnotherOne) {
   }
 }
 
+TEST(Navigator, DrivesOnForASecondHoweverOftenTheGoalMoves) {
+  Rig rig;
+  rig.drive = Rig::drive_on;
+  rig.go(6.0, 1);
+  rig.run(2.0);
+  rig.answer = Rig::silence;
+  for (std::uint64_t id = 2; id <= 5; ++id) {
+    rig.go(6.0 + 0.3 * static_cast<double>(id), id);
+    rig.run(0.5);
+  }
+  EXPECT_EQ(rig.navigator.motion().mode, MotionMode::kStop);
+  EXPECT_LT(rig.s.pose->x, 0.5 * 3.4) << "2 s before, at most 1.2 s after";
+}
+
 TEST(Navigator, DoesNotArriveAtTheGoalThatWasMoved) {
   Rig rig;
   rig.drive = Rig::drive_on;

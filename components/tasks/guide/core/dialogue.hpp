@@ -107,6 +107,7 @@ inline constexpr std::array kEdges{
     Edge{State::kGuideSuccess, State::kEndAsk, Cause::kDelay},
     Edge{State::kFollowMe, State::kEndAsk, Cause::kYes},
     Edge{State::kFollowMe, State::kEndAsk, Cause::kNo},
+    Edge{State::kFollowMe, State::kEndAsk, Cause::kTimeout},
     Edge{State::kFollowMe, State::kGuideError, Cause::kFailure},
     Edge{State::kFollowMe, State::kEnd, Cause::kLeft},
     Edge{State::kEndAsk, State::kLocationAsk, Cause::kYes},

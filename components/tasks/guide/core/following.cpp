@@ -11,16 +11,18 @@ namespace {
 constexpr Time kGoalEvery = std::chrono::milliseconds(700);
 constexpr double kGoalStep = 0.3;  ///< [m] a goal nearer to the last one, or to the robot, is none
 constexpr double kLookFrom = 0.3;  ///< [m] before the place where an unseen visitor was last
+constexpr double kJump = 2.0;      ///< [m] nobody walks so far unseen: the way begins anew
 constexpr int kMostGoalsFailed = 5;  ///< in a row
 
 }  // namespace
 
 bool Guide::choose_following(const std::string& option, Time now) {
-  if (follows()) {  // whether he says "we are there" or "stop": here he wants the robot to be
+  if (follows()) {
+    const bool there = option == button::kDone;
     visit_.travel_time += now - departed_;
-    if (visit_.arrived++ == 0) ++funnel_.arrived;
+    if (there && visit_.arrived++ == 0) ++funnel_.arrived;
     leave_journey();
-    enter(State::kEndAsk, option == button::kDone ? Cause::kYes : Cause::kNo, now);
+    enter(State::kEndAsk, there ? Cause::kYes : Cause::kNo, now);
     return true;
   }
   place_ = {};
@@ -32,51 +34,72 @@ bool Guide::choose_following(const std::string& option, Time now) {
   unseen_since_.reset();
   held_since_.reset();
   unheard_since_.reset();
-  departed_ = asked_again_ = now;
+  departed_ = asked_again_ = moved_at_ = now;
   move_at_ = now + parameters_.tone;
   sentence_ = say(Text::kWalkAhead);
   sentence_at_ = now;
   if (visit_.started++ == 0) ++funnel_.started;
   enter(State::kFollowMe, Cause::kChoice, now);
   screen_.tone = Tone::kMoving;
+  start_navigation();
+  return true;
+}
+
+void Guide::start_navigation() {
   actions_.requests.push_back({RequestKind::kNavigationStart, goal_name()});
   actions_.requests.push_back({RequestKind::kNavigationGo, {}});
-  return true;
+}
+
+/// The goal of this guide that the navigator pursues, if it does.
+std::optional<std::uint64_t> Guide::own_goal() const {
+  const auto& navigation = surroundings_.navigation;
+  const bool runs = navigation && (navigation->state == GoalState::kActive ||
+                                   navigation->state == GoalState::kWaiting);
+  const bool ours = runs && first_goal_ != 0 && navigation->goal_id >= first_goal_ &&
+                    navigation->goal_id < next_id_;
+  return ours ? std::optional(navigation->goal_id) : std::nullopt;
 }
 
 /// What became of the newest goal. One after the other replaces the one before it, so all from
 /// the first on are ours.
 void Guide::watch_following(Time now) {
-  if (goal_id_ == 0) return;
   const auto& navigation = surroundings_.navigation;
+  if (goal_id_ == 0) {
+    if (const auto stray = own_goal()) actions_.cancel = *stray;  // one cancel was lost
+    unheard_since_.reset();
+    return;
+  }
   if (!navigation || navigation->goal_id != goal_id_) {
     const bool taken = navigation && (navigation->state == GoalState::kActive ||
                                       navigation->state == GoalState::kWaiting);
-    const bool ours =
-        navigation && navigation->goal_id >= first_goal_ && navigation->goal_id < goal_id_;
+    const bool ours = own_goal().has_value();
     if (taken && !ours && acknowledged_) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    if (now - goal_at_ >= parameters_.acknowledge) fail(Text::kPartSilent, Cause::kFailure, now);
+    if (!unheard_since_) unheard_since_ = now;  // not anew with each goal
+    if (now - *unheard_since_ >= parameters_.acknowledge)
+      fail(Text::kPartSilent, Cause::kFailure, now);
     return;
   }
   acknowledged_ = true;
+  unheard_since_.reset();
   switch (navigation->state) {
     case GoalState::kSucceeded:
-    case GoalState::kCancelled:
       goals_failed_ = 0;
       goal_id_ = 0;
+      actions_.remember = true;
       break;
     case GoalState::kFailed:
       goal_id_ = 0;
+      actions_.remember = true;
       going_to_.reset();
       if (++goals_failed_ >= kMostGoalsFailed) fail(Text::kNoWay, Cause::kFailure, now);
       break;
+    case GoalState::kCancelled:  // not by this guide, which forgets what it cancels
     case GoalState::kReplaced:
       fail(Text::kOtherGoal, Cause::kFailure, now);
       break;
     case GoalState::kIdle:
     case GoalState::kActive:
     case GoalState::kWaiting:
-      goal_at_ = now;  // heard
       break;
   }
 }
@@ -90,7 +113,10 @@ void Guide::follow_visitor(Time now) {
       say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
     }
     unseen_since_.reset();
-    if (visitor->in_map) trail_.see(*visitor->in_map);
+    if (visitor->in_map) {
+      if ((*visitor->in_map - trail_.newest()).norm() > kJump) trail_.begin(pose->position());
+      trail_.see(*visitor->in_map);
+    }
   } else if (!unseen_since_) {
     unseen_since_ = now;
   }
@@ -115,7 +141,10 @@ void Guide::go_behind(Time now) {
   const bool seen = visitor && visitor->seen;
   if (seen &&
       std::hypot(visitor->x, visitor->y) < parameters_.behind) {  // he has stopped or come back
-    if (goal_id_ != 0) actions_.cancel = goal_id_;
+    if (goal_id_ != 0) {
+      actions_.cancel = goal_id_;
+      actions_.remember = true;
+    }
     goal_id_ = 0;
     going_to_.reset();
     return;
@@ -124,13 +153,18 @@ void Guide::go_behind(Time now) {
   const bool unseen = unseen_since_ && now - *unseen_since_ >= parameters_.follow.unseen;
   const auto place = trail_.behind(unseen ? kLookFrom : parameters_.behind);
   if (!place || (place->position() - robot).norm() < kGoalStep) return;
+  // Never past him.
+  if (seen && (place->position() - robot).norm() > std::hypot(visitor->x, visitor->y)) return;
   if (going_to_ && (place->position() - *going_to_).norm() < kGoalStep) return;
   if (going_to_ && now - goal_given_at_ < kGoalEvery) return;
   going_to_ = place->position();
   goal_id_ = next_id_++;
   if (first_goal_ == 0) first_goal_ = goal_id_;
-  goal_at_ = goal_given_at_ = now;
+  goal_given_at_ = now;
   actions_.goal = Goal{goal_id_, {}, *place};
+  moved_at_ = now;
+  // For the supervisor a navigation ends with each goal that is reached.
+  if (surroundings_.supervisor == Supervisor::kAvailable) start_navigation();
   actions_.remember = true;
 }
 

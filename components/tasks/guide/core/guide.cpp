@@ -73,7 +73,8 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
     }
     if (follows()) {
       first_goal_ = goal_id_ = memory.goal_id;
-      goal_at_ = departed_ = now;
+      departed_ = moved_at_ = now;
+      move_at_ = now + parameters_.tone;
       sentence_ = say(Text::kWalkAhead);
     }
   }
@@ -212,7 +213,6 @@ const Actions& Guide::answer(const Answer& answer, Time now) {
     }
     newest = answer.id;
   }
-  const bool first = !visit_.engaged();
   last_result_ = judge(answer, now);
   last_answer_ = answer;
   actions_.screen_changed = true;
@@ -221,11 +221,11 @@ const Actions& Guide::answer(const Answer& answer, Time now) {
     ++visit_.ignored;
     return finish(now);
   }
+  if (!visit_.engaged()) ++funnel_.engaged;  // the answer may have begun the visit
   ++(answer.input == Input::kTouch   ? visit_.touches
      : answer.input == Input::kVoice ? visit_.utterances
                                      : visit_.others);
   if (actions_.visit && actions_.visit->id == visit_.id) actions_.visit = visit_;  // it ended it
-  if (first) ++funnel_.engaged;
   return finish(now);
 }
 
@@ -458,6 +458,12 @@ void Guide::pass_time(Time now) {
         enter(State::kEnd, Cause::kLeft, now);
       } else if (passed >= parameters_.introduction) {
         enter(State::kLocationAsk, Cause::kDelay, now);
+      }
+      break;
+    case State::kFollowMe:
+      if (now - moved_at_ >= parameters_.pause) {  // he stays where he is
+        leave_journey();
+        enter(State::kEndAsk, Cause::kTimeout, now);
       }
       break;
     case State::kGuideSuccess:

@@ -207,6 +207,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void follow_visitor(Time now);
   void watch_following(Time now);
   void go_behind(Time now);
+  void start_navigation();
+  std::optional<std::uint64_t> own_goal() const;
   void watch_obstacle(Time now);
   void watch_encounter(Time now);
   void refresh_journey(Time now);
@@ -263,6 +265,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::uint64_t first_goal_ = 0;  ///< of this following; its goals up to goal_id_ are all ours
   std::optional<geometry::Point2> going_to_;
   Time goal_given_at_{};
+  Time moved_at_{};       ///< when the newest goal of a following was given
   int goals_failed_ = 0;  ///< in a row
   std::optional<Time> unseen_since_;
   std::uint32_t calls_heard_ = 0;

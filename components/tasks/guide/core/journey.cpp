@@ -74,8 +74,9 @@ void Guide::go_on(Time now) {
 
 /// Gives up the goal, if there is one. A stop of this visitor must not hold the robot for the next.
 void Guide::leave_journey() {
-  if (goal_id_ != 0) actions_.cancel = goal_id_;
-  goal_id_ = 0;
+  const auto stray = follows() ? own_goal() : std::nullopt;
+  if (goal_id_ != 0 || stray) actions_.cancel = goal_id_ != 0 ? goal_id_ : *stray;
+  goal_id_ = first_goal_ = 0;
   move_at_.reset();
   actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
   if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
@@ -109,8 +110,7 @@ void Guide::watch_robot(Time now) {
   if (on_the_way() && supervisor == Supervisor::kAvailable && lasted >= kAskAgainAfter &&
       now - asked_again_ >= kAskAgainEvery) {
     asked_again_ = now;
-    actions_.requests.push_back({RequestKind::kNavigationStart, goal_name()});
-    actions_.requests.push_back({RequestKind::kNavigationGo, {}});
+    start_navigation();
   }
 }
 

@@ -12,8 +12,10 @@ namespace usher::guide {
 class Trail {
  public:
   bool empty() const { return points_.empty(); }
+  const geometry::Point2& newest() const { return points_.back(); }
   void begin(const geometry::Point2& robot) { points_.assign(1, robot); }
-  /// He is here now. Steps of less than 0.15 m are none.
+  /// He is here now. Steps of less than 0.15 m are none; where he comes back to his own way, what
+  /// lies between is forgotten.
   void see(const geometry::Point2& visitor);
   /// The place so far behind the newest one [m], along the way, facing along it; nothing where the
   /// way is not so long.

@@ -183,15 +183,14 @@ Surroundings GuideComponent::surroundings() const {
 
 /// In map, by where the robot was when it saw him: while it turns, a moment makes half a metre.
 void GuideComponent::place(const usher_msgs::msg::Visitor& visitor) {
-  if (visitor.presence() != usher_msgs::msg::Visitor_Constants::PRESENCE_SEEN) {
-    visitor_in_map_.reset();
-    return;
-  }
-  transforms_.when_known(frames::kMap, frames::kBaseFootprint,
-                         wire::from_message(visitor.header().stamp()),
-                         [this, at = geometry::Point2(visitor.x(), visitor.y())](const auto& pose) {
-                           visitor_in_map_ = geometry::to_plane(pose) * at;
-                         });
+  const std::uint64_t number = ++placed_;
+  visitor_in_map_.reset();
+  if (visitor.presence() != usher_msgs::msg::Visitor_Constants::PRESENCE_SEEN) return;
+  transforms_.when_known(
+      frames::kMap, frames::kBaseFootprint, wire::from_message(visitor.header().stamp()),
+      [this, number, at = geometry::Point2(visitor.x(), visitor.y())](const auto& pose) {
+        if (number == placed_) visitor_in_map_ = geometry::to_plane(pose) * at;
+      });
 }
 
 void GuideComponent::take_locations(const usher_msgs::msg::Locations& message) {

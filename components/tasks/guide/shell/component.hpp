@@ -41,7 +41,8 @@ class GuideComponent final : public runtime::Component {
   std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
   usher_msgs::msg::GuideStatus told_;               ///< the newest status
-  std::optional<geometry::Point2> visitor_in_map_;  ///< [m]
+  std::optional<geometry::Point2> visitor_in_map_;  ///< [m] of the newest sighting
+  std::uint64_t placed_ = 0;                        ///< sightings
 
   wire::TransformInput transforms_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;

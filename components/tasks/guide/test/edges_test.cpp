@@ -138,6 +138,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.see(2.5), r.wait(1000); }, State::kFollowMe, "goal:pose"},
         {[](Rig& r) { r.navigate(GoalState::kActive); }, State::kFollowMe, ""},
         PRESS("done", kEndAsk, "end cancel")}},
+      {"walks nowhere", {kFollowing, WAIT(120000, kEndAsk, "end")}},
       {"walks ahead, stops the robot", {kFollowing, PRESS("stop", kEndAsk, "end")}},
       {"walks ahead, the robot fails",
        {kFollowing,

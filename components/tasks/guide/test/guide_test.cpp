@@ -583,6 +583,10 @@ TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   rig.navigate(GoalState::kActive);
   rig.see(1.0), rig.wait(100);
   EXPECT_EQ(rig.taken(), "cancel") << "he has stopped";
+  rig.wait(100);
+  EXPECT_EQ(rig.taken(), "cancel") << "the navigator has not heard it";
+  rig.navigate(GoalState::kCancelled);
+  EXPECT_EQ(rig.taken(), "");
   rig.press("done");
   EXPECT_EQ(rig.taken(), "end");
   EXPECT_EQ(rig.guide.visit().arrived, 1U);
@@ -608,6 +612,40 @@ TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {
   EXPECT_EQ(rig.said, std::vector<std::string>(3, "I cannot see you. Please come back to me."));
   rig.see(1.5), rig.wait(200);
   EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Tell me when we are there.");
+}
+
+TEST(Guide, FollowsAgainAfterAHaltAndNeverPastTheVisitor) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.supervisor = Supervisor::kAvailable;  // the navigation is over for it
+  rig.taken();
+  rig.see(1.0), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "") << "he came back; the way that he went leads past him";
+  rig.see(4.0), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "start:visitor go goal:pose");
+}
+
+TEST(Guide, AnOperatorsCancelEndsAFollowing) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.navigate(GoalState::kActive);
+  rig.navigate(GoalState::kCancelled);
+  EXPECT_EQ(rig.state(), "guide_error");
+}
+
+TEST(Guide, ASilentNavigatorEndsAFollowingHoweverTheVisitorWalks) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  for (int i = 0; i < 50; ++i) rig.see(2.0 + 0.1 * i), rig.wait(100);
+  EXPECT_EQ(rig.state(), "follow_me");
+  for (int i = 0; i < 30; ++i) rig.see(7.0 + 0.1 * i), rig.wait(100);
+  EXPECT_EQ(rig.state(), "guide_error");
 }
 
 TEST(Guide, FollowsOnlyWhomItSees) {

@@ -34,6 +34,17 @@ TEST(Trail, WhoStandsTakesNoWay) {
   EXPECT_TRUE(trail.behind(0.9));
 }
 
+TEST(Trail, WhoComesBackIsNotSoughtBeyondHim) {
+  Trail trail;
+  trail.begin({0.0, 0.0});
+  for (int i = 1; i <= 20; ++i) trail.see({0.25 * i, 0.0});
+  for (int i = 1; i <= 14; ++i) trail.see({5.0 - 0.25 * i, 0.1});
+  EXPECT_NEAR(trail.newest().x(), 1.5, 1e-9);
+  const auto behind = trail.behind(1.2);
+  ASSERT_TRUE(behind);
+  EXPECT_LT(behind->x, 1.0);
+}
+
 TEST(Trail, ForgetsWhatIsFarBehind) {
   Trail trail;
   trail.begin({0.0, 0.0});
