@@ -1,6 +1,7 @@
 // The critics of the dynamic window: what each trajectory is measured by.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "navigation/local_planner/core/dynamic_window.hpp"
 
@@ -16,6 +17,7 @@ constexpr double kTightPath = 4.0;         // the plan leads through the middle 
 constexpr double kLanePath = 2.0;          // aside although the middle is cheaper
 constexpr double kOscillationWay = 0.05;   // [m] after which the other sense is allowed again
 constexpr double kOscillationTurn = 0.35;  // [rad]
+constexpr double kRollOutStep = 0.1;       // [m] between tested places
 
 }  // namespace
 
@@ -73,6 +75,15 @@ void DynamicWindow::choose_local_goal(const Input& input) {
   wavefront_.spread(front, front_lengths_);
 }
 
+/// Beyond the window nothing is known: that is no obstacle, the window will move.
+bool DynamicWindow::leaves_window(const Input& input, const geometry::Point2& place) const {
+  const grid::GridGeometry& geometry = input.costs.geometry();
+  const double reach = config_.footprint.circumscribed_radius();
+  const double x = place.x() - geometry.origin_x, y = place.y() - geometry.origin_y;
+  return !(x >= reach && y >= reach && x <= geometry.width * geometry.resolution - reach &&
+           y <= geometry.height * geometry.resolution - reach);
+}
+
 double DynamicWindow::obstacle_on_path(const Input& input) const {
   const grid::GridGeometry& geometry = input.costs.geometry();
   TurnedFootprint turned;
@@ -82,17 +93,14 @@ double DynamicWindow::obstacle_on_path(const Input& input) const {
   while (arc < end) {
     arc += geometry.resolution;
     const geometry::Point2 point = path_.point(std::min(arc, end));
+    if (leaves_window(input, point)) break;
     const double x = (point.x() - geometry.origin_x) / geometry.resolution;
     const double y = (point.y() - geometry.origin_y) / geometry.resolution;
-    if (!(x >= 0.0 && y >= 0.0 && x < geometry.width && y < geometry.height)) break;
     if (center_.clear_around(bits_, x, y)) continue;
     // The chord over a short stretch: a grid path's own segments only know eight directions.
     const geometry::Point2 along = path_.point(arc + 0.15) - path_.point(arc - 0.15);
     if (along.norm() < 1e-6) continue;
     center_.turn(along.x() / along.norm(), along.y() / along.norm(), geometry.resolution, turned);
-    // Beyond the window nothing is known: that is no obstacle, the window will move.
-    const double reach = config_.footprint.circumscribed_radius() / geometry.resolution;
-    if (x < reach || y < reach || x > geometry.width - reach || y > geometry.height - reach) break;
     if (center_.touches(bits_, turned, x, y)) return arc - path_.progress();
   }
   return std::numeric_limits<double>::infinity();
@@ -274,10 +282,35 @@ CriticScores DynamicWindow::score(const Input& input, std::size_t index, double 
   return s;
 }
 
-int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticScores& best) const {
-  int winner = -1;
-  for (std::size_t i = 0; i < rollout_.trajectories().size(); ++i) {
-    const Trajectory& trajectory = rollout_.trajectories()[i];
+/// Anything may stop the base, not only who plans: it rolls out on the arc that it is on by then,
+/// and not on the planned one (kinematics::RollOut). A slow base stands before it gets far.
+bool DynamicWindow::rolls_out_free(const Input& input, std::size_t index) const {
+  const Trajectory& trajectory = rollout_.trajectories()[index];
+  const SpeedProfile& speed = speeds_[static_cast<std::size_t>(trajectory.speed)];
+  if (speed.target <= config_.careful_speed) return true;
+  const SpeedProfile& turn = turns_[static_cast<std::size_t>(trajectory.turn)];
+  const auto step = static_cast<std::size_t>(config_.steps / 3);  // whose place is kept
+  const double dt = rollout_.settings().step;
+  geometry::Pose2 from{input.pose.x + static_cast<double>(rollout_.x()[3 * index]),
+                       input.pose.y + static_cast<double>(rollout_.y()[3 * index]), input.pose.yaw};
+  for (std::size_t k = 0; k < step; ++k)
+    from.yaw += 0.5 * (turn.values[k] + turn.values[k + 1]) * dt;
+  const geometry::Twist2 arc{speed.values[step], turn.values[step]};
+  const double least = config_.stopping.distance(std::max(arc.v, speed.target)) + config_.margin;
+  for (double way = kRollOutStep; arc.v > config_.slowest && way < least; way += kRollOutStep) {
+    const geometry::Pose2 place = geometry::integrate(from, arc, way / arc.v);
+    if (leaves_window(input, place.position())) break;
+    if (touches(input, narrow_, place)) return false;
+  }
+  return true;
+}
+
+int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticScores& best) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const auto trajectories = rollout_.trajectories();
+  totals_.assign(trajectories.size(), kNever);
+  for (std::size_t i = 0; i < trajectories.size(); ++i) {
+    const Trajectory& trajectory = trajectories[i];
     if (!trajectory.admissible) continue;
     const double v = speeds_[static_cast<std::size_t>(trajectory.speed)].target;
     const double w = turns_[static_cast<std::size_t>(trajectory.turn)].target;
@@ -286,10 +319,18 @@ int DynamicWindow::best_trajectory(const Input& input, double fastest, CriticSco
     if (speeds_[static_cast<std::size_t>(trajectory.speed)].contact == 0 &&
         std::abs(w) > careful_turn_)
       continue;
-    const CriticScores scores = score(input, i, fastest);
-    if (winner < 0 || scores.total() < best.total()) winner = static_cast<int>(i), best = scores;
+    totals_[i] = score(input, i, fastest).total();
   }
-  return winner;
+  for (;;) {
+    const auto least = std::min_element(totals_.begin(), totals_.end());
+    if (least == totals_.end() || *least == kNever) return -1;
+    const auto index = static_cast<std::size_t>(least - totals_.begin());
+    if (rolls_out_free(input, index)) {
+      best = score(input, index, fastest);
+      return static_cast<int>(index);
+    }
+    *least = kNever;
+  }
 }
 
 }  // namespace usher::local_planner

@@ -175,12 +175,14 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
 
   // What the critics see (critics.cpp).
   void choose_local_goal(const Input& input);
+  bool leaves_window(const Input& input, const geometry::Point2& place) const;
   double obstacle_on_path(const Input& input) const;
   void sample(const Input& input, double fastest);
   void measure_path(const Input& input);
   double way_left(const std::vector<std::uint16_t>& lengths, const Input& input, double x,
                   double y) const;
-  int best_trajectory(const Input& input, double fastest, CriticScores& best) const;
+  int best_trajectory(const Input& input, double fastest, CriticScores& best);
+  bool rolls_out_free(const Input& input, std::size_t index) const;
   CriticScores score(const Input& input, std::size_t index, double fastest) const;
   bool forbidden_turn(double speed, double turn) const;
   void note_turn(const Input& input, const geometry::Twist2& command);
@@ -228,7 +230,8 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   std::vector<std::uint16_t> goal_lengths_, front_lengths_;
   std::vector<SpeedProfile> speeds_, turns_;
   std::vector<float> points_x_, points_y_,
-      point_distances_;  // 4 per trajectory: three parts, the point ahead
+      point_distances_;         // 4 per trajectory: three parts, the point ahead
+  std::vector<double> totals_;  // of the scores; infinite where it may not be driven
   std::vector<geometry::Pose2> winner_;
 };
 

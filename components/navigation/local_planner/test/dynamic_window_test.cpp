@@ -120,6 +120,24 @@ TEST(Decide, NeverAsksForASpeedThatCannotBeStoppedBeforeTheWall) {
   }
 }
 
+TEST(Decide, IsSlowWhereARobotThatIsStoppedBeforeItsTurnWouldMeetAWall) {
+  DynamicWindowConfig config;
+  config.limits.angular_acceleration = 0.4;  // what is planned bends more than what is driven yet
+  World world(-3, -3, 3, 3);
+  world.add(Box{-3, 1.2, 3, 1.3});
+  world.finish(0.305);
+  const auto target = [&](const Twist2& moves) {
+    return planner_to(8.0, config).decide(world.costs(), {0, 0, 0.6}, moves, moves, 0.05).target.v;
+  };
+  EXPECT_LT(target({0.8, 0.0}), 0.7);
+  EXPECT_GT(target({0.8, -0.3}), 1.1) << "it turns already";
+}
+
+TEST(Decide, KeepsThePaceWhereTheWindowEnds) {
+  const Costs small({60, 60, 0.05, -1.5, -1.5});
+  EXPECT_GT(planner_to(8.0).decide(small, {}, {0.5, 0}, {0.5, 0}, 0.05).target.v, 0.5);
+}
+
 TEST(Decide, KeepsThePaceWhereItCanBeStopped) {
   DynamicWindow planner = planner_to(8.0);
   EXPECT_NEAR(planner.decide(empty_window(), {}, {1.15, 0}, {1.15, 0}, 0.05).target.v, 1.15, 1e-12);
