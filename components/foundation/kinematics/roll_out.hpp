@@ -14,12 +14,15 @@ namespace usher::kinematics {
 /// 8.1) while its turn rate is gone after 0.2 s: straight on, off the arc that was free, into the
 /// door post. So the forward velocity is zero at once, and the turn rate falls with the measured
 /// speed. Where nothing measures, the base does what it was last told, and goes on turning for a
-/// while: it rolls out all the same.
+/// while: it rolls out all the same. A turn rate that it was not told lately is measured by
+/// something that hangs, and counts only as far as it was told.
 class RollOut {
  public:
   static constexpr double kStanding = 0.08;  ///< [m/s] slower it stands
   static constexpr double kStraight = 0.03;  ///< [rad/s] slower turns are a balancing base's sway
   static constexpr auto kBlind = std::chrono::milliseconds(1000);  ///< turns so long unmeasured
+  static constexpr double kTurnLag = 0.3;     ///< [s] {> 0} no base's turn rate follows later
+  static constexpr double kTurnSlack = 0.05;  ///< [rad/s] {>= 0} beside what it was told
 
   /// [m/s] No stop from this speed takes longer: MARVIN's, the slower of the bases. What hangs or
   /// is not measured turns a robot no longer.
@@ -38,6 +41,7 @@ class RollOut {
       if (!rolled_at_) rolled_at_ = now;
       measured_at_ = known ? now : *rolled_at_;
       onset_ = known ? *measured : driven_;
+      onset_.w = std::clamp(onset_.w, least_turn_ - kTurnSlack, most_turn_ + kTurnSlack);
       if (std::abs(onset_.w) < kStraight) onset_.w = 0.0;
       share_ = 1.0;
     }
@@ -49,12 +53,13 @@ class RollOut {
     const std::chrono::nanoseconds most = longest(onset_.v);
     if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *rolled_at_ >= most ||
         now - measured_at_ >= kBlind)
-      return {};
-    return {0.0, onset_.w * share_};
+      return tell({}, now);
+    return tell({0.0, onset_.w * share_}, now);
   }
   /// It may drive, and is told so: the next stop begins anew.
   void drive(const geometry::Twist2& told, std::chrono::nanoseconds now) {
     stops_ = false;
+    tell(told, now);
     driven_.w = told.w;
     if (told.v == 0.0) return;  // it rolls out for somebody else, who keeps the arc
     driven_.v = told.v;
@@ -62,12 +67,25 @@ class RollOut {
   }
 
  private:
+  /// What the base may turn like after having been told so.
+  geometry::Twist2 tell(const geometry::Twist2& twist, std::chrono::nanoseconds now) {
+    const double seconds = told_at_ ? std::chrono::duration<double>(now - *told_at_).count() : 0.0;
+    const double left = kTurnLag / (kTurnLag + seconds);
+    least_turn_ = twist.w + std::min(0.0, (least_turn_ - twist.w) * left);
+    most_turn_ = twist.w + std::max(0.0, (most_turn_ - twist.w) * left);
+    told_at_ = now;
+    return twist;
+  }
+
+  static constexpr double kAnyTurn = 5.0;  // [rad/s] who has just begun does not know what was told
   bool stops_ = false;
   geometry::Twist2 driven_;                            ///< what it was last told that made it roll
   std::optional<std::chrono::nanoseconds> rolled_at_;  ///< when
   std::chrono::nanoseconds measured_at_{};
   geometry::Twist2 onset_;
-  double share_ = 0.0;  ///< of the onset's turn rate
+  double share_ = 0.0;                                    ///< of the onset's turn rate
+  double least_turn_ = -kAnyTurn, most_turn_ = kAnyTurn;  ///< [rad/s] of a base that obeys
+  std::optional<std::chrono::nanoseconds> told_at_;
 };
 
 }  // namespace usher::kinematics

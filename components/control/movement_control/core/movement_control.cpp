@@ -253,7 +253,8 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     roll_out_.drive(decision.twist, now);
   } else {
     acceleration_ = {};
-    decision.twist = whisker_reflex(roll_out_.stop(inputs.measured, now),
+    const geometry::Twist2 rolls = roll_out_.stop(inputs.measured, now);
+    decision.twist = whisker_reflex(inputs.motors_off ? geometry::Twist2{} : rolls,
                                     inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   }
 

@@ -87,6 +87,7 @@ struct Inputs {
   bool low_battery = false;
   Guard::View view;                          ///< living through the decision
   std::optional<geometry::Twist2> measured;  ///< absent: the base is not connected
+  bool motors_off = false;                   ///< after an emergency stop: it keeps no arc
 };
 
 /// What bounds the velocity or stops the robot now, the strictest one.

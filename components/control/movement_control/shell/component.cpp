@@ -196,8 +196,10 @@ Inputs MovementControlComponent::gather() {
     inputs.localization =
         static_cast<Localization>(std::min<std::uint8_t>(localization->state(), 2));
   }
-  if (const auto* base = base_.fresh())
+  if (const auto* base = base_.fresh()) {
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
+    inputs.motors_off = base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
+  }
   inputs.measured = measured();
   inputs.view = {surroundings_.points(), sees()};
   return inputs;

@@ -426,6 +426,19 @@ TEST_F(Guarded, RollsOutOnTheArcWhereItWouldMeetSomethingElse) {
   EXPECT_LT(control.decide(inputs, milliseconds(ms += 20)).twist.w, 0.5) << "room enough";
 }
 
+TEST(MovementControl, KeepsNoArcWithoutMotors) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = inputs.measured = Twist2{0.8, 0.4};
+  for (int ms = 0; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.enables.reset();
+  EXPECT_NEAR(control.decide(inputs, milliseconds(3000)).twist.w, 0.4, 1e-9);
+  inputs.measured.reset();
+  EXPECT_NEAR(control.decide(inputs, milliseconds(3020)).twist.w, 0.4, 1e-9) << "unmeasured";
+  inputs.motors_off = true;
+  EXPECT_EQ(control.decide(inputs, milliseconds(3040)).twist, Twist2{});
+}
+
 TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
   MovementControl control;
   Inputs inputs = all_well();

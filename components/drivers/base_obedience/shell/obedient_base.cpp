@@ -85,6 +85,9 @@ void ObedientBase::drive() {
   // A verdict on a foreign command changes nothing, and what is driven beside it may be alive.
   if (obedience_.permitted(now).reason == Reason::kObeyed) {
     roll_out_.drive(decision_.twist, now);
+  } else if (motors_off_ ||
+             report_.state == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY) {
+    decision_.twist = {};  // it slides, and keeps no arc
   } else {
     const bool known = connected() && now - report_.stamp < kReportAge;
     decision_.twist = roll_out_.stop(known ? std::optional(report_.twist) : std::nullopt, now);
@@ -101,8 +104,13 @@ void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request,
   }
   if (request.id() == last_request_) return;
   last_request_ = request.id();
-  if (request.command() == COMMAND_EMERGENCY_STOP) device_.emergency_stop();
-  if (request.command() == COMMAND_RESET) device_.reset();
+  if (request.command() == COMMAND_EMERGENCY_STOP) {
+    motors_off_ = true;
+    device_.emergency_stop();
+  } else if (request.command() == COMMAND_RESET) {
+    motors_off_ = false;
+    device_.reset();
+  }
 }
 
 void ObedientBase::report(const BaseReport& report) {

@@ -71,6 +71,7 @@ class ObedientBase {
   BaseReport report_;
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;
+  bool motors_off_ = false;  ///< requested, until a reset
   std::uint64_t& foreign_;
   std::uint64_t& foreign_requests_;
 

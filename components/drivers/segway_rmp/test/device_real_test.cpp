@@ -25,8 +25,11 @@ class Device final : public runtime::LockstepDevice {
   runtime::Bytes speak(runtime::Time now) override {
     if (silent) return {};
     state_.stamp = now.time_since_epoch();
-    state_.left_velocity = twist.v;
-    state_.right_velocity = twist.v;
+    if (!hangs) {
+      const double outer = 0.5 * Odometry::Parameters{}.track * twist.w;
+      state_.left_velocity = twist.v - outer;
+      state_.right_velocity = twist.v + outer;
+    }
     state_.left_travel += 0.01 * twist.v;
     state_.right_travel += 0.01 * twist.v;
     const auto said = base_.feedback(state_);
@@ -36,6 +39,7 @@ class Device final : public runtime::LockstepDevice {
   geometry::Twist2 twist;  ///< last ordered
   int shutdowns = 0, balances = 0;
   bool silent = false;
+  bool hangs = false;  ///< what it measures
 
  private:
   EmulatedBase base_{Calibration{}};
@@ -121,6 +125,23 @@ TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {
   right.run(200);
   EXPECT_EQ(device->balances, balances);
   EXPECT_EQ(state(), STATE_EMERGENCY);
+}
+
+TEST_F(DeviceReal, IsToldNoTurnRateWhileItsMotorsAreOff) {
+  right.v = 0.8;
+  right.w = 0.3;
+  right.run(2000);
+  device->hangs = true;
+  right.grants = right.commands = false;
+  right.run(200);
+  EXPECT_EQ(device->twist.v, 0.0);
+  EXPECT_NEAR(device->twist.w, 0.3, 0.02) << "it rolls out on its arc";
+  right.grants = right.commands = true;
+  right.run(200);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  right.grants = right.commands = false;
+  right.run(200);
+  EXPECT_EQ(device->twist, geometry::Twist2{});
 }
 
 TEST_F(DeviceReal, RemembersAnEmergencyStopOverARestart) {

@@ -209,8 +209,19 @@ TEST(RollOut, KeepsTheArcBackwards) {
 TEST(RollOut, BeginsAnewAfterADrive) {
   RollOut roll_out;
   roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0));
-  roll_out.drive({0.8, 0.4}, milliseconds(8990));
+  roll_out.drive({0.8, -0.3}, milliseconds(8990));
   EXPECT_EQ(roll_out.stop(geometry::Twist2{0.5, -0.2}, milliseconds(9000)).w, -0.2);
+}
+
+TEST(RollOut, BelievesNoTurnRateThatTheBaseWasNotTold) {
+  const geometry::Twist2 arc{0.8, 0.4}, straight{0.2, 0.0};
+  RollOut hangs;
+  hangs.drive(arc, milliseconds(0));
+  hangs.drive(straight, milliseconds(20));
+  EXPECT_EQ(RollOut(hangs).stop(arc, milliseconds(30)).w, 0.4) << "the base follows later";
+  for (int ms = 40; ms <= 2000; ms += 20) hangs.drive(straight, milliseconds(ms));
+  EXPECT_NEAR(hangs.stop(arc, milliseconds(2020)).w, RollOut::kTurnSlack, 0.01);
+  EXPECT_EQ(RollOut().stop(arc, milliseconds(0)).w, 0.4) << "who has just begun was told nothing";
 }
 
 }  // namespace
