@@ -296,10 +296,10 @@ void Supervisor::explain(Time now) {
     reason_.assign("stopped by ").append(stopped_by_.front());
     for (std::size_t i = 1; i < stopped_by_.size(); ++i)
       reason_.append(", ").append(stopped_by_[i]);
-  } else if (barred_since_ && now - *barred_since_ >= parameters_.barred_patience) {
-    reason_.assign(parameters_.names.movement).append(": ").append(barred_by_);
   } else if (const std::string_view refused = refusal(now); !refused.empty()) {
     reason_.assign(parameters_.names.base).append(": ").append(refused);
+  } else if (barred_since_ && now - *barred_since_ >= parameters_.barred_patience) {
+    reason_.assign(parameters_.names.movement).append(": ").append(barred_by_);
   } else {
     reason_.clear();
   }

@@ -48,9 +48,10 @@ std::string bar_of(const usher_msgs::msg::MovementStatus& status) {
   const bool touched =
       status.front_left() || status.front_right() || status.back_left() || status.back_right();
   if (touched) return "a whisker is touched";
-  return status.velocity_current_linear() == 0.0F && status.velocity_current_angular() == 0.0F
-             ? status.limit_reason()
-             : std::string();
+  // Where nobody drives the turn rate is that of the arc on which it rolls out.
+  const bool turns = status.velocity_current_angular() != 0.0F &&
+                     status.source() != usher_msgs::msg::MovementStatus_Constants::SOURCE_NONE;
+  return status.velocity_current_linear() == 0.0F && !turns ? status.limit_reason() : std::string();
 }
 
 Criticality criticality_from(const std::string& word) {

@@ -200,6 +200,11 @@ TEST(Supervisor, TellsWhatBarsANavigation) {
   EXPECT_EQ(robot.reason(), "") << "so long everybody may stand";
   stand("a whisker is touched", 200);
   EXPECT_EQ(robot.reason(), "movement_control: a whisker is touched");
+  robot.base.refusal = "a command for another epoch than the grant's";
+  stand("a whisker is touched", 600);
+  EXPECT_EQ(robot.reason(), "segway_rmp: a command for another epoch than the grant's")
+      << "without the whisker it would not drive either";
+  robot.base.refusal.clear();
   stand("", 100);
   EXPECT_EQ(robot.reason(), "");
 }
