@@ -18,6 +18,8 @@ using namespace std::string_view_literals;
 
 /// [s] The base itself holds its last command for 0.4 s.
 constexpr double kHeld = 0.45;
+/// [s] A grant that nobody renews has run out.
+constexpr double kExpires = 0.2;
 constexpr double kTwoAtOnce = 0.12;    // share of windows
 constexpr double kLongestDelay = 3.0;  // [s]
 
@@ -300,8 +302,17 @@ std::vector<Expectation> expectations(const WindowPlan& plan, const FaultTargets
   all.reserve(plan.faults.size());
   for (const Fault& fault : plan.faults) all.push_back(expectation(fault, targets));
   const bool deaf = std::any_of(all.begin(), all.end(), [](const auto& each) { return each.deaf; });
-  for (Expectation& each : all) {
+  const auto silent = std::find_if(plan.faults.begin(), plan.faults.end(), [](const Fault& fault) {
+    return (fault.kind == FaultKind::kCrash || fault.kind == FaultKind::kHang) &&
+           fault.target == "supervisor";
+  });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Expectation& each = all[i];
     if (deaf) each.zero_within = std::max(each.zero_within, kHeld);
+    if (silent == plan.faults.end() || &*silent == &plan.faults[i]) continue;
+    // Nobody withdraws the right to drive: it runs out. And nobody tells why until it is back.
+    each.zero_within = std::max(each.zero_within, kExpires);
+    each.read_within += silent->duration;
   }
   return all;
 }

@@ -9,17 +9,18 @@ namespace usher::operations {
 
 namespace {
 
-constexpr double kStanding = 0.05;       // [m/s], as in the definition of a contact
-constexpr double kTurning = 0.1;         // [rad/s]
-constexpr double kRolling = 0.03;        // [m/s]
-constexpr double kCreep = 0.25;          // [m] more than a balancing base sways in a window
-constexpr double kSway = 0.3;            // [rad]
-constexpr double kSettled = 3.0;         // [s] every stop is over: d(v) / v and the overshoot
-constexpr double kWaySlack = 0.15;       // [m]
-constexpr double kWayShare = 1.1;        // of the stopping distance: the spread of table 8.1
-constexpr double kUnheard = 1.0;         // [s] after which an operator sees that nobody speaks
-constexpr double kLastSeconds = 5.0;     // [s] in which a robot on its way has moved
-constexpr double kMoved = 0.15;          // [m] more than a balancing base sways meanwhile
+constexpr double kStanding = 0.05;    // [m/s], as in the definition of a contact
+constexpr double kTurning = 0.1;      // [rad/s]
+constexpr double kRolling = 0.03;     // [m/s]
+constexpr double kCreep = 0.25;       // [m] more than a balancing base sways in a window
+constexpr double kSway = 0.3;         // [rad]
+constexpr double kSettled = 3.0;      // [s] every stop is over: d(v) / v and the overshoot
+constexpr double kWaySlack = 0.15;    // [m]
+constexpr double kWayShare = 1.1;     // of the stopping distance: the spread of table 8.1
+constexpr double kUnheard = 1.0;      // [s] after which an operator sees that nobody speaks
+constexpr double kLastSeconds = 5.0;  // [s] in which a robot on its way has moved
+// More than a balancing base sways meanwhile, one or the other, or less of both.
+constexpr double kMoved = 0.15;          // [m]
 constexpr double kTurned = 0.15;         // [rad]
 constexpr double kHullSlack = 0.03;      // [m/s]
 constexpr double kTurnHullSlack = 0.07;  // [rad/s]
@@ -297,7 +298,7 @@ Judgement WindowJudge::judgement(double t) const {
   const bool active = navigation_ == kActive || navigation_ == kWaiting;
   if (navigation_ == kSucceeded) {
     judgement.end = WindowEnd::kArrived;
-  } else if (way > kMoved || turn > kTurned) {
+  } else if (std::hypot(way / kMoved, turn / kTurned) > 1.0) {
     judgement.end = WindowEnd::kDrives;
   } else if (const auto read = lines(t); !read.empty()) {
     judgement.end = WindowEnd::kStands;

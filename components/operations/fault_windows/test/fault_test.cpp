@@ -74,5 +74,18 @@ TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
   EXPECT_EQ(all[2].zero_within, Expectation::kNever);
 }
 
+TEST(ExpectationOfAFault, BesideASilentSupervisorIsThatTheGrantRunsOut) {
+  WindowPlan plan;
+  plan.faults = {{FaultKind::kHang, "supervisor", "", 3.0},
+                 {FaultKind::kRogue, "cmd_vel/navigation", "rogue", 3.0}};
+  const auto all = expectations(plan, kTargets);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1].zero_within, all[0].zero_within);
+  const Expectation alone = expectation(plan.faults[1], kTargets);
+  EXPECT_LT(alone.zero_within, all[1].zero_within);
+  EXPECT_EQ(all[1].read_within, alone.read_within + 3.0) << "nobody tells why until it is back";
+  EXPECT_EQ(all[0].read_within, alone.read_within);
+}
+
 }  // namespace
 }  // namespace usher::operations

@@ -45,7 +45,7 @@ class Judge : public testing::Test {
     judge.chosen(t, {commanded, 0.0});
     judge.command(t, commander, command_epoch, ++number, {commanded, 0.0});
     if (base_speaks) judge.wheels(t, {wheels, 0.0});
-    judge.truth(t, {x, 0.0, 0.0}, {speed, 0.0}, contacts, "desk");
+    judge.truth(t, {x, 0.0, yaw += 0.02 * turn_rate}, {speed, turn_rate}, contacts, "desk");
   }
   void command(double v) { wished = commanded = wheels = v; }
   void stand() {
@@ -55,7 +55,7 @@ class Judge : public testing::Test {
   std::string violation() { return judge.judgement(t).violation; }
 
   WindowJudge judge;
-  double t = 0.0, x = 0.0;
+  double t = 0.0, x = 0.0, yaw = 0.0, turn_rate = 0.0;
   double speed = 0.5, wished = 0.5, commanded = 0.5, wheels = 0.5, limit = 1.0;
   WindowJudge::Writer holder = writer(1), commander = writer(1);
   std::uint64_t epoch = 7, command_epoch = 7, number = 0;
@@ -79,6 +79,20 @@ TEST_F(Judge, SwayingInOnePlaceIsNotDriving) {
   }
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
   EXPECT_THAT(violation(), HasSubstr("nobody says why"));
+}
+
+TEST_F(Judge, ALittleWayAndALittleTurnAreDriving) {
+  run_for(2.0);
+  stand();
+  run_for(6.0);
+  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
+  command(0.02);
+  speed = 0.02;
+  run_for(4.0);
+  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained) << "8 cm";
+  turn_rate = 0.035;
+  run_for(4.0);
+  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kDrives) << "10 cm and 0.14 rad";
 }
 
 TEST_F(Judge, SeesAContact) {
