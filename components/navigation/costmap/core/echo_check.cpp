@@ -1,16 +1,27 @@
 #include "navigation/costmap/core/echo_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace usher::costmap {
+
+namespace {
+constexpr float kArc = 0.9F;    // [m] nearer, the arc is no wider than a cell or two
+constexpr int kNeighbours = 3;  // beams that agree; glass sends back one now and then
+}  // namespace
 
 void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar, double half_cone,
                            double tolerance, std::span<float> echoes) {
   const geometry::Pose2 sonar_T_laser = geometry::inverse(sonar.sensor) * laser.sensor;
+  std::vector<int> agree(echoes.size(), 0);
   for (std::size_t beam = 0; beam < laser.ranges.size(); ++beam) {
     const double range = laser.ranges[beam];
-    if (!std::isfinite(range) || range <= 0.0) continue;
+    if (!std::isfinite(range) || range <= 0.0) {
+      agree.assign(echoes.size(), 0);
+      continue;
+    }
     const double angle = laser.angle_min + laser.angle_increment * static_cast<double>(beam);
     const geometry::Point2 end =
         sonar_T_laser * geometry::Point2(range * std::cos(angle), range * std::sin(angle));
@@ -18,10 +29,63 @@ void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar,
     const double bearing = std::atan2(end.y(), end.x());
     for (std::size_t i = 0; i < echoes.size(); ++i) {
       const double axis = sonar.angle_min + sonar.angle_increment * static_cast<double>(i);
-      if (std::isfinite(echoes[i]) && distance <= echoes[i] + tolerance &&
-          std::abs(geometry::shortest_turn(axis, bearing)) <= half_cone) {
+      const bool explains = distance <= echoes[i] + tolerance &&
+                            std::abs(geometry::shortest_turn(axis, bearing)) <= half_cone;
+      agree[i] = explains ? agree[i] + 1 : 0;
+      if (std::isfinite(echoes[i]) && agree[i] >= kNeighbours)
         echoes[i] = std::numeric_limits<float>::quiet_NaN();
-      }
+    }
+  }
+}
+
+void drop_remembered_echoes(const ObstacleLayer& laser, const Raster& raster,
+                            const geometry::Pose2& window_T_sonar,
+                            std::span<const geometry::Point2> rays, double tolerance,
+                            std::span<float> echoes) {
+  if (echoes.empty()) return;
+  const auto occupied = [&](const geometry::Point2& ray, double range) {
+    const geometry::Point2 point = window_T_sonar * geometry::Point2(range * ray);
+    if (!reachable(point.x(), point.y())) return false;
+    const grid::Cell cell = raster.cell_at(point.x(), point.y());
+    return laser.states().value_or(cell, kUnseen) == kSeenOccupied;
+  };
+  const std::size_t beams = rays.size() / echoes.size();
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    if (!std::isfinite(echoes[i])) continue;
+    int agree = 0;
+    for (const geometry::Point2& ray : rays.subspan(i * beams, beams)) {
+      bool there = false;
+      for (double off = -tolerance; off <= tolerance && !there; off += raster.resolution)
+        there = occupied(ray, echoes[i] + off);
+      agree += there ? 1 : 0;
+    }
+    if (agree >= kNeighbours) echoes[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+std::vector<geometry::Point2> cone_directions(double angle_min, double angle_increment,
+                                              std::size_t sensors, double cone, int beams) {
+  std::vector<geometry::Point2> directions;
+  directions.reserve(sensors * static_cast<std::size_t>(beams));
+  for (std::size_t i = 0; i < sensors; ++i) {
+    const double axis = angle_min + angle_increment * static_cast<double>(i);
+    for (int k = 0; k < beams; ++k) {
+      const double angle = axis + cone * (beams > 1 ? k / (beams - 1.0) - 0.5 : 0.0);
+      directions.emplace_back(std::cos(angle), std::sin(angle));
+    }
+  }
+  return directions;
+}
+
+void spread_echoes(std::span<const float> echoes, int beams, std::vector<float>& ranges) {
+  ranges.assign(echoes.size() * static_cast<std::size_t>(beams),
+                std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const auto first = ranges.begin() + static_cast<std::ptrdiff_t>(i) * beams;
+    if (echoes[i] < kArc) {
+      first[beams / 2] = echoes[i];
+    } else {
+      std::fill_n(first, beams, echoes[i]);
     }
   }
 }

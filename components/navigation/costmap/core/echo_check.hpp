@@ -1,8 +1,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "navigation/costmap/core/obstacle_layer.hpp"
 
 namespace usher::costmap {
 
@@ -16,12 +18,30 @@ struct ComparedScan {
 
 /// An ultrasonic echo comes from anywhere in a wide cone: put on the cone's axis, a wall that is
 /// met at an angle seems to stand inside the corridor. What the laser sees in the cone at that
-/// distance or nearer explains the echo, and the laser's own layer has it at its right place. What
-/// remains is what ultrasonic sensors are for: glass, which the laser looks through.
+/// distance or nearer, with three neighbouring beams, explains the echo, and the laser's own layer
+/// has it at its right place. What remains is what ultrasonic sensors are for: glass, which the
+/// laser looks through but for a beam here and there.
 ///
 /// Sets every range of `echoes` to NaN (nothing known) that `laser` explains within `half_cone`
 /// [rad] and `tolerance` [m]. Without a laser scan nothing is explained. O(echoes x beams).
 void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar, double half_cone,
                            double tolerance, std::span<float> echoes);
+
+/// Likewise what the laser's layer remembers on the arc of an echo, give or take `tolerance` [m],
+/// on three of its rays: the laser does not see what is nearest. `rays` as by cone_directions, in
+/// the frame of `window_T_sonar`.
+void drop_remembered_echoes(const ObstacleLayer& laser, const Raster& raster,
+                            const geometry::Pose2& window_T_sonar,
+                            std::span<const geometry::Point2> rays, double tolerance,
+                            std::span<float> echoes);
+
+/// An echo tells that something stands somewhere on the arc of its cone, and nothing nearer: as
+/// `beams` (odd) rays that fan out by `cone` [rad] around each sensor's axis. Directions in the
+/// sensors' frame, in the order of `spread_echoes`.
+std::vector<geometry::Point2> cone_directions(double angle_min, double angle_increment,
+                                              std::size_t sensors, double cone, int beams);
+/// Each echo once for every ray of its cone; a near one, whose arc is as wide as a cell or two, on
+/// the axis alone: NaN on the others.
+void spread_echoes(std::span<const float> echoes, int beams, std::vector<float>& ranges);
 
 }  // namespace usher::costmap

@@ -14,6 +14,8 @@ namespace {
 using runtime::HealthState;
 using std::chrono::milliseconds;
 
+constexpr double kRemembered = 0.15;  // [m]
+constexpr int kConeBeams = 13;        // a cell apart at 2.5 m
 constexpr auto kScanAge = milliseconds(300);
 constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
@@ -92,6 +94,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   echo_half_cone_ =
       parameters.number("echo_half_cone", "rad", {0, 0.8}, 0.21,
                         "Half of an ultrasonic cone, where the laser explains echoes.");
+  ultrasonic_cone_ = parameters.number("ultrasonic_cone", "rad", {0, 0.8}, 0.28,
+                                       "Full width of a cone: an echo may come from all of it.");
   echo_tolerance_ =
       parameters.number("echo_tolerance", "m", {0, 1}, 0.3, "How far apart laser and echo may be.");
 
@@ -264,9 +268,14 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
     return;
   }
   if (beams.angle_min != scan->angle_min() || beams.increment != scan->angle_increment() ||
-      beams.directions.size() != scan->ranges().size()) {
-    beams = {scan->angle_min(), scan->angle_increment(),
-             beam_directions(scan->angle_min(), scan->angle_increment(), scan->ranges().size())};
+      beams.count != scan->ranges().size()) {
+    const float first = scan->angle_min();
+    const float increment = scan->angle_increment();
+    const std::size_t count = scan->ranges().size();
+    beams = {first, increment, count,
+             layer == &Map::ultrasonic
+                 ? cone_directions(first, increment, count, ultrasonic_cone_, kConeBeams)
+                 : beam_directions(first, increment, count)};
   }
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   const std::string frame = scan->header().frame_id();
@@ -290,7 +299,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
     return;
   }
   const std::span<const float> ranges = layer == &Map::ultrasonic
-                                            ? unexplained(scan, odom_T_sensor)
+                                            ? heard(scan, beams, odom_T_sensor)
                                             : std::span<const float>(scan.ranges());
   if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
   observe(local_, local_.*layer, odom_T_sensor, beams, ranges, stamp);
@@ -302,6 +311,17 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
     observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
   }
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
+}
+
+/// What the ultrasonic sensors hear and the laser does not see, over their whole cones.
+std::span<const float> CostmapComponent::heard(const sensor_msgs::msg::LaserScan& sonar,
+                                               const Beams& rays,
+                                               const geometry::Pose2& odom_T_sonar) {
+  unexplained(sonar, odom_T_sonar);
+  drop_remembered_echoes(local_.costs->layer(local_.laser), local_.costs->raster(), odom_T_sonar,
+                         rays.directions, kRemembered, echoes_);
+  spread_echoes(echoes_, kConeBeams, cone_ranges_);
+  return cone_ranges_;
 }
 
 /// The echoes that the newest laser scan does not explain.

@@ -30,6 +30,7 @@ class CostmapComponent final : public runtime::Component {
   /// Beam directions of one scanner, computed when its angles change.
   struct Beams {
     float angle_min = 0.0F, increment = 0.0F;
+    std::size_t count = 0;
     std::vector<geometry::Point2> directions;
   };
 
@@ -44,6 +45,8 @@ class CostmapComponent final : public runtime::Component {
   void place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                   const geometry::Pose2& odom_T_sensor);
+  std::span<const float> heard(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
+                               const geometry::Pose2& odom_T_sonar);
   std::span<const float> unexplained(const sensor_msgs::msg::LaserScan& sonar,
                                      const geometry::Pose2& odom_T_sonar);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
@@ -67,8 +70,8 @@ class CostmapComponent final : public runtime::Component {
   bool static_in_local_;
   runtime::Duration local_period_;
 
-  double echo_half_cone_, echo_tolerance_;
-  std::vector<float> echoes_;
+  double echo_half_cone_, echo_tolerance_, ultrasonic_cone_;
+  std::vector<float> echoes_, cone_ranges_;
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
 
   std::uint64_t& rejected_scans_;

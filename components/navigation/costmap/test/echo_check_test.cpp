@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 namespace usher::costmap {
@@ -42,6 +43,73 @@ TEST(EchoCheck, GlassThatTheLaserLooksThroughStays) {
   EXPECT_FLOAT_EQ(echoes[2], 1.5F);
 }
 
+TEST(EchoCheck, ABeamHereAndThereThatGlassSendsBackExplainsNothing) {
+  std::vector<float> laser(181, 8.0F);
+  for (std::size_t beam = 80; beam < 102; beam += 3) laser[beam] = laser[beam + 1] = 1.5F;
+  const auto echoes = after_check(laser, {kInfinity, kInfinity, 1.5F, kInfinity, kInfinity});
+  EXPECT_FLOAT_EQ(echoes[2], 1.5F);
+}
+
+/// A laser's layer around the origin that remembers posts 5 cm wide.
+struct Remembers {
+  Remembers(std::initializer_list<geometry::Point2> posts) {
+    std::vector<geometry::Point2> points(posts);
+    EXPECT_TRUE(layer.replace(points, 1.0, raster));
+  }
+  Raster raster{.resolution = 0.05,
+                .cells_per_meter = 20.0,
+                .first_x = -60,
+                .first_y = -60,
+                .width = 120,
+                .height = 120};
+  ObstacleLayer layer{{.name = "laser"}, raster};
+
+  float after(float echo, const geometry::Pose2& sonar = {}) const {
+    std::vector<float> echoes{echo};
+    const auto rays = cone_directions(0.0, 0.5, 1, 0.28, 13);
+    drop_remembered_echoes(layer, raster, sonar, rays, 0.15, echoes);
+    return echoes[0];
+  }
+};
+
+TEST(EchoCheck, AWallThatTheLaserRemembersIsExplained) {
+  const Remembers wall({{0.42, -0.1}, {0.42, -0.05}, {0.42, 0.0}, {0.42, 0.05}});
+  EXPECT_TRUE(std::isnan(wall.after(0.5F)));
+  EXPECT_FLOAT_EQ(wall.after(0.8F), 0.8F) << "too far from it";
+  EXPECT_FLOAT_EQ(wall.after(0.5F, {0.0, 0.0, geometry::kPi}), 0.5F) << "looks the other way";
+  EXPECT_EQ(wall.after(kInfinity), kInfinity);
+}
+
+TEST(EchoCheck, ACellThatGlassLeftInTheLaserLayerExplainsNothing) {
+  const Remembers stray({{1.5, 0.0}});
+  EXPECT_FLOAT_EQ(stray.after(1.5F), 1.5F);
+}
+
+TEST(EchoCheck, OutsideOfTheWindowNothingIsRemembered) {
+  const Remembers wall({{0.4, 0.0}});
+  EXPECT_FLOAT_EQ(wall.after(0.5F, {100.0, 0.0, 0.0}), 0.5F);
+  EXPECT_FLOAT_EQ(wall.after(0.5F, {1e300, 0.0, 0.0}), 0.5F);
+}
+
+TEST(Cones, FanOutAroundTheAxis) {
+  const auto rays = cone_directions(-0.5, 0.5, 3, 0.2, 5);
+  ASSERT_EQ(rays.size(), 15U);
+  EXPECT_NEAR(std::atan2(rays[0].y(), rays[0].x()), -0.6, 1e-12);
+  EXPECT_NEAR(std::atan2(rays[7].y(), rays[7].x()), 0.0, 1e-12);
+  EXPECT_NEAR(std::atan2(rays[14].y(), rays[14].x()), 0.6, 1e-12);
+}
+
+TEST(Cones, AnEchoIsOnAllOfItsArcButANearOneOnTheAxis) {
+  std::vector<float> ranges;
+  spread_echoes(std::vector<float>{2.0F, 0.4F, kInfinity, NAN}, 3, ranges);
+  ASSERT_EQ(ranges.size(), 12U);
+  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(ranges[static_cast<std::size_t>(i)], 2.0F);
+  EXPECT_TRUE(std::isnan(ranges[3]) && std::isnan(ranges[5]));
+  EXPECT_FLOAT_EQ(ranges[4], 0.4F);
+  for (std::size_t i = 6; i < 9; ++i) EXPECT_EQ(ranges[i], kInfinity);
+  for (std::size_t i = 9; i < 12; ++i) EXPECT_TRUE(std::isnan(ranges[i]));
+}
+
 TEST(EchoCheck, NoEchoStaysNoEcho) {
   const auto echoes =
       after_check(wall_beside(0.7), {kInfinity, kInfinity, kInfinity, kInfinity, kInfinity});
@@ -57,7 +125,7 @@ TEST(EchoCheck, ComparesPlacesNotBearings) {
   // A post straight ahead of a laser that sits 0.3 m ahead of the sonar ring: 0.7 m for one, 1.0 m
   // for the other.
   std::vector<float> laser(181, kInfinity);
-  laser[90] = 0.7F;
+  laser[89] = laser[90] = laser[91] = 0.7F;
   EXPECT_TRUE(std::isnan(
       after_check(laser, {kInfinity, kInfinity, 1.0F, kInfinity, kInfinity}, {0.3, 0.0, 0.0})[2]));
   EXPECT_FLOAT_EQ(
