@@ -9,6 +9,7 @@ namespace usher::costmap {
 
 namespace {
 constexpr float kArc = 0.9F;    // [m] nearer, the arc is no wider than a cell or two
+constexpr double kBody = 0.6;   // [m] from where somebody is, and the width of a cone
 constexpr int kNeighbours = 3;  // beams that agree; glass sends back one now and then
 }  // namespace
 
@@ -77,15 +78,23 @@ std::vector<geometry::Point2> cone_directions(double angle_min, double angle_inc
   return directions;
 }
 
-void spread_echoes(std::span<const float> echoes, int beams, std::vector<float>& ranges) {
-  ranges.assign(echoes.size() * static_cast<std::size_t>(beams),
-                std::numeric_limits<float>::quiet_NaN());
+void spread_echoes(std::span<const float> echoes, std::span<const geometry::Point2> rays,
+                   const geometry::Pose2& window_T_sonar, std::span<const geometry::Point2> people,
+                   std::vector<float>& ranges) {
+  ranges.assign(rays.size(), std::numeric_limits<float>::quiet_NaN());
+  if (echoes.empty()) return;
+  const std::size_t beams = rays.size() / echoes.size();
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    const auto first = ranges.begin() + static_cast<std::ptrdiff_t>(i) * beams;
-    if (echoes[i] < kArc) {
-      first[beams / 2] = echoes[i];
+    const geometry::Point2& axis = rays[i * beams + beams / 2];
+    const geometry::Point2 there =
+        window_T_sonar * geometry::Point2(std::isfinite(echoes[i]) ? echoes[i] * axis : axis);
+    const bool person = std::any_of(people.begin(), people.end(), [&](const auto& each) {
+      return (each - there).norm() <= kBody;
+    });
+    if (std::isfinite(echoes[i]) && (person || echoes[i] < kArc)) {
+      ranges[i * beams + beams / 2] = echoes[i];
     } else {
-      std::fill_n(first, beams, echoes[i]);
+      std::fill_n(ranges.begin() + static_cast<std::ptrdiff_t>(i * beams), beams, echoes[i]);
     }
   }
 }

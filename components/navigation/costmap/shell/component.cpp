@@ -320,7 +320,7 @@ std::span<const float> CostmapComponent::heard(const sensor_msgs::msg::LaserScan
   unexplained(sonar, odom_T_sonar);
   drop_remembered_echoes(local_.costs->layer(local_.laser), local_.costs->raster(), odom_T_sonar,
                          rays.directions, kRemembered, echoes_);
-  spread_echoes(echoes_, kConeBeams, cone_ranges_);
+  spread_echoes(echoes_, rays.directions, odom_T_sonar, bodies_, cone_ranges_);
   return cone_ranges_;
 }
 
@@ -394,9 +394,11 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
   near_.clear();
   standing_.clear();
+  bodies_.clear();
   for (const auto& person : message.people()) {
     const geometry::Point2 place(person.x(), person.y());
     if (!(static_cast<double>(person.unseen()) <= kSeenLately)) continue;
+    bodies_.push_back(place);
     if ((*base_T_odom * place).x() > 0.0) near_.push_back(place);
     if (map_T_odom && std::hypot(person.vx(), person.vy()) < kWalks)
       standing_.push_back(*map_T_odom * place);
@@ -406,6 +408,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
 }
 
 void CostmapComponent::forget_people() {
+  bodies_.clear();
   local_.costs->set_people({});
   if (global_.costs) global_.costs->set_people({});
 }

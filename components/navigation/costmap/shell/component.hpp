@@ -73,6 +73,7 @@ class CostmapComponent final : public runtime::Component {
   double echo_half_cone_, echo_tolerance_, ultrasonic_cone_;
   std::vector<float> echoes_, cone_ranges_;
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
+  std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
 
   std::uint64_t& rejected_scans_;
   std::uint64_t& late_scans_;
