@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -241,10 +242,27 @@ Result<ResultSheet> sheet_of(const std::vector<Row>& rows, const std::string& ou
   return sheet;
 }
 
+struct Seeds {
+  std::uint64_t first = 0, last = 0;
+};
+
+/// "17" or "300-600".
+Result<Seeds> seeds_from(const std::string& text) {
+  Seeds seeds;
+  const char* const end = text.data() + text.size();
+  auto read = std::from_chars(text.data(), end, seeds.first);
+  seeds.last = seeds.first;
+  if (read.ec == std::errc{} && read.ptr != end && *read.ptr == '-')
+    read = std::from_chars(read.ptr + 1, end, seeds.last);
+  if (read.ec != std::errc{} || read.ptr != end || seeds.first == 0 || seeds.last < seeds.first)
+    return Error{
+        "--only takes a seed from 1 on, or the first and the last of some (300-600), not " + text};
+  return seeds;
+}
+
 /// One window once more, with its trace.
-Result<ResultSheet> replay(const WindowSetting& setting, const ExperimentOptions& options) {
-  const std::uint64_t seed = std::strtoull(options.only.c_str(), nullptr, 10);
-  if (seed == 0) return Error{"--only takes a seed from 1 on, not " + options.only};
+Result<ResultSheet> replay(const WindowSetting& setting, std::uint64_t seed,
+                           const ExperimentOptions& options) {
   const auto window = run_window(setting, seed, options.out + "/window");
   if (!window) return Error{window.error()};
   const Row row = row_of(*window);
@@ -261,18 +279,23 @@ Result<ResultSheet> replay(const WindowSetting& setting, const ExperimentOptions
 Result<ResultSheet> run_faults_experiment(const ExperimentOptions& options) {
   const auto setting = window_setting(options.installation.share);
   if (!setting) return Error{setting.error()};
-  if (!options.only.empty()) return replay(*setting, options);
-  const auto windows = static_cast<std::uint64_t>(options.windows > 0 ? options.windows : kWindows);
+  Seeds seeds{1, static_cast<std::uint64_t>(options.windows > 0 ? options.windows : kWindows)};
+  if (!options.only.empty()) {
+    const auto chosen = seeds_from(options.only);
+    if (!chosen) return Error{chosen.error()};
+    if (chosen->first == chosen->last) return replay(*setting, chosen->first, options);
+    seeds = *chosen;
+  }
 
   WindowFile file(options.out + "/windows.csv");
   if (auto opened = file.open(); !opened) return Error{opened.error()};
   const bool resumed = !file.rows().empty();
   std::vector<std::uint64_t> missing;
-  for (std::uint64_t seed = 1; seed <= windows; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     if (!file.rows().contains(seed)) missing.push_back(seed);
   }
   // The same bytes as before: else the file is of another build.
-  const std::uint64_t known = resumed ? file.rows().begin()->first : 1;
+  const std::uint64_t known = resumed ? file.rows().begin()->first : seeds.first;
   if (resumed) {
     const auto again = run_window(*setting, known);
     if (!again) return Error{again.error()};
@@ -291,7 +314,7 @@ Result<ResultSheet> run_faults_experiment(const ExperimentOptions& options) {
 
   std::vector<Row> rows;
   for (const auto& [seed, row] : file.rows()) {
-    if (seed <= windows) rows.push_back(row);
+    if (seed >= seeds.first && seed <= seeds.last) rows.push_back(row);
   }
   auto sheet = sheet_of(rows, options.out);
   if (!sheet) return sheet;

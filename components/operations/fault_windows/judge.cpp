@@ -22,6 +22,7 @@ constexpr double kLastSeconds = 5.0;  // [s] in which a robot on its way has mov
 // More than a balancing base sways meanwhile, one or the other, or less of both.
 constexpr double kMoved = 0.15;          // [m]
 constexpr double kTurned = 0.15;         // [rad]
+constexpr double kMoment = 1e-6;         // [s] what comes as the fault ends comes through
 constexpr double kHullSlack = 0.03;      // [m/s]
 constexpr double kTurnHullSlack = 0.07;  // [rad/s]
 constexpr double kLimitSlack = 0.02;     // [m/s]
@@ -117,7 +118,7 @@ void WindowJudge::judge_expectations(double t) {
   const double since = t - *hit_;
   for (std::size_t i = 0; i < expectations_.size(); ++i) {
     const Expectation& expected = expectations_[i];
-    const bool lasts = since <= expected.lasts;
+    const bool lasts = since < expected.lasts - kMoment;
     const bool must_stand = lasts && since > expected.zero_within;
     if (must_stand && !wheels_stand(t)) {
       violate(t, "the wheels are still told " + number(wheels_->twist.v) + " m/s " +

@@ -260,6 +260,19 @@ TEST_F(Judge, ExpectsNothingAfterTheFault) {
   EXPECT_THAT(violation(), IsEmpty());
 }
 
+TEST_F(Judge, WhatComesAsTheFaultEndsComesThrough) {
+  run_for(1.0);
+  stand();
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 1.0, .words = {}}});
+  run_for(0.98);
+  command(0.2);
+  run_for(0.02);
+  EXPECT_THAT(violation(), IsEmpty());
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 1.0, .words = {}}});
+  run_for(0.96);
+  EXPECT_THAT(violation(), HasSubstr("still told"));
+}
+
 TEST_F(Judge, WaitsUntilASilentDriversBaseLetsGo) {
   run_for(1.0);
   base_speaks = false;
