@@ -6,10 +6,12 @@
 #include <ctime>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 #include "foundation/random/random.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "interaction/speech/core/resample.hpp"
+#include "interaction/speech/core/voice_activity.hpp"
 #include "interaction/speech/core/wav_file.hpp"
 #include "interaction/speech/engine/espeak.hpp"
 #include "interaction/speech/engine/pocketsphinx.hpp"
@@ -23,8 +25,14 @@ namespace {
 using namespace speech;
 namespace fs = std::filesystem;
 
-constexpr double kSpeechLevel = 62.5;  // [dB] in the thesis 60 to 65 dB at 1 to 1.5 m
-constexpr double kNoiseLevel = 52.0;   // [dB] in the thesis while the torso moves
+// A voice of 62.5 dB at 1.25 m (the thesis gives 60 to 65 dB at 1 to 1.5 m for the robot's own; who
+// talks to it is as loud) against the 52 dB that the thesis measures while the torso moves.
+constexpr double kFar = 10.5;  // [dB] of the voice over the noise
+// The same voice from 0.6 m, where the nominal zone begins and the screen is touched.
+constexpr double kNear = 16.9;       // [dB]
+constexpr double kRoom = 20.5;       // [dB] over a room of 42 dB: no clip's own noise is louder
+constexpr double kRoomBefore = 2.0;  // [s] in which the room alone is heard
+constexpr double kRoomAfter = 1.0;   // [s]
 constexpr std::size_t kMostQuestions = 2;
 constexpr double kShortest = 0.1;  // [s] the collection has cuts of 30 ms, too
 
@@ -63,29 +71,63 @@ std::vector<double> motor_noise(std::size_t count, std::uint64_t seed) {
   return noise;
 }
 
-/// Adds noise so that the loudest fifth of a second, the speech, is at kSpeechLevel where the noise
-/// is at kNoiseLevel.
-Sound with_noise(const Sound& clip, std::uint64_t seed) {
-  Sound sound = for_recognizer(clip);
-  constexpr std::size_t kPart = kSpeechRate / 5;
-  double speech = rms(sound.samples);
-  for (std::size_t i = 0; i + kPart <= sound.samples.size(); i += kPart / 4)
-    speech = std::max(speech, rms({&sound.samples[i], kPart}));
-  const auto noise = motor_noise(sound.samples.size(), seed);
+/// How a clip comes to the microphone.
+struct Room {
+  std::string name;
+  std::optional<double> voice_over_noise;  ///< [dB] none: only the clip's own noise
+};
+
+/// What the microphone hears: the room, the clip in it, the room. The loudest fifth of a second is
+/// taken for the level of the voice. Without noise the room goes on at the level of the quietest
+/// 20 ms of the clip.
+std::vector<std::int16_t> at_microphone(const Sound& clip, const Room& room, std::uint64_t seed) {
+  const Sound said = for_recognizer(clip);
+  const auto extreme = [&](std::size_t part, bool loudest) {
+    double level = rms(said.samples);
+    for (std::size_t i = 0; i + part <= said.samples.size(); i += part / 4) {
+      const double here = rms({&said.samples[i], part});
+      level = loudest ? std::max(level, here) : std::min(level, here);
+    }
+    return 32768.0 * level;
+  };
+  const double voice = extreme(kSpeechRate / 5, true);
+  const auto under = [&](double decibels) { return voice * std::pow(10.0, -decibels / 20.0); };
+  const double level = room.voice_over_noise
+                           ? under(*room.voice_over_noise)
+                           : std::clamp(extreme(kSpeechRate / 50, false), 1.0, under(kRoom));
+  const auto before = static_cast<std::size_t>(kRoomBefore * kSpeechRate);
+  const std::size_t end = before + said.samples.size();
+  const auto noise = motor_noise(end + static_cast<std::size_t>(kRoomAfter * kSpeechRate), seed);
   double power = 0.0;
   for (const double value : noise) power += value * value;
-  power = std::sqrt(power / static_cast<double>(std::max<std::size_t>(1, noise.size())));
-  const double gain =
-      32768.0 * speech * std::pow(10.0, (kNoiseLevel - kSpeechLevel) / 20.0) / power;
+  const double gain = level / std::sqrt(power / static_cast<double>(noise.size()));
+  std::vector<std::int16_t> heard(noise.size());
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    sound.samples[i] = static_cast<std::int16_t>(
-        std::clamp(sound.samples[i] + gain * noise[i], -32768.0, 32767.0));
+    const bool inside = i >= before && i < end;
+    double value = inside && !room.voice_over_noise ? 0.0 : gain * noise[i];
+    if (inside) value += said.samples[i - before];
+    heard[i] = static_cast<std::int16_t>(std::lround(std::clamp(value, -32768.0, 32767.0)));
   }
-  return sound;
+  return heard;
+}
+
+/// The utterance that the component cuts out of it, the longest when it hears several; nothing when
+/// it hears none.
+std::optional<Sound> utterance_of(std::span<const std::int16_t> heard) {
+  VoiceActivity activity;
+  constexpr std::size_t kStep = kSpeechRate / 50;
+  constexpr double kLoudspeakerOff = -100.0;  // [dB]
+  std::optional<Sound> longest;
+  for (std::size_t i = 0; i + kStep <= heard.size(); i += kStep) {
+    auto ended = activity.hear(heard.subspan(i, kStep), kLoudspeakerOff);
+    if (ended && (!longest || ended->duration() > longest->duration())) longest = std::move(ended);
+  }
+  return longest;
 }
 
 struct Score {
   int words = 0, first = 0, acted_right = 0, acted_wrong = 0, after_questions = 0, asked = 0;
+  int unheard = 0;  ///< words that no utterance was cut out for
   int foreign = 0, foreign_acted = 0, foreign_asked = 0;
 
   double share_understood() const {
@@ -104,7 +146,7 @@ bool offers(std::span<const Phrase> phrases, const std::string& label) {
 
 /// Plays a clip to the recognizer and takes its verdict; asked back, the visitor says the truth.
 void judge_clip(Score& score, const Clip& clip, const Hearing& hearing,
-                std::span<const Phrase> phrases) {
+                std::span<const Phrase> phrases, bool heard) {
   const auto option = [&](std::size_t i) {
     return phrases[hearing.candidates[i].phrase].option_id;
   };
@@ -118,6 +160,7 @@ void judge_clip(Score& score, const Clip& clip, const Hearing& hearing,
     return;
   }
   ++score.words;
+  score.unheard += !heard;
   const bool right = !hearing.candidates.empty() && option(0) == clip.label;
   score.first += right;
   score.acted_right += verdict == speech::Verdict::kAct && right;
@@ -166,7 +209,7 @@ struct Set {
   std::string name;
   std::vector<Phrase> phrases;
   std::vector<const Clip*> clips;
-  bool noisy = false;
+  Room room;
 };
 
 void add(Set& set, const std::vector<Clip>& clips) {
@@ -220,9 +263,9 @@ std::string ratio(int part, int whole) {
 void add_row(Table& table, const std::string& name, const Score& score) {
   table.add({name, ratio(score.first, score.words),
              ratio(score.acted_right + score.after_questions, score.words),
-             std::to_string(score.acted_right), std::to_string(score.acted_wrong),
-             std::to_string(score.asked), ratio(score.foreign_acted, score.foreign),
-             std::to_string(score.foreign_asked)});
+             std::to_string(score.unheard), std::to_string(score.acted_right),
+             std::to_string(score.acted_wrong), std::to_string(score.asked),
+             ratio(score.foreign_acted, score.foreign), std::to_string(score.foreign_asked)});
 }
 
 }  // namespace
@@ -249,32 +292,33 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
   if (!said || !said_yes_no) return Error{!said ? said.error() : said_yes_no.error()};
 
   std::vector<Set> sets;
-  for (const bool noisy : {false, true}) {
-    const std::string end = noisy ? "_52dB" : "";
-    sets.push_back({"commands" + end, phrases_of(kCommands), {}, noisy});
+  const Room rooms[] = {{"", {}}, {"_52dB", kFar}, {"_52dB_near", kNear}};
+  for (const Room& room : rooms) {
+    const std::string& end = room.name;
+    sets.push_back({"commands" + end, phrases_of(kCommands), {}, room});
     add(sets.back(), *commands);
     add_foreign(sets.back(), *micro);
     add_foreign(sets.back(), *digits);
-    sets.push_back({"yes_no" + end, phrases_of(kYesNo), {}, noisy});
+    sets.push_back({"yes_no" + end, phrases_of(kYesNo), {}, room});
     add(sets.back(), *micro);
     add(sets.back(), *said_yes_no);
     add_foreign(sets.back(), *commands);
-    sets.push_back({"digits" + end, phrases_of(kDigits), {}, noisy});
+    sets.push_back({"digits" + end, phrases_of(kDigits), {}, room});
     add(sets.back(), *digits);
     add_foreign(sets.back(), *commands);
     add_foreign(sets.back(), *micro);
-    sets.push_back({"buttons" + end, phrases_for(*buttons), {}, noisy});
+    sets.push_back({"buttons" + end, phrases_for(*buttons), {}, room});
     add(sets.back(), *said);
     add_foreign(sets.back(), *commands);
     add_foreign(sets.back(), *micro);
   }
-  Table table({"set", "first guess", "understood", "at once", "wrong", "asked back",
+  Table table({"set", "first guess", "understood", "not heard", "at once", "wrong", "asked back",
                "foreign acted on", "foreign asked"});
   ResultSheet sheet;
   sheet.name = "voice";
   std::string csv = "set,held_out,label,heard,fit,second,behind\n";
-  double seconds = 0.0;
-  const std::clock_t start = std::clock();
+  double seconds = 0.0, worked = 0.0;
+  std::vector<double> latencies;
   for (const Set& set : sets) {
     if (!options.only.empty() && !set.name.starts_with(options.only)) continue;
     Score held_out, all;
@@ -283,12 +327,22 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
       show_progress(set.name + " " + std::to_string(seed) + " of " +
                     std::to_string(set.clips.size()));
       ++seed;
+      const auto microphone = at_microphone(clip->sound, set.room, seed);
+      const std::clock_t begin = std::clock();
+      const auto utterance = utterance_of(microphone);
+      const std::clock_t ended = std::clock();
       const auto hearing =
-          recognizer->hear(set.noisy ? with_noise(clip->sound, seed) : clip->sound, set.phrases);
+          utterance ? recognizer->hear(*utterance, set.phrases) : Result<Hearing>(Hearing{});
       if (!hearing) return Error{hearing.error()};
+      const auto since = [](std::clock_t then) {
+        return static_cast<double>(std::clock() - then) / CLOCKS_PER_SEC;
+      };
       seconds += clip->sound.duration();
-      judge_clip(all, *clip, *hearing, set.phrases);
-      if (clip->held_out) judge_clip(held_out, *clip, *hearing, set.phrases);
+      worked += since(begin);
+      latencies.push_back(VoiceActivity::Settings{}.pause + since(ended));
+      const bool heard = utterance.has_value();
+      judge_clip(all, *clip, *hearing, set.phrases, heard);
+      if (clip->held_out) judge_clip(held_out, *clip, *hearing, set.phrases, heard);
       const auto& candidates = hearing->candidates;
       csv += set.name + (clip->held_out ? ",1," : ",0,") + clip->label + ",";
       if (!candidates.empty())
@@ -313,14 +367,24 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
     sheet.targets[set.name + "_foreign_acted"] = {Bound::kAtMost, 0.10};
   }
   show_progress("");
-  sheet.metrics["core_seconds_per_second"] =
-      static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / std::max(seconds, 1e-9);
+  sheet.metrics["core_seconds_per_second"] = worked / std::max(seconds, 1e-9);
+  sheet.targets["core_seconds_per_second"] = {Bound::kAtMost, 0.3};
+  if (!latencies.empty()) {
+    std::sort(latencies.begin(), latencies.end());
+    sheet.metrics["answer_after_p95"] =
+        latencies[static_cast<std::size_t>(0.95 * static_cast<double>(latencies.size() - 1))];
+    sheet.targets["answer_after_p95"] = {Bound::kAtMost, 0.5};
+  }
   sheet.published["commands_first"] = 0.875;
   sheet.published["commands_foreign_acted"] = 0.62;
   sheet.input =
-      "recordings of USHER_TEST_DATA/speech and five voices of espeak-ng; noise: pink "
-      "with a hum, 10.5 dB below the loudest 0.2 s (speech 62.5 dB, noise 52 dB); "
-      "understood: at once or after at most two questions, answered truly";
+      "recordings of USHER_TEST_DATA/speech and five voices of espeak-ng, in a room that is heard "
+      "2 s "
+      "before and 1 s after, cut by VoiceActivity; noise: pink with a hum, 10.5 dB below the "
+      "loudest "
+      "0.2 s (62.5 dB at 1.25 m, noise 52 dB), near 16.9 dB (from 0.6 m); understood: at once or "
+      "after at most two questions, answered truly; answer_after: the pause that ends an utterance "
+      "and the processor time of the recognizer";
   std::printf("%s\n", table.text().c_str());
   Status saved = write_file(options.out + "/sets.md", table.markdown());
   if (saved) saved = write_file(options.out + "/clips.csv", csv);

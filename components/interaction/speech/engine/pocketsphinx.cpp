@@ -9,7 +9,6 @@
 #include <map>
 #include <sstream>
 
-#include "interaction/speech/core/loudness.hpp"
 #include "interaction/speech/core/resample.hpp"
 
 namespace usher::speech {
@@ -18,8 +17,7 @@ namespace {
 
 constexpr const char* kScreen = "screen";
 constexpr const char* kSounds = "sounds";
-constexpr double kSilenceAround = 0.1;  // [s] which the models expect before and after a word
-constexpr int kMostPaths = 200;         // of the list of best paths
+constexpr int kMostPaths = 200;  // of the list of best paths
 constexpr std::size_t kMostCandidates = 3;
 constexpr double kShortest = 0.1;  // [s] of an utterance
 
@@ -88,7 +86,7 @@ class PocketSphinx final : public Recognizer {
     if (Status listening = listen_for(phrases); !listening) return Error{listening.error()};
     Hearing hearing;
     if (understood_.empty() || sound.duration() < kShortest) return hearing;
-    const auto samples = with_silence(for_recognizer(sound));
+    const auto samples = for_recognizer(sound).samples;
     if (Status decoded = decode(kSounds, samples); !decoded) return Error{decoded.error()};
     const double any_sounds = path().score;
     if (Status decoded = decode(kScreen, samples); !decoded) return Error{decoded.error()};
@@ -141,28 +139,6 @@ class PocketSphinx final : public Recognizer {
       understood_.emplace(phrases_[i].words, i);
     }
     return usable.empty() ? Status{} : use(kScreen, jsgf(usable));
-  }
-
-  /// The quietest 20 ms give the loudness of the silence that is put around.
-  std::vector<std::int16_t> with_silence(const Sound& sound) const {
-    constexpr std::size_t kPart = kSpeechRate / 50;
-    double quietest = 50.0 / 32768.0;
-    for (std::size_t i = 0; i + kPart <= sound.samples.size(); i += kPart / 2)
-      quietest = std::min(quietest, rms({&sound.samples[i], kPart}));
-    const double peak = std::max(1.0, quietest * 32768.0) * 1.73;  // of evenly spread noise
-    std::uint32_t state = 1;
-    const auto silence = [&](std::vector<std::int16_t>& samples) {
-      for (int i = 0; i < static_cast<int>(kSilenceAround * kSpeechRate); ++i) {
-        state = state * 1664525U + 1013904223U;
-        const double even = static_cast<double>(state >> 8U) / (1U << 23U) - 1.0;
-        samples.push_back(static_cast<std::int16_t>(peak * even));
-      }
-    };
-    std::vector<std::int16_t> samples;
-    silence(samples);
-    samples.insert(samples.end(), sound.samples.begin(), sound.samples.end());
-    silence(samples);
-    return samples;
   }
 
   Status decode(const char* search, const std::vector<std::int16_t>& samples) {

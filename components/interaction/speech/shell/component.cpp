@@ -57,8 +57,8 @@ SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
   rule.ask_fit = parameters.number("ask_fit", "-", {-200.0, 50.0}, rule.ask_fit,
                                    "Fit from which on it asks back; less is ignored.");
   VoiceActivity::Settings& activity = settings.activity;
-  activity.over_noise = parameters.number("over_noise", "-", {3.0, 40.0}, activity.over_noise,
-                                          "Decibels that a voice is above the background.");
+  activity.over_noise = parameters.number("over_noise", "-", {2.0, 40.0}, activity.over_noise,
+                                          "Decibels that a voice is above the background's mean.");
   activity.over_echo =
       parameters.number("over_echo", "-", {3.0, 40.0}, activity.over_echo,
                         "Decibels that a voice is above the robot's own in the microphone.");
@@ -235,14 +235,15 @@ void SpeechComponent::hear() {
     microphone_trouble_ = got.error();
     return;
   }
+  // What nobody hears comes back to no microphone.
+  constexpr double kSilence = -100.0;  // [dB]
+  const double echo = loudspeaker_trouble_.empty() ? player_.loudness(card_->unheard()) : kSilence;
+  // Heard all the time, so that the room's noise is known when somebody is waited for.
+  auto utterance = activity_.hear(in_, echo);
   if (!conversation_.listens()) {
     activity_.restart();
     return;
   }
-  // What nobody hears comes back to no microphone.
-  constexpr double kSilence = -100.0;  // [dB]
-  const double echo = loudspeaker_trouble_.empty() ? player_.loudness(card_->unheard()) : kSilence;
-  auto utterance = activity_.hear(in_, echo);
   if (!utterance) return;
   if (to_recognize_.size() == kMostJobs) to_recognize_.pop_front();
   to_recognize_.push_back(

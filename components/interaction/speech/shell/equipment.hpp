@@ -50,7 +50,8 @@ class Recognizer {
   virtual ~Recognizer() = default;
   /// Reads the models, which may take a second; before it nothing is understood.
   virtual Status load() = 0;
-  /// What it makes of the sound, given that one of the phrases may have been said.
+  /// What it makes of the sound, given that one of the phrases may have been said. The sound has
+  /// some of the room before and after what was said, as VoiceActivity cuts it.
   virtual Result<Hearing> hear(const Sound& sound, std::span<const Phrase> phrases) = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "interaction/speech/core/loudness.hpp"
 #include "interaction/speech/shell/stream_microphone.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
@@ -19,8 +20,10 @@ namespace state = usher_msgs::msg::SpeechStatus_Constants;
 struct Room {
   bool microphone = true, loudspeaker = true, models = true;
   double voice = 0.0;  ///< {0..1} loudness of a visitor
+  double hum = 20.0;   ///< peak of what always sounds
   Hearing hearing;     ///< what the recognizer will make of it
   std::vector<Phrase> listened_for;
+  Sound recognized;         ///< the newest sound that the recognizer got
   double heard_peak = 0.0;  ///< of the loudspeaker
 };
 
@@ -44,7 +47,7 @@ class FakeCard final : public SoundCard {
   Status read(std::vector<std::int16_t>& samples) override {
     if (!room_.microphone) return Error{"no microphone here"};
     for (int i = 0; i < 320; ++i) {
-      samples.push_back(static_cast<std::int16_t>(20.0 * std::sin(0.9 * at_) +
+      samples.push_back(static_cast<std::int16_t>(room_.hum * std::sin(0.9 * at_) +
                                                   32000.0 * room_.voice * std::sin(0.1 * at_)));
       at_ += 1.0;
     }
@@ -61,7 +64,8 @@ class FakeRecognizer final : public Recognizer {
  public:
   explicit FakeRecognizer(Room& room) : room_(room) {}
   Status load() override { return room_.models ? Status{} : Error{"no models here"}; }
-  Result<Hearing> hear(const Sound&, std::span<const Phrase> phrases) override {
+  Result<Hearing> hear(const Sound& sound, std::span<const Phrase> phrases) override {
+    room_.recognized = sound;
     room_.listened_for.assign(phrases.begin(), phrases.end());
     return room_.hearing;
   }
@@ -377,6 +381,25 @@ TEST(SpeechComponentAlone, RunsWithoutAnythingThatSounds) {
   host.run_for(std::chrono::seconds(2));
   EXPECT_TRUE(host.running());
   EXPECT_EQ(host.heartbeat().state(), 2);
+}
+
+TEST_F(Speech, KnowsTheRoomsNoiseBeforeItListens) {
+  room_.hum = 3000.0;
+  start();
+  show(1, {"guide", "search"});
+  pass(4.0);
+  EXPECT_TRUE(status().understands());
+  EXPECT_TRUE(room_.listened_for.empty()) << "a hum that was there before is no utterance";
+}
+
+TEST_F(Speech, SuppressesTheRoomsNoiseForWhoAnswersAtOnce) {
+  room_.hum = 3000.0;
+  start();
+  show(1, {"guide", "search"});
+  say(0, 0.0);
+  ASSERT_GT(room_.recognized.duration(), 0.5);
+  const double hum = 20.0 * std::log10(3000.0 / std::sqrt(2.0) / 32768.0);
+  EXPECT_LT(loudness_db(std::span(room_.recognized.samples).first(kSpeechRate / 16)), hum - 12.0);
 }
 
 }  // namespace

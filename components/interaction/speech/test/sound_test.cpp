@@ -6,6 +6,7 @@
 
 #include "foundation/random/random.hpp"
 #include "interaction/speech/core/loudness.hpp"
+#include "interaction/speech/core/noise_suppressor.hpp"
 #include "interaction/speech/core/player.hpp"
 #include "interaction/speech/core/resample.hpp"
 #include "interaction/speech/core/tones.hpp"
@@ -249,6 +250,85 @@ TEST(VoiceActivity, DoesNotHearTheRobotButWhoSpeaksOverIt) {
   EXPECT_NEAR(activity.echo_db(), -15.0, 1.5) << "learnt while it spoke";
   room.run(activity, 0.5, 9000.0, -20.0, -15.0);
   EXPECT_TRUE(activity.voice());
+}
+
+/// Noise that is stronger at low frequencies, as fans make it, a sine of 700 Hz in it.
+std::optional<Sound> hear_in_noise(VoiceActivity& activity, Random& random, double seconds,
+                                   double noise_peak, double voice_peak) {
+  std::optional<Sound> ended;
+  std::vector<std::int16_t> part(320);
+  double at = 0.0, noise = 0.0;
+  for (int i = 0; i < static_cast<int>(std::lround(seconds * 50.0)); ++i) {
+    for (auto& sample : part) {
+      at += 1.0;
+      noise = 0.9 * noise + random.uniform(-noise_peak, noise_peak);
+      sample = static_cast<std::int16_t>(noise +
+                                         voice_peak * std::sin(2.0 * kPi * 700.0 * at / 16000.0));
+    }
+    if (auto utterance = activity.hear(part, -100.0)) ended = std::move(utterance);
+  }
+  return ended;
+}
+
+double first_loudness(const Sound& sound) {
+  return loudness_db(std::span(sound.samples).first(kSpeechRate / 8));
+}
+
+TEST(NoiseSuppressor, PressesDownWhatIsSteady) {
+  NoiseSuppressor suppressor;
+  Random random(1);
+  std::vector<std::int16_t> block(NoiseSuppressor::kBlock);
+  double before = 0.0;
+  for (int i = 0; i < 150; ++i) {
+    for (auto& sample : block) sample = static_cast<std::int16_t>(random.uniform(-3000.0, 3000.0));
+    before = loudness_db(block);
+    suppressor.suppress(block);
+  }
+  EXPECT_LT(loudness_db(block), before - 15.0);
+}
+
+TEST(VoiceActivity, HearsAVoiceFiveDecibelsAboveTheNoiseAndItsEnd) {
+  VoiceActivity activity;
+  Random random(1);
+  EXPECT_FALSE(hear_in_noise(activity, random, 4.0, 1000.0, 0.0).has_value());
+  EXPECT_FALSE(hear_in_noise(activity, random, 0.5, 1000.0, 3300.0).has_value());
+  EXPECT_TRUE(activity.voice());
+  const auto utterance = hear_in_noise(activity, random, 0.5, 1000.0, 0.0);
+  ASSERT_TRUE(utterance.has_value());
+  EXPECT_LT(utterance->duration(), 0.5 + 0.25 + 0.3 + 0.4);
+}
+
+TEST(VoiceActivity, SuppressesTheNoiseAroundAVoiceThatIsNotFarAboveIt) {
+  Random random(1);
+  for (const double voice : {5000.0, 30000.0}) {
+    VoiceActivity activity;
+    const double noise_peak = voice == 5000.0 ? 900.0 : 100.0;
+    const double noise = 20.0 * std::log10(noise_peak * 2.294 / std::sqrt(3.0) / 32768.0);
+    hear_in_noise(activity, random, 4.0, noise_peak, 0.0);
+    hear_in_noise(activity, random, 0.5, noise_peak, voice);
+    const auto utterance = hear_in_noise(activity, random, 0.6, noise_peak, 0.0);
+    ASSERT_TRUE(utterance.has_value());
+    if (voice == 5000.0)
+      EXPECT_LT(first_loudness(*utterance), noise - 12.0);
+    else
+      EXPECT_NEAR(first_loudness(*utterance), noise, 1.0) << "as it was heard";
+    if (voice == 5000.0)
+      EXPECT_GT(utterance->duration(), 0.5 + 0.25 + 0.25) << "fricatives are hidden around it";
+    else
+      EXPECT_NEAR(utterance->duration(), 0.5 + 0.2 + 0.15, 0.06) << "with little of the room";
+  }
+}
+
+TEST(VoiceActivity, TakesTheRobotsOwnVoiceForNoBackground) {
+  VoiceActivity activity;
+  Room room;
+  room.run(activity, 2.0, 0.0, -100.0, 0.0);
+  const double background = activity.background_db();
+  room.run(activity, 6.0, 0.0, -20.0, -15.0);
+  EXPECT_NEAR(activity.background_db(), background, 0.5);
+  room.run(activity, 0.8, 0.0, -100.0, 0.0);
+  room.run(activity, 0.4, 1000.0, -100.0, 0.0);
+  EXPECT_TRUE(activity.voice()) << "who answers right after the question";
 }
 
 }  // namespace
