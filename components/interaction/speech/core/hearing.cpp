@@ -11,8 +11,10 @@ Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always) {
   if (!(fit >= rule.ask_fit)) return Verdict::kIgnore;
   if (always) return Verdict::kAct;
   const bool alone = hearing.candidates.size() < 2;
-  const bool clear = alone || hearing.candidates[1].behind >= rule.act_margin;
-  return fit >= rule.act_fit && clear ? Verdict::kAct : Verdict::kAsk;
+  const double margin = rule.act_margin + (hearing.in_noise ? rule.noise_margin : 0.0);
+  const double least = rule.act_fit + (hearing.in_noise ? rule.noise_fit : 0.0);
+  const bool clear = alone || hearing.candidates[1].behind >= margin;
+  return fit >= least && clear ? Verdict::kAct : Verdict::kAsk;
 }
 
 double confidence(const Hearing& hearing, const DecisionRule& rule) {

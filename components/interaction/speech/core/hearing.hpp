@@ -15,6 +15,7 @@ struct Hearing {
     double behind = 0.0;     ///< {0..} of the whole utterance: how much less likely than the first
   };
   std::vector<Candidate> candidates;  ///< best first, at most 3; empty: nothing like speech
+  bool in_noise = false;              ///< that was taken out: anything fits better then
 };
 
 /// What to do about it.
@@ -25,9 +26,11 @@ enum class Verdict : std::uint8_t {
 };
 
 struct DecisionRule {
-  double act_fit = -16.0;   ///< at least, to act without asking
-  double act_margin = 3.0;  ///< and at least so far before the second
-  double ask_fit = -50.0;   ///< at least, to ask
+  double act_fit = -16.0;     ///< at least, to act without asking
+  double act_margin = 3.0;    ///< and at least so far before the second
+  double ask_fit = -50.0;     ///< at least, to ask
+  double noise_fit = 6.0;     ///< so much more fit ...
+  double noise_margin = 2.0;  ///< ... and margin it takes to act on what was said in noise
 };
 
 /// A stop is an answer whenever it might be one: `always` acts where others are asked about.

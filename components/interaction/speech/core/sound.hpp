@@ -9,6 +9,7 @@ namespace usher::speech {
 struct Sound {
   int rate = 16000;  ///< [Hz]
   std::vector<std::int16_t> samples;
+  bool suppressed = false;  ///< noise was taken out of it
 
   double duration() const { return static_cast<double>(samples.size()) / rate; }  ///< [s]
 };

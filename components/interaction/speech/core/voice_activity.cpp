@@ -137,7 +137,7 @@ std::optional<Sound> VoiceActivity::frame(std::span<const std::int16_t> heard,
   const bool paused = silent_ >= static_cast<int>(settings_.pause * 100.0);
   if (!paused && kept_.size() < samples_of(kLongest)) return std::nullopt;
   const bool noisy = loudest_ < background_ + settings_.quiet_room;
-  Sound utterance{kSpeechRate, noisy ? kept_cleaned_ : kept_};
+  Sound utterance{kSpeechRate, noisy ? kept_cleaned_ : kept_, noisy};
   if (!noisy) {
     const auto room = [](int frames, double kept) {
       const auto samples = static_cast<std::ptrdiff_t>(frames) * kFrame;

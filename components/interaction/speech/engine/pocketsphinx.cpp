@@ -85,6 +85,7 @@ class PocketSphinx final : public Recognizer {
     if (decoder_ == nullptr) return Error{"PocketSphinx has no models yet"};
     if (Status listening = listen_for(phrases); !listening) return Error{listening.error()};
     Hearing hearing;
+    hearing.in_noise = sound.suppressed;
     if (understood_.empty() || sound.duration() < kShortest) return hearing;
     const auto samples = for_recognizer(sound).samples;
     if (Status decoded = decode(kSounds, samples); !decoded) return Error{decoded.error()};

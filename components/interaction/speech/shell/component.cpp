@@ -56,6 +56,10 @@ SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
                                       "Distance to the second phrase that this needs; per frame.");
   rule.ask_fit = parameters.number("ask_fit", "-", {-200.0, 50.0}, rule.ask_fit,
                                    "Fit from which on it asks back; less is ignored.");
+  rule.noise_fit = parameters.number("noise_fit", "-", {0.0, 50.0}, rule.noise_fit,
+                                     "So much more fit it takes to act on what was said in noise.");
+  rule.noise_margin = parameters.number("noise_margin", "-", {0.0, 50.0}, rule.noise_margin,
+                                        "The same for the distance to the second phrase.");
   VoiceActivity::Settings& activity = settings.activity;
   activity.over_noise = parameters.number("over_noise", "-", {2.0, 40.0}, activity.over_noise,
                                           "Decibels that a voice is above the background's mean.");

@@ -66,6 +66,12 @@ TEST(Judge, ActsWhenSureAsksWhenNotAndIgnoresTheRest) {
   EXPECT_EQ(judge(hearing(0, -20.0), rule, false), Verdict::kAsk);
   EXPECT_EQ(judge(hearing(0, -20.0), rule, true), Verdict::kAct);
   EXPECT_EQ(judge(hearing(0, -41.0), rule, true), Verdict::kIgnore);
+  Hearing noisy = hearing(0, -5.0, 4.5);
+  noisy.in_noise = true;
+  EXPECT_EQ(judge(noisy, {-12.0, 2.0, -40.0, 6.0, 2.0}, false), Verdict::kAct);
+  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}, false), Verdict::kAsk) << "fit";
+  EXPECT_EQ(judge(noisy, {-12.0, 3.0, -40.0, 6.0, 2.0}, false), Verdict::kAsk) << "margin";
+  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}, true), Verdict::kAct) << "a stop";
   EXPECT_EQ(judge({}, rule, true), Verdict::kIgnore);
   EXPECT_EQ(judge(hearing(0, std::numeric_limits<double>::quiet_NaN()), rule, true),
             Verdict::kIgnore);
