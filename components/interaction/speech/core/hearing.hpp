@@ -26,10 +26,10 @@ enum class Verdict : std::uint8_t {
 };
 
 struct DecisionRule {
-  double act_fit = -16.0;     ///< at least, to act without asking
+  double act_fit = -13.0;     ///< at least, to act without asking
   double act_margin = 3.0;    ///< and at least so far before the second
   double ask_fit = -50.0;     ///< at least, to ask
-  double noise_fit = 6.0;     ///< so much more fit ...
+  double noise_fit = 3.0;     ///< so much more fit ...
   double noise_margin = 2.0;  ///< ... and margin it takes to act on what was said in noise
 };
 
