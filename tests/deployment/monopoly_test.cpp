@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "deployment/running_robot.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::test {
 namespace {
@@ -58,6 +59,7 @@ TEST(Monopoly, AForeignWriterStopsTheRobotUntilItLeavesAndAnOperatorClears) {
     std::uint64_t number = 1'000'000;
     const auto drive = [&] {
       DriveCommand command;
+      command.stamp(wire::to_message(robot.observer().now()));
       command.epoch(robot.status()->epoch());
       command.number(++number);
       command.v(kIntruderSpeed);

@@ -9,6 +9,7 @@
 #include "deployment/running_robot.hpp"
 #include "operations/security/packet_attack.hpp"
 #include "support/sanitizer.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::test {
 namespace {
@@ -135,6 +136,7 @@ TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
   std::uint64_t tries = 0;
   for (std::uint64_t round = 0; round < 400; ++round) {
     for (const auto forgery : kForgeries) {
+      wanted.stamp(wire::to_message(robot_->observer().now()));
       wanted.number(1'000'000'000 + ++tries);
       runtime::Bytes payload;
       ASSERT_TRUE(runtime::message_type<DriveCommand>().serialize(&wanted, payload));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace usher::operations {
 
@@ -185,13 +186,17 @@ bool AttackedRobot::all_well() const {
                      });
 }
 
-bool AttackedRobot::stands() const {
+bool AttackedRobot::stands_or_turns(double turn_rate) const {
   if (motions_.empty()) return false;
   for (auto motion = motions_.rbegin(); motion != motions_.rend(); ++motion) {
-    if (std::abs(motion->v) > kStanding || std::abs(motion->w) > 3.0 * kStanding) return false;
+    if (std::abs(motion->v) > kStanding || std::abs(motion->w) > turn_rate) return false;
     if (motions_.back().at - motion->at > milliseconds(100)) return true;
   }
   return false;
+}
+bool AttackedRobot::stands() const { return stands_or_turns(3.0 * kStanding); }
+bool AttackedRobot::stays() const {
+  return stands_or_turns(std::numeric_limits<double>::infinity());
 }
 
 std::optional<runtime::Guid> AttackedRobot::life_of(const std::string& component) const {

@@ -68,6 +68,7 @@ class AttackedRobot {
   bool all_well() const;  ///< every component is ok, the robot may drive
   bool drives(double v) const { return !motions_.empty() && motions_.back().v > v; }
   bool stands() const;  ///< for a tenth of a second
+  bool stays() const;   ///< the same, though it may turn
   const std::vector<Wheels>& wheels() const { return wheels_; }
   const std::vector<Motion>& motions() const { return motions_; }
   const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }
@@ -88,6 +89,7 @@ class AttackedRobot {
  private:
   AttackedRobot(Launcher launcher, Deployment deployment, std::uint32_t domain);
   Status listen();
+  bool stands_or_turns(double turn_rate) const;
   void run();
   void send_joy();
 

@@ -121,7 +121,7 @@ class RogueWriter {
     if (topic == topics::kDriveCommand.name) {
       usher_msgs::msg::DriveCommand command;
       command.stamp(stamp);
-      command.epoch(*epoch_);
+      command.epoch(*epoch_ + (granted_ ? 1 : 0));
       command.number(*number_ + 1000 + ++count_);
       command.v(v_);
       command.w(v_);
@@ -133,6 +133,7 @@ class RogueWriter {
       grant.epoch(*epoch_ + 1);
       grant.writer(world_.writer_guid(topics::kDriveCommand, name_));
       grant.valid_for(0.12F);
+      granted_ = true;
       world_.publish(topics::kDriveGrant, grant, name_);
     } else if (topic == topics::kMovementEnable.name) {
       usher_msgs::msg::MovementEnable enable;
@@ -194,6 +195,7 @@ class RogueWriter {
   std::string name_;
   double v_;
   std::uint64_t count_ = 0;
+  bool granted_ = false;  ///< the right to himself
   std::shared_ptr<std::uint64_t> epoch_ = std::make_shared<std::uint64_t>(0);
   std::shared_ptr<std::uint64_t> number_ = std::make_shared<std::uint64_t>(0);
 };
@@ -205,7 +207,11 @@ std::vector<Guid> let_rogue_in(const Fault& fault, LockstepWorld& world) {
   auto writers = rogue->writers(fault.target);
   // Not before the caller knows its writers.
   world.at(world.now(), [&world, rogue, until, topic = fault.target] {
-    repeat(world, until, kRoguePeriod, [rogue, topic] { rogue->write(topic); });
+    repeat(world, until, kRoguePeriod, [rogue, topic] {
+      rogue->write(topic);
+      // Who grants himself the right means to use it.
+      if (topic == topics::kDriveGrant.name) rogue->write(std::string(topics::kDriveCommand.name));
+    });
   });
   world.at(until, [&world, name = fault.variant] { world.leave(name); });
   return writers;

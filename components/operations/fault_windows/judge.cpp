@@ -63,7 +63,8 @@ bool WindowJudge::rolls_out(const geometry::Twist2& twist) const {
 }
 
 bool WindowJudge::wheels_stand(double t) const {
-  return !wheels_ || wheels_->twist.v == 0.0 || t - wheels_->t > limits_.hold;
+  return !wheels_ || zero(wheels_->twist) || rolls_out(wheels_->twist) ||
+         t - wheels_->t > limits_.hold;
 }
 
 /// From the moment on at which the wheels are told so: the way to the standstill, and that it
@@ -202,6 +203,7 @@ void WindowJudge::command(double t, const Writer& writer, std::uint64_t epoch, s
 void WindowJudge::wheels(double t, const geometry::Twist2& twist) {
   wheels_ = At{t, twist};
   if (zero(twist) || rolls_out(twist)) return;
+  told_to_drive_ = t;
   if (!granted(t)) {
     violate(t, "the wheels are told " + number(twist.v) + " m/s without a live grant");
     return;
@@ -299,7 +301,8 @@ Judgement WindowJudge::judgement(double t) const {
   const bool active = navigation_ == kActive || navigation_ == kWaiting;
   if (navigation_ == kSucceeded) {
     judgement.end = WindowEnd::kArrived;
-  } else if (std::hypot(way / kMoved, turn / kTurned) > 1.0) {
+  } else if (told_to_drive_ && t - *told_to_drive_ < kLastSeconds &&
+             std::hypot(way / kMoved, turn / kTurned) > 1.0) {
     judgement.end = WindowEnd::kDrives;
   } else if (const auto read = lines(t); !read.empty()) {
     judgement.end = WindowEnd::kStands;

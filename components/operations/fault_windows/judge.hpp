@@ -146,6 +146,7 @@ class WindowJudge {
   std::deque<std::pair<double, double>> limits_told_;
   double within_limit_at_ = 0.0;
   std::optional<At> wheels_;
+  std::optional<double> told_to_drive_;  ///< when the wheels were last told more than to stand
   std::optional<Stop> without_grant_;
   std::vector<std::optional<Stop>> expected_stops_, barred_;
   std::vector<std::string> lines_;  ///< that were not there before the hit

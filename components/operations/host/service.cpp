@@ -37,8 +37,13 @@ ServiceUnit service_unit(const Manifest& manifest, const ServiceOptions& options
       << "[Service]\nType=notify\nNotifyAccess=main\nExecStart=" << word(options.program)
       << " launch " << word(options.manifest) << " --host " << word(options.host);
   if (!options.keys.empty()) out << " --keys " << word(options.keys);
-  out << "\n# The launcher stops its components in order; what is left after 5 s is killed.\n"
-         "KillMode=mixed\nTimeoutStopSec=5\nTimeoutStartSec=30\n"
+  out << "\n# The launcher stops its components in order. When it is gone without having done so, "
+         "they and the\n"
+         "# guards of the devices' lines are told to end themselves, and are not killed before the "
+         "base stands.\n"
+         "ExecStop=/bin/sh -c \"kill -TERM $$MAINPID; while kill -0 $$MAINPID; do sleep 0.05; "
+         "done\"\n"
+         "KillMode=control-group\nTimeoutStopSec=20\nTimeoutStartSec=30\n"
          "Restart=always\nRestartSec=200ms\n"
          "# The launcher says that it lives while it can keep its components running.\n"
          "WatchdogSec=5\nWatchdogSignal=SIGKILL\n"

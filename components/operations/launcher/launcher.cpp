@@ -566,7 +566,7 @@ std::string Launcher::summary() const {
 
 bool Launcher::broken() const {
   return std::any_of(processes_.begin(), processes_.end(), [](const Process& p) {
-    return p.state == Process::State::kGaveUp && p.criticality != Criticality::kNotify;
+    return p.state == Process::State::kGaveUp && p.criticality == Criticality::kStop;
   });
 }
 

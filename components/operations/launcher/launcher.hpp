@@ -89,7 +89,7 @@ class Launcher {
   const Process* find(const std::string& component) const;
   /// Sentences for an operator, in order; cleared by the call.
   std::vector<std::string> events();
-  /// A process gave up whose loss the robot does not merely report (criticality stop or degrade).
+  /// A process gave up without which the robot must not move (criticality stop).
   bool broken() const;
   /// A process gave up, whatever it means: the deployment is not what the manifest says.
   bool incomplete() const;

@@ -38,6 +38,10 @@ struct InputOptions {
   int depth = 0;  ///< zero = the catalogue's; a topic with many writers needs depth per writer
   bool optional = false;     ///< the component works without any writer
   bool each_writer = false;  ///< for Input::fresh_of_each
+  /// Who is heard keeps the input until it has been silent for max_age; another writer's samples
+  /// are dropped and counted. For what moves the robot: who is foreign is known a moment later
+  /// only.
+  bool one_writer = false;
 };
 
 /// A byte stream to a device (serial line, TCP). Owned by the host.
@@ -112,6 +116,7 @@ class Host {
     declaration.on_loss = options.on_loss;
     declaration.optional = options.optional;
     declaration.each_writer = options.each_writer;
+    declaration.one_writer = options.one_writer;
     declaration.scope = topic.scope;
     if (handler) {
       declaration.on_sample = [handler = std::move(handler)](const InputPort::Sample& sample) {

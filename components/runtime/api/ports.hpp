@@ -85,6 +85,7 @@ struct InputDeclaration {
   double rate_hz = 0.0;      ///< nominal rate of the topic, 0 = on occasion
   bool optional = false;     ///< `usher check` accepts a manifest without a writer
   bool each_writer = false;  ///< the newest sample of each writer is kept
+  bool one_writer = false;   ///< nobody else is heard while the newest sample is fresh
   topics::Scope scope = topics::Scope::kRobot;
   std::function<void(const InputPort::Sample&)> on_sample;
   std::function<void()> on_stale;

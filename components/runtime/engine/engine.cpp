@@ -45,11 +45,17 @@ class EngineInput final : public InputPort {
   }
   void start(Time start) { start_ = start; }
 
-  /// The sample becomes the newest one.
-  void accept(Sample&& sample) {
+  /// The sample becomes the newest one; false for one of a writer that is not heard.
+  bool accept(Sample&& sample) {
+    if (declaration_.one_writer && fresh() != nullptr &&
+        latest_.info.writer != sample.info.writer) {
+      ++unheard_;
+      return false;
+    }
     if (declaration_.each_writer) keep(sample);
     latest_ = std::move(sample);
     if (fresh() != nullptr) loss_reported_ = false;
+    return true;
   }
   const InputDeclaration& declaration() const { return declaration_; }
   std::uint32_t order() const { return order_; }
@@ -91,6 +97,7 @@ class EngineInput final : public InputPort {
     };
     report("rejected", rejected(), rejected_reported_);
     report("lost", lost(), lost_reported_);
+    report("from a second writer", unheard_, unheard_reported_);
   }
 
  private:
@@ -118,6 +125,7 @@ class EngineInput final : public InputPort {
   Time start_{};
   bool loss_reported_ = false;
   std::uint64_t rejected_reported_ = 0, lost_reported_ = 0;
+  std::uint64_t unheard_ = 0, unheard_reported_ = 0;
 };
 
 class EngineTimer final : public TimerPort {
@@ -313,8 +321,8 @@ class Engine::State {
         ++handlers_run;
         alive = run(arrival.posted, "an event", "");
       } else if (EngineInput& input = inputs[arrival.order - 1]; input.declaration().on_sample) {
+        if (!input.accept(std::move(arrival.sample))) continue;
         ++handlers_run;
-        input.accept(std::move(arrival.sample));
         const auto handle = [&] { input.declaration().on_sample(*input.latest()); };
         alive = run(handle, "input ", input.declaration().topic);
       }
@@ -559,11 +567,14 @@ InputPort& Engine::declare(InputDeclaration declaration) {
   if (state.phase != State::Phase::kConstructing) {
     fault("input " + declaration.topic + " was declared after the constructor");
   }
-  if (declaration.max_age > Duration::zero() && declaration.on_loss.empty()) {
+  const auto wrong = [&](const char* what) {
     if (!state.wrong_declarations.empty()) state.wrong_declarations += '\n';
-    state.wrong_declarations += "programming error: input " + declaration.topic +
-                                " has an age but does not say what its loss means";
-  }
+    state.wrong_declarations += "programming error: input " + declaration.topic + what;
+  };
+  if (declaration.max_age > Duration::zero() && declaration.on_loss.empty())
+    wrong(" has an age but does not say what its loss means");
+  if (declaration.max_age <= Duration::zero() && declaration.one_writer)
+    wrong(" has one writer but no age that would end its right");
   const std::uint32_t mailbox = state.inbox->add_input(declaration);
   return state.inputs.emplace_back(std::move(declaration), state.declarations++, state.now, mailbox,
                                    *state.inbox);

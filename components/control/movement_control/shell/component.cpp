@@ -122,18 +122,23 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
                                    "Below this the battery is low.");
 
   const auto wake = [this](const auto&, const auto&) { decide(); };
-  enable_ =
-      host.input(topics::kMovementEnable, {.max_age = kEnableAge, .on_loss = "commands zero"});
-  manual_ = host.input(
-      topics::kCmdVelManual,
-      {.max_age = kCommandAge, .on_loss = "passes to the next source, or zero", .optional = true},
-      wake);
-  interaction_ = host.input(
-      topics::kCmdVelInteraction,
-      {.max_age = kCommandAge, .on_loss = "passes to the next source, or zero", .optional = true},
-      wake);
-  navigation_ = host.input(topics::kCmdVelNavigation,
-                           {.max_age = kCommandAge, .on_loss = "commands zero"}, wake);
+  enable_ = host.input(topics::kMovementEnable,
+                       {.max_age = kEnableAge, .on_loss = "commands zero", .one_writer = true});
+  manual_ = host.input(topics::kCmdVelManual,
+                       {.max_age = kCommandAge,
+                        .on_loss = "passes to the next source, or zero",
+                        .optional = true,
+                        .one_writer = true},
+                       wake);
+  interaction_ = host.input(topics::kCmdVelInteraction,
+                            {.max_age = kCommandAge,
+                             .on_loss = "passes to the next source, or zero",
+                             .optional = true,
+                             .one_writer = true},
+                            wake);
+  navigation_ =
+      host.input(topics::kCmdVelNavigation,
+                 {.max_age = kCommandAge, .on_loss = "commands zero", .one_writer = true}, wake);
   whiskers_ = host.input(topics::kWhiskers, {.max_age = kSensorAge,
                                              .on_loss = "commands zero where whiskers are required",
                                              .optional = true});

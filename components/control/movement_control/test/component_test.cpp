@@ -120,6 +120,35 @@ TEST_F(Component, DrivesWhatIsWantedUnderTheEpochOfTheEnable) {
   EXPECT_TRUE(status().ok()) << status().limit_reason();
 }
 
+TEST_F(Component, HearsNobodyBesideTheOneWhoWishesAlready) {
+  run(3000);
+  const auto meddle = [this] {
+    geometry_msgs::msg::TwistStamped wanted;
+    wanted.header(wire::header(host.now(), "base_link"));
+    wanted.twist().linear().x(0.2), wanted.twist().angular().z(0.5);
+    host.publish(topics::kCmdVelNavigation, wanted, "rogue");
+    usher_msgs::msg::MovementEnable enable;
+    enable.header(wanted.header());
+    enable.movement(true), enable.navigation(true);
+    enable.speed_factor(0.1F);
+    host.publish(topics::kMovementEnable, enable, "rogue");
+  };
+  for (int i = 0; i < 50; ++i) {
+    run(20);
+    meddle();
+    host.run_for(milliseconds(1));
+    ASSERT_EQ(host.last(topics::kDriveCommand)->w(), 0.0);
+    ASSERT_NEAR(commanded(), 1.0, 1e-6);
+    ASSERT_EQ(host.last(topics::kDriveCommand)->epoch(), 7U);
+  }
+  silent.insert("cmd_vel/navigation");
+  run(300);
+  meddle();
+  host.run_for(milliseconds(20));
+  EXPECT_NE(host.last(topics::kDriveCommand)->w(), 0.0)
+      << "who comes after a silence may be a restart";
+}
+
 TEST_F(Component, WhatFallsSilentStopsIt) {
   const struct {
     const char* topic;

@@ -38,6 +38,7 @@ bool read(std::optional<std::string_view> field, Number& number) {
 
 std::string to_text(const Memory& memory) {
   std::string text = std::string(kHeader) + "\nepoch\t" + std::to_string(memory.epoch) + "\n";
+  if (memory.manual) text += "manual\ton\n";
   for (const std::string& client : memory.stopped_by) {
     text += "stop\t" + on_one_line(client) + "\n";
   }
@@ -61,6 +62,11 @@ Result<Memory> memory_from_text(std::span<const std::uint8_t> bytes) {
   }
   for (int line = 3; !rest.empty(); ++line) {
     const auto kind = take(rest, '\t');
+    if (kind == "manual") {
+      if (take(rest, '\n') != "on") return refuse(line, "manual and on");
+      memory.manual = true;
+      continue;
+    }
     if (kind == "stop") {
       const auto client = take(rest, '\n');
       if (!client || memory.stopped_by.size() >= kMostStops) {
@@ -78,7 +84,7 @@ Result<Memory> memory_from_text(std::span<const std::uint8_t> bytes) {
     const auto detail = component ? take(rest, '\n') : std::nullopt;
     const auto last = static_cast<int>(Cause::kEmergencyStop);
     if (!detail || cause < 0 || cause > last || !latches(static_cast<Cause>(cause))) {
-      return refuse(line, "stop or fault, id, time, latching cause, component and detail");
+      return refuse(line, "manual, stop, or fault, id, time, latching cause, component and detail");
     }
     if (memory.latched.size() >= FaultLog::kCapacity) return refuse(line, "at most 64 faults");
     fault.at = Time(at);

@@ -16,11 +16,13 @@ struct Memory {
   std::uint64_t epoch = 0;              ///< the highest that was ever granted
   std::vector<Fault> latched;           ///< active latched faults
   std::vector<std::string> stopped_by;  ///< clients that hold a stop; at most kMostStops
+  bool manual = false;                  ///< an operator drives: nobody else may begin to
 };
 
 inline constexpr std::size_t kMostStops = 32;
 
-/// One line for the epoch, one for each stop and fault; tabs between the fields.
+/// One line for the epoch, one where an operator drives, one for each stop and fault; tabs between
+/// the fields.
 std::string to_text(const Memory& memory);
 
 /// The inverse. Refuses anything else with the line and what was expected there.

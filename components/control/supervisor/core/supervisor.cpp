@@ -35,6 +35,7 @@ Supervisor::Supervisor(const Parameters& parameters, Memory memory)
   }
   stopped_by_ = std::move(memory.stopped_by);
   if (!parameters.movement_on_at_start) stop("start");
+  behavior_.manual(memory.manual);
   faults_.restore(std::move(memory.latched));
   decision_.grant.epoch = epoch_;
 }
@@ -393,6 +394,7 @@ Memory Supervisor::memory() const {
   Memory memory;
   memory.epoch = epoch_;
   memory.stopped_by = stopped_by_;
+  memory.manual = behavior_.manual_wanted();
   for (const Fault& fault : faults_.faults()) {
     if (fault.active && fault.latched()) memory.latched.push_back(fault);
   }

@@ -129,6 +129,12 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   p.response.angular.patience = time_from(parameters.number("angular_patience", "s", {0.1, 10},
                                                             in_seconds(p.response.angular.patience),
                                                             "How long that error may last."));
+  p.response.standing_linear =
+      parameters.number("standing_linear_threshold", "m/s", {0.05, 2}, p.response.standing_linear,
+                        "The same where only a standstill was commanded for the response time.");
+  p.response.standing_angular =
+      parameters.number("standing_angular_threshold", "rad/s", {0.05, 3},
+                        p.response.standing_angular, "The same for the turn rate.");
   return p;
 }
 
@@ -153,7 +159,7 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                        {message.component_name(), info.writer, message.idl_digest(),
                         static_cast<Reported>(std::min<std::uint8_t>(message.state(), 3)),
                         message.reason(), message.host(), handler_time(message.handler_time_max())},
-                       now());
+                       info.effective.time_since_epoch());
                  });
   command_ = host.input(topics::kDriveCommand, {.optional = true},
                         [this](const auto& message, const auto& info) {

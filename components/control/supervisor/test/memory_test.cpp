@@ -15,6 +15,7 @@ Memory example() {
   Memory memory;
   memory.epoch = 4711;
   memory.stopped_by = {"operator", "guide"};
+  memory.manual = true;
   memory.latched.push_back(
       {3, Time(123456789), Cause::kForeignWriter, "rogue", "writes drive/command", true});
   memory.latched.push_back({9, Time(-5), Cause::kEmergencyStop, "", "button", true});
@@ -27,6 +28,7 @@ TEST(Memory, ComesBackAsItWas) {
   ASSERT_TRUE(back.ok()) << back.error();
   EXPECT_EQ(back->epoch, 4711U);
   EXPECT_EQ(back->stopped_by, (std::vector<std::string>{"operator", "guide"}));
+  EXPECT_TRUE(back->manual);
   ASSERT_EQ(back->latched.size(), 2U);
   EXPECT_EQ(back->latched[0].id, 3U);
   EXPECT_EQ(back->latched[0].at, Time(123456789));

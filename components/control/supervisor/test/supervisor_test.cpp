@@ -261,6 +261,19 @@ TEST(Supervisor, ManualEndsTheGuidance) {
   EXPECT_EQ(robot.state(), State::kInteraction);
 }
 
+TEST(Supervisor, AnOperatorDrivesOnAfterARestart) {
+  Robot first = ready();
+  first.ask(Command::kManualOn);
+  Robot second(parameters(), first.supervisor.memory());
+  second.appear();
+  second.run(1000);
+  EXPECT_EQ(second.state(), State::kManual);
+  EXPECT_FALSE(second.supervisor.decision().enables.interaction);
+  EXPECT_TRUE(second.ask(Command::kManualOff).done);
+  second.run(300);
+  EXPECT_EQ(second.state(), State::kInteraction);
+}
+
 TEST(Supervisor, RefusesWithAReason) {
   Robot robot;
   EXPECT_EQ(robot.ask(Command::kManualOn).reason.rfind("still initialising", 0), 0U);

@@ -41,8 +41,8 @@ void ResponseWatch::advance(Time now) {
   bucket_ = std::max(bucket, bucket_);
 }
 
-ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits, double commanded,
-                                            double measured, Time elapsed) {
+ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits, double standing,
+                                            double commanded, double measured, Time elapsed) {
   const auto slot = static_cast<std::size_t>(bucket_ % static_cast<std::int64_t>(kBuckets));
   Span& present = axis.history[slot];
   present.low = std::min(present.low, commanded);
@@ -60,10 +60,11 @@ ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits,
   axis.error.error = -outside(measured, low, high);
   const double excess = outside(measured, std::min(low, 0.0), std::max(high, 0.0));
 
+  const bool stands = span.low == 0.0 && span.high == 0.0;
+  const double threshold = stands ? std::min(standing, limits.threshold) : limits.threshold;
   axis.error.lasting =
-      std::abs(axis.error.error) > limits.threshold ? axis.error.lasting + elapsed : Time::zero();
-  axis.excess_lasting =
-      std::abs(excess) > limits.threshold ? axis.excess_lasting + elapsed : Time::zero();
+      std::abs(axis.error.error) > threshold ? axis.error.lasting + elapsed : Time::zero();
+  axis.excess_lasting = std::abs(excess) > threshold ? axis.excess_lasting + elapsed : Time::zero();
 
   if (axis.excess_lasting > Time::zero() && axis.excess_lasting >= limits.patience) {
     return Verdict::kDisobeys;
@@ -83,8 +84,10 @@ ResponseWatch::Verdict ResponseWatch::observe(const geometry::Twist2& commanded,
   advance(now);
   started_ = true;
   last_now_ = now;
-  const Verdict linear = judge(linear_, parameters_.linear, commanded.v, measured.v, elapsed);
-  const Verdict angular = judge(angular_, parameters_.angular, commanded.w, measured.w, elapsed);
+  const Verdict linear = judge(linear_, parameters_.linear, parameters_.standing_linear,
+                               commanded.v, measured.v, elapsed);
+  const Verdict angular = judge(angular_, parameters_.angular, parameters_.standing_angular,
+                                commanded.w, measured.w, elapsed);
   verdict_ = std::max(linear, angular);
   return verdict_;
 }

@@ -31,6 +31,10 @@ class ResponseWatch {
     double overshoot = 0.3;                           ///< {>= 0} fraction of the span
     Axis linear{0.5, std::chrono::milliseconds(1000)};
     Axis angular{0.8, std::chrono::milliseconds(1000)};
+    /// Instead of the thresholds where only zero was commanded for `response`: who is told to stand
+    /// has no response to be slow with. More than a balancing base sways.
+    double standing_linear = 0.25;   ///< {> 0, at most linear.threshold counts} [m/s]
+    double standing_angular = 0.35;  ///< {> 0, at most angular.threshold counts} [rad/s]
   };
 
   enum class Verdict : std::uint8_t { kObeys, kFallsShort, kDisobeys };
@@ -70,8 +74,8 @@ class ResponseWatch {
   };
 
   void advance(Time now);
-  Verdict judge(AxisState& axis, const Axis& limits, double commanded, double measured,
-                Time elapsed);
+  Verdict judge(AxisState& axis, const Axis& limits, double standing, double commanded,
+                double measured, Time elapsed);
 
   Parameters parameters_;
   Time slice_;

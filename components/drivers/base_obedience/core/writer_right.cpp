@@ -43,14 +43,25 @@ void WriterRight::appeared(const WriterSighting& sighting, Time now) {
   if (allows(sighting.participant)) {
     role = holder_of(sighting.participant) != nullptr ? Role::kWaiting : Role::kHolder;
   }
-  // A full list already holds somebody who must not be there, so one more changes nothing.
-  if (known_.size() < kMostWriters) known_.push_back({sighting, now, role});
+  if (known_.size() == kMostWriters) {
+    // Of those who must not be there one more is counted only; who may be there has a place.
+    const auto foreign = std::find_if(known_.rbegin(), known_.rend(), [](const Known& known) {
+      return known.role == Role::kForeign;
+    });
+    ++unlisted_;
+    if (role == Role::kForeign || foreign == known_.rend()) return;
+    known_.erase(std::next(foreign).base());
+  }
+  known_.push_back({sighting, now, role});
 }
 
 void WriterRight::gone(const WriterId& writer) {
   const auto at = std::find_if(known_.begin(), known_.end(),
                                [&](const Known& known) { return known.sighting.writer == writer; });
-  if (at == known_.end()) return;
+  if (at == known_.end()) {
+    if (unlisted_ > 0) --unlisted_;
+    return;
+  }
   const bool was_holder = at->role == Role::kHolder;
   const std::string name = std::move(at->sighting.participant);
   known_.erase(at);
@@ -101,7 +112,8 @@ const WriterSighting* WriterRight::foreign() const {
   for (const Known& known : known_) {
     if (known.role == Role::kForeign) return &known.sighting;
   }
-  return nullptr;
+  static const WriterSighting kMore{kNobody, "more than can be listed", ""};
+  return unlisted_ > 0 ? &kMore : nullptr;
 }
 
 }  // namespace usher::drive

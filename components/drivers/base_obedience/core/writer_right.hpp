@@ -73,7 +73,7 @@ class WriterRight {
   const std::vector<Known>& writers() const { return known_; }
 
  private:
-  static constexpr std::size_t kMostWriters = 64;  ///< more are foreign without being listed
+  static constexpr std::size_t kMostWriters = 64;  ///< more who are foreign are not listed
 
   bool allows(const std::string& participant) const;
   const Known* holder_of(const std::string& participant) const;
@@ -81,6 +81,7 @@ class WriterRight {
   std::vector<std::string> participants_;
   Time slack_;
   std::vector<Known> known_;  ///< in order of appearance
+  std::size_t unlisted_ = 0;  ///< foreign ones that are there and have no place in the list
 };
 
 }  // namespace usher::drive

@@ -105,6 +105,10 @@ TEST(ResponseWatch, NoticesDisobedience) {
        [](double t) { return t < 1.0 ? 0.0 : 0.8; }, 2.2, false},
       {"drives the wrong way", [](double) { return 0.6; },
        [](double t) { return -0.6 * (t > 2.0); }, 5.0, false},
+      {"creeps on when told to stop", [](double t) { return t < 2.0 ? 0.4 : 0.0; },
+       [](double) { return 0.4; }, 2.0 + 2.5 + 1.0 + 0.2, false},
+      {"turns without a command", [](double) { return 0.0; }, [](double) { return 0.5; }, 1.2,
+       true},
       {"spins", [](double) { return 0.0; }, [](double) { return 1.5; }, 1.2, true},
   };
   for (const Disobedience& test : cases) {

@@ -149,5 +149,23 @@ TEST(WriterRight, AFloodOfForeignWritersIsBounded) {
   EXPECT_EQ(right.holder(), sighting(1).writer);
 }
 
+TEST(WriterRight, OfAFloodNobodyIsForgottenBeforeHeIsGone) {
+  WriterRight right({"movement_control"});
+  right.appeared(sighting(1), milliseconds(0));
+  const auto rogue = [](int i) {
+    WriterSighting one = sighting(200, "rogue");
+    one.writer[15] = static_cast<std::uint8_t>(i);
+    return one;
+  };
+  for (int i = 0; i < 100; ++i) right.appeared(rogue(i), milliseconds(i));
+  right.gone(sighting(1).writer);
+  right.appeared(sighting(2), milliseconds(200));
+  EXPECT_EQ(right.holder(), sighting(2).writer) << "a restart finds its place among them";
+  for (int i = 0; i < 99; ++i) right.gone(rogue(i).writer);
+  EXPECT_NE(right.foreign(), nullptr) << "one is left, listed or not";
+  right.gone(rogue(99).writer);
+  EXPECT_EQ(right.foreign(), nullptr);
+}
+
 }  // namespace
 }  // namespace usher::drive

@@ -35,8 +35,9 @@ TEST(ServiceUnit, RestartsAndIsWatched) {
   EXPECT_THAT(unit.text,
               HasSubstr("ExecStart=\"/usr/bin/usher\" launch \"/etc/usher/my robot 100%%.yaml\" "
                         "--host \"nuc\" --keys \"/etc/usher/keys\"\n"));
-  for (const auto* line : {"Type=notify\n", "Restart=always\n", "WatchdogSec=5\n", "User=usher\n",
-                           "WantedBy=multi-user.target\n"})
+  for (const auto* line :
+       {"Type=notify\n", "Restart=always\n", "WatchdogSec=5\n", "KillMode=control-group\n",
+        "User=usher\n", "WantedBy=multi-user.target\n"})
     EXPECT_THAT(unit.text, HasSubstr(line));
 }
 

@@ -165,6 +165,16 @@ TEST_F(Launching, PausesLongerEachTimeAndGivesUpBeyondTheBudget) {
   EXPECT_THAT(events_, Contains(HasSubstr("more than 4 starts within a minute: given up")));
 }
 
+TEST_F(Launching, WithoutWhatOnlyMakesItSlowerTheRobotGoesOn) {
+  program("crash", "exit 3");
+  auto& component_of = component("planner", "crash");
+  component_of.restart_budget = 1;
+  component_of.criticality = Criticality::kDegrade;
+  auto made = launcher();
+  ASSERT_TRUE(wait_for(made, [&] { return made.incomplete(); }));
+  EXPECT_FALSE(made.broken());
+}
+
 TEST_F(Launching, DoesNotRestartWhatRefusesItsParameters) {
   program("picky", "echo wrong unit >&2; exit 2");
   component("legs", "picky");

@@ -318,6 +318,34 @@ TEST_F(EngineTest, AnAgeWithoutAWordAboutItsLossIsRefused) {
               HasSubstr("input test/events has an age but does not say what its loss means"));
 }
 
+TEST_F(EngineTest, ASecondWriterIsNotHeardWhileTheFirstIs) {
+  const Guid first = {1}, second = {2};
+  std::vector<Guid> handled;
+  make([&](Host& host) {
+    host.input(kEvents, {.max_age = milliseconds(100), .on_loss = "nothing", .one_writer = true},
+               [&](const auto&, const SampleInfo& info) { handled.push_back(info.writer); });
+  });
+  const auto turn = [&](std::uint64_t number, const Guid& writer) {
+    transport_.deliver.at("test/events")(message_, writer, number, false);
+    EXPECT_TRUE(engine_->run_turn());
+  };
+  turn(1, first);
+  turn(1, second);
+  advance(milliseconds(90));
+  turn(2, second);
+  turn(2, first);
+  EXPECT_THAT(handled, ElementsAre(first, first));
+  advance(milliseconds(101));
+  turn(3, second);
+  turn(3, first);
+  EXPECT_THAT(handled, ElementsAre(first, first, second)) << "a restart takes over from silence";
+}
+
+TEST_F(EngineTest, OneWriterForEverIsRefused) {
+  make([&](Host& host) { host.input(kEvents, {.one_writer = true}); });
+  EXPECT_THAT(status_.error(), HasSubstr("one writer but no age"));
+}
+
 TEST_F(EngineTest, OnlyInputsWithAHandlerWakeTheDispatcher) {
   Input<Message> polled;
   make([&](Host& host) { polled = host.input(kEvents, {}); });
