@@ -1,9 +1,10 @@
 // mutant-NAME KIND...: the whole robot with one defect, hit by windows of these kinds of faults.
-// Exit code 0 when the judge of the fault windows finds the defect, 1 when no window does, 2 when
-// the windows could not be run.
+// Exit code 0 when the judge of the fault windows finds the defect in a window that the robot
+// without it keeps every law in, 1 when no window does, 2 when the windows could not be run.
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,6 +30,15 @@ std::vector<std::uint64_t> seeds_of(const std::set<std::string>& kinds,
   return seeds;
 }
 
+/// Whether the robot without the defect keeps every law in this window.
+bool kept_without_it(std::uint64_t seed) {
+  const std::string name = std::to_string(seed);
+  return std::system(("\"" USHER_BINARY_DIR "/bin/usher\" experiment faults --only " + name +
+                      " --out \"" USHER_BINARY_DIR "/tests/mutants/control-" + name +
+                      "\" > /dev/null")
+                         .c_str()) == 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -45,6 +55,8 @@ int main(int argc, char** argv) {
     const auto window = run_window(*setting, seeds[i]);
     if (!window) return Error{window.error()};
     if (window->judgement.passed()) return std::string();
+    if (!kept_without_it(seeds[i]))
+      return "seed " + std::to_string(seeds[i]) + " breaks a law without the defect, too\n";
     killed = true;
     return "killed by seed " + std::to_string(window->seed) + ": " + window->plan.text() + ": " +
            window->judgement.violation + "\n";

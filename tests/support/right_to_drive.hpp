@@ -17,6 +17,7 @@ class RightToDrive {
   bool commands = true;
   double v = 0.0, w = 0.0;
   const char* commander = "movement_control";
+  const char* grantor = "supervisor";
 
   /// Both speak every 20 ms.
   void run(int ms) {
@@ -28,7 +29,7 @@ class RightToDrive {
         grant.writer(host_.world().writer_guid(topics::kDriveCommand, "movement_control"));
         grant.epoch(1);
         grant.valid_for(0.12F);
-        host_.publish(topics::kDriveGrant, grant, "supervisor");
+        host_.publish(topics::kDriveGrant, grant, grantor);
       }
       if (commands) {
         usher_msgs::msg::DriveCommand command;

@@ -1,5 +1,6 @@
 #include "drivers/base_obedience/shell/obedient_base.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "wire/conversions.hpp"
@@ -37,11 +38,15 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       obedience_(read_limits(host.parameters())),
       wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
                                              "Of the driven wheels; also the axle's height.")),
+      grantor_name_(host.parameters().text("grantor", "supervisor",
+                                           "The component that may grant the right to drive.")),
+      foreign_grants_(host.health().counter("grants: foreign writer")),
       foreign_(host.health().counter("commands: foreign writer")),
       foreign_requests_(host.health().counter("requests: foreign writer")) {
   grant_ = host.input(
       topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
+        if (!may_grant(info.writer)) return;
         const auto valid_for = std::chrono::duration<double>(
             std::isfinite(message.valid_for()) ? static_cast<double>(message.valid_for()) : 0.0);
         obedience_.grant(
@@ -72,6 +77,21 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
   battery_ = host.output(topics::kBattery);
   cycle_timer_ = host.timer("cycle", kCycle, [this](auto) { cycle(); });
   battery_timer_ = host.timer("battery", milliseconds(1000), [this](auto) { publish_battery(); });
+}
+
+/// Of a name that discovery gave. Who took the supervisor's is found beside it; while there is none
+/// he looks like its restart.
+bool ObedientBase::may_grant(const runtime::Guid& writer) {
+  if (writer == grantor_) return true;
+  const auto all = grant_.writers();
+  const bool right = std::any_of(all.begin(), all.end(), [&](const runtime::WriterInfo& each) {
+    return each.guid == writer && each.participant == grantor_name_;
+  });
+  if (right)
+    grantor_ = writer;
+  else
+    ++foreign_grants_;
+  return right;
 }
 
 void ObedientBase::cycle() {

@@ -54,6 +54,7 @@ class ObedientBase {
   double wheel_radius() const { return wheel_radius_; }  ///< [m]
 
  private:
+  bool may_grant(const runtime::Guid& writer);
   void cycle();
   /// What the base gets: the permitted command, or a stop.
   void drive();
@@ -72,6 +73,9 @@ class ObedientBase {
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;
   bool motors_off_ = false;  ///< requested, until a reset
+  std::string grantor_name_;
+  runtime::Guid grantor_{};  ///< whose name was looked up last
+  std::uint64_t& foreign_grants_;
   std::uint64_t& foreign_;
   std::uint64_t& foreign_requests_;
 

@@ -93,6 +93,17 @@ TEST_F(DeviceReal, ObeysNobodyElse) {
   EXPECT_GT(host.counter("commands: foreign writer"), 0U);
 }
 
+TEST_F(DeviceReal, IsDrivenOnlyUnderAGrantOfTheSupervisor) {
+  right.v = 0.5;
+  right.grantor = "intruder";
+  right.run(2000);
+  EXPECT_EQ(device->twist.v, 0.0);
+  EXPECT_GT(host.counter("grants: foreign writer"), 0U);
+  right.grantor = "supervisor";
+  right.run(2000);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+}
+
 TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndReturnsByItself) {
   right.v = 0.5;
   right.run(2000);
