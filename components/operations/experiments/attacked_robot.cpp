@@ -165,6 +165,7 @@ bool AttackedRobot::ask(std::uint8_t command, milliseconds patience) {
   SupervisorRequest request;
   request.client(kOperator);
   request.command(command);
+  if (command == SupervisorRequest_Constants::COMMAND_NAVIGATION_START) request.goal("nowhere");
   while (Clock::now() < until) {
     request.id(static_cast<std::uint64_t>(Clock::now().time_since_epoch().count() / 1000));
     request_->write(request);

@@ -167,9 +167,9 @@ class Monopoly {
                                    .host = "nuc",
                                    .domain = robot_.domain()});
     if (!rogue) return Error{rogue.error()};
+    const auto first = Clock::now();
     auto writer = (*rogue)->foreign_writer(target.topic, target.type, way.quality);
     if (!writer) return Error{writer.error()};
-    const auto first = Clock::now();
     std::optional<AttackedRobot::Instant> named;
     // What is written before anybody could hear it attacks nobody.
     robot_.wait_for(

@@ -93,7 +93,12 @@ void ManualControlComponent::ask(Wish wish) {
 }
 
 void ManualControlComponent::drive() {
-  const auto twist = core_.command(now());
+  auto twist = core_.command(now());
+  // While it is its turn it is never silent: movement_control hears nobody beside it then.
+  const auto* status = supervisor_.latest();
+  if (!twist && status != nullptr &&
+      status->state() == usher_msgs::msg::SupervisorStatus_Constants::STATE_MANUAL)
+    twist = geometry::Twist2{};
   if (!twist) return;
   auto message = wire::to_message(host_.now(), *twist);
   message.header().frame_id(frames::kBaseFootprint);

@@ -39,6 +39,22 @@ TEST(ManualControlShell, PublishesWhileHeldAndFallsSilentAfterZeros) {
   EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
 }
 
+TEST(ManualControlShell, IsNeverSilentWhileItIsItsTurn) {
+  auto host = make();
+  usher_msgs::msg::SupervisorStatus status;
+  status.state(usher_msgs::msg::SupervisorStatus_Constants::STATE_MANUAL);
+  host.publish(topics::kSupervisorStatus, status);
+  host.run_for(milliseconds(1000));
+  EXPECT_GE(host.written(topics::kCmdVelManual).size(), 19U);
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.0);
+  status.state(usher_msgs::msg::SupervisorStatus_Constants::STATE_INTERACTION);
+  host.publish(topics::kSupervisorStatus, status);
+  host.run_for(milliseconds(100));
+  host.clear();
+  host.run_for(milliseconds(1000));
+  EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
+}
+
 TEST(ManualControlShell, AsksUntilAnsweredAndNotForEver) {
   auto host = make();
   host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));

@@ -1,6 +1,7 @@
 #include "control/supervisor/shell/component.hpp"
 
 #include <memory>
+#include <utility>
 
 #include "wire/conversions.hpp"
 
@@ -260,6 +261,7 @@ void SupervisorComponent::step() {
   const bool fault = decision.state == State::kFault;
   host_.health().set(fault ? HealthState::kDegraded : HealthState::kOk,
                      fault ? std::string(decision.reason) : "");
+  if (std::exchange(told_fault_, fault) != fault) publish_status();
 }
 
 void SupervisorComponent::publish_grant(const Decision& decision) {

@@ -33,8 +33,9 @@ class SupervisorComponent final : public runtime::Component {
   runtime::Host& host_;
   double grant_valid_for_;
   Supervisor core_;
-  std::string kept_;      ///< written, or on its way to the disk
-  bool keeping_ = false;  ///< it is on its way
+  std::string kept_;         ///< written, or on its way to the disk
+  bool keeping_ = false;     ///< it is on its way
+  bool told_fault_ = false;  ///< in the status: an operator reads of a fault at once
   std::uint64_t base_request_id_ = 0;
   std::uint8_t base_request_ = 0;
   int status_share_ = 0;
