@@ -88,6 +88,13 @@ TEST_F(SecureRobot, DrivesAndAnswersItsOperator) {
   EXPECT_EQ(checked.wait(), 0) << checked.output();
 }
 
+TEST_F(SecureRobot, AStopIsAskedForUntilItIsAnswered) {
+  const auto stop = robot_->command({"stop"});
+  EXPECT_EQ(stop->wait(), 0) << stop->errors();
+  EXPECT_THAT(robot_->status()->stopped_by(), Not(testing::IsEmpty()));
+  ASSERT_TRUE(robot_->wait_for([] { return robot_->command({"move"})->wait() == 0; }, Seconds(60)));
+}
+
 TEST_F(SecureRobot, DrivesOnBesideAForeignParticipantAndReportsIt) {
   auto intruder =
       runtime::Observer::create({.name = "intruder", .host = "nuc", .domain = robot_->domain()});

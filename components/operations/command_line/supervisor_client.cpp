@@ -1,6 +1,7 @@
 #include "operations/command_line/supervisor_client.hpp"
 
-#include <chrono>
+#include <algorithm>
+#include <cstdio>
 
 #include "idl/topics.hpp"
 
@@ -12,6 +13,13 @@ using std::chrono::milliseconds;
 using namespace usher_msgs::msg;
 
 constexpr auto kRepeat = milliseconds(200);
+constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kAnswer = std::chrono::seconds(5);
+
+bool is_stop(std::uint8_t command) {
+  using namespace SupervisorRequest_Constants;
+  return command == COMMAND_STOP || command == COMMAND_EMERGENCY_STOP;
+}
 
 }  // namespace
 
@@ -21,19 +29,28 @@ std::uint64_t fresh_id() {
                                         .count());
 }
 
-Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const std::string& goal) {
+Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const std::string& goal,
+                       std::chrono::seconds stop_patience) {
   auto writer = observer.writer(topics::kSupervisorRequest);
   auto status = observer.reader(topics::kSupervisorStatus);
   if (!writer) return Error{writer.error()};
   if (!status) return Error{status.error()};
-  if (!writer->wait_for_readers(1, std::chrono::seconds(3)))
-    return Error{"no supervisor in this domain"};
+  // A stop is asked for as long as nobody answers: with keys the two may need half a minute to
+  // know each other, and a supervisor that is being restarted is back before.
+  const auto started = std::chrono::steady_clock::now();
+  const auto patience = is_stop(command) ? stop_patience : kPatience;
+  if (!writer->wait_for_readers(1, kPatience)) {
+    if (is_stop(command)) std::fputs("usher: no supervisor answers in this domain yet; trying on\n", stderr);
+    if (!is_stop(command) || !writer->wait_for_readers(1, patience - kPatience))
+      return Error{"no supervisor in this domain"};
+  }
   SupervisorRequest request;
   request.id(fresh_id());
   request.client(kOperatorName);
   request.command(command);
   request.goal(goal);
-  for (int tries = 0; tries < 25; ++tries) {
+  const auto last = std::max(started + patience, std::chrono::steady_clock::now() + kAnswer);
+  while (std::chrono::steady_clock::now() < last) {
     writer->write(request);
     const auto until = std::chrono::steady_clock::now() + kRepeat;
     while (std::chrono::steady_clock::now() < until) {
@@ -43,7 +60,7 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
       return {};
     }
   }
-  return Error{"the supervisor did not answer within 5 s"};
+  return Error{"the supervisor did not answer"};
 }
 
 }  // namespace usher::operations

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -15,8 +16,10 @@ inline constexpr const char* kOperatorName = "operator";
 std::uint64_t fresh_id();
 
 /// Asks the supervisor (SupervisorRequest_Constants COMMAND_*) until it answers; the error says why
-/// it did not do it. At most about 6 s.
+/// it did not do it: after about 8 s, and after `stop_patience` for a stop, which it says on
+/// stderr.
 Status tell_supervisor(runtime::Observer& observer, std::uint8_t command,
-                       const std::string& goal = {});
+                       const std::string& goal = {},
+                       std::chrono::seconds stop_patience = std::chrono::seconds(25));
 
 }  // namespace usher::operations

@@ -120,6 +120,8 @@ std::optional<Feedback> Link::take(std::span<const std::uint8_t> packet, Time no
     stopped_by_ = "its stop button was pressed";
   else if (information->stall_stop && !stopped())
     stopped_by_ = "stopped after a stall";
+  else if (reported_mode_ == Mode::kReady && !information->motors_on && !stopped())
+    stopped_by_ = "its motors were switched off at the base";
   if (stopped()) feedback.mode = Mode::kEmergency;
   reported_mode_ = feedback.mode;
   reason_ = stopped()                                             ? stopped_by_

@@ -291,6 +291,22 @@ TEST(Link, ItsStopButtonAndAStallHoldUntilReset) {
   }
 }
 
+TEST(Link, MotorsThatSomebodySwitchedOffStayOffUntilReset) {
+  Link link({});
+  Base base;
+  base.connect(link);
+  base.hear(link, report(0, 0, 0, 0, 0, true));
+  base.hear(link, report(0, 0, 0, 0, 0, false));
+  base.now += milliseconds(600);
+  EXPECT_FALSE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
+  EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
+  EXPECT_EQ(link.reason(), "its motors were switched off at the base");
+  link.reset();
+  base.hear(link, report(0, 0, 0, 0, 0, false));
+  base.now += milliseconds(600);
+  EXPECT_TRUE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
+}
+
 TEST(Link, StandstillIsZeroVelocity) {
   const Bytes bytes = Link::standstill();
   EXPECT_TRUE(contains(bytes, encode(Command::kVelocity, 0)));

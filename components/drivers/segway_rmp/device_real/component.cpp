@@ -1,11 +1,14 @@
 #include "drivers/segway_rmp/device_real/component.hpp"
 
+#include <memory>
+
 namespace usher::segway_rmp {
 
 namespace {
 /// The base holds a command for 0.4 s; it is told at its own rate.
 constexpr auto kCycle = std::chrono::milliseconds(10);
 constexpr const char* kEmergencyKey = "emergency";
+constexpr auto kKeeping = std::chrono::milliseconds(5);  // in simulation
 }  // namespace
 
 Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parameters) {
@@ -33,8 +36,10 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
                                "The guard commands zero when the driver is silent for so long.");
   const auto zero = command({}, Calibration{});
   // Connecting sets the balance mode: a base that was switched off must stay so over a restart.
-  if (const auto kept = host.kept(kEmergencyKey); kept && !kept->empty() && kept->front() != 0)
+  if (const auto kept = host.kept(kEmergencyKey); kept && !kept->empty() && kept->front() != 0) {
     line_.link().emergency_stop();
+    kept_ = true;
+  }
   line_.open(
       {.address = "serial:///dev/ttyUSB0?baud=460800",
        .text = "The base's line.",
@@ -51,9 +56,27 @@ void SegwayRmpComponent::emergency(bool on) {
   } else {
     line_.link().reset();
   }
-  const std::uint8_t remembered = on ? 1 : 0;
-  if (const auto status = host_.keep(kEmergencyKey, {&remembered, 1}); !status)
-    host_.health().set(runtime::HealthState::kDegraded, status.error());
+  keep();
+}
+
+/// Beside the handlers: the base must not wait for a disk to be switched off.
+void SegwayRmpComponent::keep() {
+  const bool emergency = line_.link().emergency();
+  if (keeping_ || emergency == kept_) return;
+  kept_ = emergency;
+  keeping_ = true;
+  const auto outcome = std::make_shared<Status>();
+  host_.offload(
+      kKeeping,
+      [&host = host_, emergency, outcome] {
+        const std::uint8_t remembered = emergency ? 1 : 0;
+        *outcome = host.keep(kEmergencyKey, {&remembered, 1});
+      },
+      [this, outcome] {
+        keeping_ = false;
+        if (!*outcome) host_.health().set(runtime::HealthState::kDegraded, outcome->error());
+        keep();
+      });
 }
 
 }  // namespace usher::segway_rmp

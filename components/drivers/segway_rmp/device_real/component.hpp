@@ -14,10 +14,13 @@ class SegwayRmpComponent final : public runtime::Component {
  private:
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
   void emergency(bool on);
+  void keep();
 
   runtime::Host& host_;
   drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
+  bool kept_ = false;     ///< the memory says that its motors were switched off
+  bool keeping_ = false;  ///< it is on its way to the disk
 };
 
 }  // namespace usher::segway_rmp
