@@ -12,6 +12,10 @@ namespace {
 constexpr const char* kCancel = "cancel";
 constexpr const char* kStart = "start";
 constexpr const char* kContinue = "continue";
+constexpr const char* kStay = "stay";
+
+/// What may be said to a screen that waits for no answer, besides a stop.
+bool unasked(const std::string& option_id) { return option_id == kCancel || option_id == kStay; }
 
 }  // namespace
 
@@ -23,14 +27,13 @@ bool Conversation::offers(std::string_view option_id) const {
 void Conversation::take(const Screen& screen, Time /*now*/) {
   const bool another = screen.id != screen_.id;
   const bool more = screen.spoken_id > said_ && !screen.spoken.empty();
+  // What comes first after a restart, of this component or of the dialogue, is nobody's answer.
   const bool answered =
-      screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client;
+      screen_.id != 0 && screen.answer_id != 0 &&
+      (screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client);
   screen_ = screen;
-  // Whoever answers, by touch or voice, wants it to go on.
-  if (another && answered && alive_ && holds_) {
-    holds_ = false;
-    wishes_.go_on = true;
-  }
+  // Whoever answers, by touch or voice, wants it to go on; unless the answer was a stop.
+  if (another && answered && alive_ && !offers(kContinue)) lift_hold();
   if (another) {
     question_.reset();
     greeted_ear_ = false;
@@ -46,7 +49,9 @@ void Conversation::take(const Screen& screen, Time /*now*/) {
 
 void Conversation::listen() {
   std::vector<Phrase> phrases;
-  if (able_ && english() && screen_.id != 0) {
+  if (understands() && screen_.id != 0) {
+    // Also where only few of them would be obeyed: with fewer words, noise is taken for a stop more
+    // often.
     std::vector<Option> options = screen_.options;
     if (holds_) options.push_back({kStart, kStart, false});
     phrases = question_ ? phrases_for_question(options) : phrases_for(options);
@@ -74,23 +79,33 @@ void Conversation::answer(const std::string& option_id) {
 void Conversation::stop() {
   question_.reset();
   wishes_.break_off = true;
+  const bool stands = alive_ && offers(kContinue);  // the dialogue has stopped it already
   if (alive_ && offers(kStop)) {
     answer(std::string(kStop));
-  } else if (alive_ && offers(kCancel)) {
-    answer(kCancel);
-  } else {  // the dialogue is gone or has nothing to stop; the robot may turn all the same
+  } else if (!stands) {  // nothing to stop, but the robot may turn all the same
     wishes_.halt = true;
+    wishes_.go_on = false;
     holds_ = true;
   }
   listen();
 }
 
+void Conversation::lift_hold() {
+  if (!holds_) return;
+  holds_ = false;
+  wishes_.halt = false;
+  wishes_.go_on = true;
+}
+
+void Conversation::hear_visit(bool goes_on) {
+  if (visit_ && !goes_on) lift_hold();
+  visit_ = goes_on;
+}
+
 /// What was understood for sure: answers the screen, lifts its own stop.
 void Conversation::obey(const std::string& option_id) {
-  if (holds_ && (option_id == kStart || option_id == kContinue)) {
-    holds_ = false;
-    wishes_.go_on = true;
-  }
+  if (option_id == kStop) return stop();  // the second guess, confirmed
+  if (option_id == kStart || option_id == kContinue || option_id == kStay) lift_hold();
   if (offers(option_id)) answer(option_id);
 }
 
@@ -111,25 +126,31 @@ void Conversation::reply(const Phrase& phrase, Time now) {
     }
   } else {
     ++counts_.acted;
-    answer(phrase.option_id);
+    question_.reset();
+    wishes_.break_off = true;
+    obey(phrase.option_id);
   }
   listen();
 }
 
-void Conversation::heard(const Hearing& hearing, std::uint64_t phrases_id, Time now) {
-  const auto phrase_of = [&](std::size_t i) {
-    return phrases_[std::min(hearing.candidates[i].phrase, phrases_.size() - 1)];
-  };
-  if (phrases_id != phrases_id_ || hearing.candidates.empty() || phrases_.empty()) {
+void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phrases,
+                         std::uint64_t phrases_id, Time now) {
+  const Hearing hearing = one_for_each_option(utterance, phrases);
+  if (hearing.candidates.empty()) {
     ++counts_.ignored;
     return;
   }
-  const Phrase first = phrase_of(0);
+  const Phrase first = phrases[hearing.candidates.front().phrase];
   const bool stops = first.option_id == kStop;
-  const bool answers_question = question_ && (first.option_id == kYes || first.option_id == kNo);
-  Verdict verdict = judge(hearing, rule_, stops || answers_question);
+  const bool in_time = phrases_id == phrases_id_;
+  // Who chats nearby must not confirm himself: a yes must be a clear one, a no need not.
+  const bool denies = question_ && first.option_id == kNo;
+  Verdict verdict = judge(hearing, rule_, stops || denies);
   // While a question back is open, only a clear answer takes its place.
-  if (question_ && verdict == Verdict::kAsk) verdict = Verdict::kIgnore;
+  if (verdict == Verdict::kAsk && (question_ || !screen_.listens)) verdict = Verdict::kIgnore;
+  const bool meant = stops || (in_time && (screen_.listens || unasked(first.option_id) ||
+                                           (holds_ && first.option_id == kStart)));
+  if (!meant) verdict = Verdict::kIgnore;
   last_confidence_ = confidence(hearing, rule_);
   last_heard_ = verdict == Verdict::kIgnore ? "" : first.words;
   if (verdict == Verdict::kIgnore) {
@@ -147,13 +168,9 @@ void Conversation::heard(const Hearing& hearing, std::uint64_t phrases_id, Time 
     listen();
   } else {
     Question question;
-    for (std::size_t i = 0; i < hearing.candidates.size(); ++i) {
-      const Phrase phrase = phrase_of(i);
-      const bool there =
-          std::any_of(question.candidates.begin(), question.candidates.end(),
-                      [&](const Phrase& other) { return other.option_id == phrase.option_id; });
-      if (!there && question.candidates.size() < kMostQuestions)
-        question.candidates.push_back(phrase);
+    for (const auto& candidate : hearing.candidates) {
+      if (question.candidates.size() < kMostQuestions)
+        question.candidates.push_back(phrases[candidate.phrase]);
     }
     question_ = std::move(question);
     ask(now);
@@ -169,7 +186,7 @@ void Conversation::step(bool sounds, Time now) {
     }
   }
   listen();
-  const bool waits = listens() && screen_.listens && !question_;
+  const bool waits = awaits_answer() && !question_;
   if (waits && !greeted_ear_ && !sounds && !wishes_.say) {
     wishes_.tones.push_back(Tone::kListening);
     greeted_ear_ = true;
@@ -185,7 +202,8 @@ std::string Conversation::hint() const {
     return phrases::filled(sentences_.did_you_say,
                            {{"answer", question_->candidates[question_->at].label}});
   }
-  return screen_.listens && !english() ? sentences_.by_touch : std::string();
+  if (holds_) return sentences_.held;
+  return screen_.listens && !understands() ? sentences_.by_touch : std::string();
 }
 
 }  // namespace usher::speech

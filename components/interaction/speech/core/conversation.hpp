@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,12 +49,15 @@ struct Wishes {
 /// Our own sentences, in the language of the dialogue.
 struct Sentences {
   std::string did_you_say;  ///< with {answer}
-  std::string by_touch;     ///< in a language that is not understood
+  std::string by_touch;     ///< when nothing that is said is understood
+  std::string held;         ///< while the robot stands by our stop
 };
 
 /// Who speaks when, and what an answer is. Says what a screen wants said, once for each spoken_id:
 /// a new question breaks the old one off, more about the same waits its turn. Takes what was heard
-/// for an answer only when it is sure, else asks back; a stop it takes at once.
+/// for an answer only when it is sure, else asks back; a stop it takes at once. A screen that waits
+/// for no answer is left alone by all who talk nearby: only who is sure to call the journey off, or
+/// says that he is still here, is heard besides a stop, and nobody is asked back.
 class Conversation {
  public:
   /// How long a question back waits.
@@ -68,8 +72,12 @@ class Conversation {
   void take(const Screen& screen, Time now);
   /// The dialogue is heard from or is not.
   void hear_dialogue(bool alive) { alive_ = alive; }
-  /// What was heard, with the number of the phrases that it was listened for.
-  void heard(const Hearing& hearing, std::uint64_t phrases_id, Time now);
+  /// A visit goes on or does not. Its end ends our stop, too: the next visitor finds no held robot.
+  void hear_visit(bool goes_on);
+  /// What was heard, with the phrases that it was listened for and their number. A stop is one
+  /// whatever has come to the screen since; anything else was said to the buttons of then.
+  void heard(const Hearing& hearing, std::span<const Phrase> phrases, std::uint64_t phrases_id,
+             Time now);
   /// The robot's voice sounds or not; call often.
   void step(bool sounds, Time now);
   Wishes take_wishes();
@@ -78,6 +86,10 @@ class Conversation {
   const std::vector<Phrase>& phrases() const { return phrases_; }
   std::uint64_t phrases_id() const { return phrases_id_; }
   bool listens() const { return !phrases_.empty(); }
+  /// Answers may be spoken in the language of the dialogue.
+  bool understands() const { return able_ && english(); }
+  /// A question is open, and may be answered by voice.
+  bool awaits_answer() const { return listens() && screen_.listens; }
   bool asks() const { return question_.has_value(); }
   /// What the visitor should read besides the screen; empty: nothing.
   std::string hint() const;
@@ -104,6 +116,7 @@ class Conversation {
   void ask(Time now);
   void answer(const std::string& option_id);
   void stop();
+  void lift_hold();
   void obey(const std::string& option_id);
   void reply(const Phrase& phrase, Time now);
 
@@ -111,7 +124,8 @@ class Conversation {
   Sentences sentences_;
   Screen screen_;
   std::uint64_t said_ = 0;
-  bool able_ = false, alive_ = true, holds_ = false, waited_ = false, greeted_ear_ = false;
+  bool able_ = false, alive_ = true, visit_ = false;
+  bool holds_ = false, waited_ = false, greeted_ear_ = false;
   std::optional<Question> question_;
   std::vector<Phrase> phrases_;
   std::uint64_t phrases_id_ = 0;

@@ -5,6 +5,21 @@
 
 namespace usher::speech {
 
+Hearing one_for_each_option(const Hearing& hearing, std::span<const Phrase> phrases) {
+  const auto option = [&](const Hearing::Candidate& candidate) -> const std::string& {
+    return phrases[candidate.phrase].option_id;
+  };
+  Hearing result{{}, hearing.in_noise};
+  for (const auto& candidate : hearing.candidates) {
+    if (candidate.phrase >= phrases.size()) continue;
+    const bool there =
+        std::any_of(result.candidates.begin(), result.candidates.end(),
+                    [&](const auto& other) { return option(other) == option(candidate); });
+    if (!there) result.candidates.push_back(candidate);
+  }
+  return result;
+}
+
 Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always) {
   if (hearing.candidates.empty()) return Verdict::kIgnore;
   const double fit = hearing.candidates.front().fit;

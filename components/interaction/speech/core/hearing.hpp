@@ -2,7 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "interaction/speech/core/grammar.hpp"
 
 namespace usher::speech {
 
@@ -17,6 +20,10 @@ struct Hearing {
   std::vector<Candidate> candidates;  ///< best first, at most 3; empty: nothing like speech
   bool in_noise = false;              ///< that was taken out: anything fits better then
 };
+
+/// The same with one candidate for each option, its best: two ways to say the same need not be told
+/// apart. `phrases` is the list that was listened for; candidates beyond it are left out.
+Hearing one_for_each_option(const Hearing& hearing, std::span<const Phrase> phrases);
 
 /// What to do about it.
 enum class Verdict : std::uint8_t {

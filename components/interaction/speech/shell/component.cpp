@@ -29,8 +29,8 @@ constexpr auto kRecognitionTime = milliseconds(120);
 constexpr std::size_t kMostWords = 400;  // [byte] of a text
 constexpr const char* kHoldKey = "holds";
 
-enum class Text : std::size_t { kDidYouSay, kByTouch };
-constexpr std::array<std::string_view, 2> kTextKeys{"did_you_say", "by_touch"};
+enum class Text : std::size_t { kDidYouSay, kByTouch, kHeld };
+constexpr std::array<std::string_view, 3> kTextKeys{"did_you_say", "by_touch", "held"};
 
 }  // namespace
 
@@ -147,8 +147,10 @@ void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   for (const auto& option : screen.options())
     taken.options.push_back({option.id(), option.label(), option.takes_text()});
   const std::size_t language = texts_.find(taken.language);
-  conversation_.set_sentences({texts_.phrase(language, static_cast<std::size_t>(Text::kDidYouSay)),
-                               texts_.phrase(language, static_cast<std::size_t>(Text::kByTouch))});
+  const auto text = [&](Text which) {
+    return texts_.phrase(language, static_cast<std::size_t>(which));
+  };
+  conversation_.set_sentences({text(Text::kDidYouSay), text(Text::kByTouch), text(Text::kHeld)});
   conversation_.take(taken, now());
   fulfil();
 }
@@ -269,7 +271,7 @@ void SpeechComponent::recognize_next() {
       [this, heard, hearing] {
         recognizing_ = false;
         models_trouble_ = hearing->ok() ? "" : hearing->error();
-        if (hearing->ok()) conversation_.heard(**hearing, heard->phrases_id, now());
+        if (hearing->ok()) conversation_.heard(**hearing, heard->phrases, heard->phrases_id, now());
         fulfil();
         recognize_next();
       });
@@ -280,6 +282,7 @@ void SpeechComponent::tick(std::uint64_t skipped) {
   if (ticks_ % kRetryEvery == 1) open_devices();
   conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
   conversation_.hear_dialogue(guide_.fresh() != nullptr || meeting_.fresh() != nullptr);
+  if (const auto* guide = guide_.fresh()) conversation_.hear_visit(guide->serves());
   // A sound card of its own has gone on meanwhile; files have not.
   for (std::uint64_t i = 0; i <= std::min(skipped, kMostSkipped); ++i) {
     play();
@@ -299,14 +302,14 @@ usher_msgs::msg::SpeechStatus SpeechComponent::status() {
   const std::uint64_t unheard = card_->unheard();
   const auto caption = player_.caption(unheard);
   const bool sounds = player_.sounds(unheard);
-  status.state(conversation_.asks()      ? state::STATE_ASKING
-               : sounds                  ? state::STATE_SPEAKING
-               : conversation_.listens() ? state::STATE_LISTENING
-                                         : state::STATE_SILENT);
+  status.state(conversation_.asks()            ? state::STATE_ASKING
+               : sounds                        ? state::STATE_SPEAKING
+               : conversation_.awaits_answer() ? state::STATE_LISTENING
+                                               : state::STATE_SILENT);
   const auto* screen = screen_.latest();
   if (screen != nullptr) status.language(screen->language());
   status.audible(loudspeaker_trouble_.empty() && voice_trouble_.empty());
-  status.understands(conversation_.listens());
+  status.understands(conversation_.understands());
   status.listens(conversation_.listens());
   status.spoken_id(spoken_id_);
   status.finished(finished_id_ >= spoken_id_);

@@ -95,6 +95,7 @@ class Speech : public testing::Test {
       if (guide_) {
         usher_msgs::msg::GuideStatus guide;
         guide.header(wire::header(host_->now(), ""));
+        guide.serves(serves_);
         host_->publish(topics::kGuideStatus, guide, "guide");
       }
       host_->run_for(milliseconds(100));
@@ -107,7 +108,7 @@ class Speech : public testing::Test {
     screen.language(language);
     screen.spoken(spoken);
     screen.spoken_id(id);
-    screen.listens(true);
+    screen.listens(waits_);
     for (const auto& option : options) {
       auto& entry = screen.options().emplace_back();
       entry.id(option);
@@ -130,7 +131,7 @@ class Speech : public testing::Test {
   }
 
   Room room_;
-  bool guide_ = true;
+  bool guide_ = true, serves_ = false, waits_ = true;
   std::unique_ptr<runtime::TestHost> host_;
 };
 
@@ -288,7 +289,7 @@ TEST_F(Speech, AsksBackWhenUnsure) {
   EXPECT_EQ(status().hint(), "Did you say \"library\"?");
   pass(3.0);
   ASSERT_EQ(room_.listened_for.front().option_id, "library");
-  say(0, -25.0);  // the first phrase is "yes" now
+  say(0, 0.0);  // the first phrase is "yes" now
   EXPECT_EQ(room_.listened_for.front().option_id, "yes");
   ASSERT_FALSE(answers().empty());
   EXPECT_EQ(answers().back().option_id(), "library");
@@ -326,12 +327,55 @@ TEST_F(Speech, StopsThroughTheSupervisorWhenTheGuideIsGone) {
   EXPECT_TRUE(answers().empty());
 }
 
+TEST_F(Speech, HearsAStopThoughNoAnswerIsWaitedFor) {
+  start();
+  waits_ = false;
+  show(5, {"stop", "library"}, "Go.");
+  pass(2.0);
+  EXPECT_EQ(status().state(), state::STATE_SILENT) << "whoever makes noise may";
+  EXPECT_TRUE(status().listens());
+  EXPECT_TRUE(status().understands());
+  say(1, -25.0);
+  say(1, 0.0);
+  EXPECT_TRUE(answers().empty()) << "bystanders are left alone";
+  EXPECT_EQ(status().state(), state::STATE_SILENT);
+  say(0, -25.0);
+  ASSERT_FALSE(answers().empty());
+  EXPECT_EQ(answers().back().option_id(), "stop");
+}
+
+TEST_F(Speech, ShowsItsStopAndLiftsItAtTheEndOfTheVisit) {
+  start();
+  serves_ = true;
+  show(5, {"yes", "no"}, "Go?");
+  pass(1.0);
+  say(0, -100.0);
+  ASSERT_FALSE(room_.listened_for.empty());
+  const std::size_t last = room_.listened_for.size() - 1;
+  ASSERT_EQ(room_.listened_for[last].option_id, "stop");
+  say(last, -25.0);
+  ASSERT_FALSE(host_->written(topics::kSupervisorRequest).empty());
+  EXPECT_EQ(host_->last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
+  EXPECT_EQ(status().hint(), "Stopped. Any answer lets me go on.");
+  host_->world().kill("speech");
+  host_->world().start("speech");
+  pass(3.0);
+  show(5, {"yes", "no"}, "Go?");
+  EXPECT_EQ(status().hint(), "Stopped. Any answer lets me go on.") << "a restart is no answer";
+  EXPECT_EQ(host_->last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
+  serves_ = false;
+  pass(1.0);
+  EXPECT_EQ(host_->last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
+  EXPECT_EQ(status().hint(), "");
+}
+
 TEST_F(Speech, SpeaksWithoutAMicrophoneAndSaysSo) {
   room_.microphone = false;
   start();
   show(5, {"yes", "no"}, "Go?");
   EXPECT_FALSE(status().listens());
   EXPECT_FALSE(status().understands());
+  EXPECT_EQ(status().hint(), "Please touch the screen");
   EXPECT_TRUE(status().audible());
   EXPECT_EQ(host_->heartbeat().state(), 2) << "degraded";
   EXPECT_NE(host_->heartbeat().reason().find("no microphone here"), std::string::npos);

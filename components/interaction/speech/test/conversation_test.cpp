@@ -86,7 +86,7 @@ class Talk : public testing::Test {
 
   Talk() {
     talk_.can_understand(true);
-    talk_.set_sentences({"Did you say {answer}?", "Please touch."});
+    talk_.set_sentences({"Did you say {answer}?", "Please touch.", "Stopped."});
   }
   Screen screen(std::uint64_t id, const std::vector<std::string>& options) {
     Screen made;
@@ -106,12 +106,12 @@ class Talk : public testing::Test {
   void hear(const std::string& words, double fit) {
     for (std::size_t i = 0; i < talk_.phrases().size(); ++i) {
       if (talk_.phrases()[i].words != words) continue;
-      talk_.heard(hearing(i, fit, 10.0, (i + 1) % talk_.phrases().size()), talk_.phrases_id(),
-                  now_);
+      hear(hearing(i, fit, 10.0, (i + 1) % talk_.phrases().size()));
       return;
     }
     ADD_FAILURE() << words << " is no phrase";
   }
+  void hear(const Hearing& heard) { talk_.heard(heard, talk_.phrases(), talk_.phrases_id(), now_); }
   std::string answer() {
     const Wishes wishes = talk_.take_wishes();
     return wishes.answer ? wishes.answer->option_id : "";
@@ -184,8 +184,57 @@ TEST_F(Talk, AsksBackWhenUnsureAndTakesYes) {
   EXPECT_EQ(talk_.hint(), "Did you say library?");
   EXPECT_TRUE(talk_.asks());
   hear("yes", kUnsure);
+  EXPECT_EQ(answer(), "") << "somebody chats nearby";
+  EXPECT_EQ(talk_.hint(), "Did you say library?") << "it can still be read and touched";
+  hear({{{0, kSure, 0.0}, {3, kSure - 1.0, 1.0}}});
+  EXPECT_EQ(answer(), "") << "no clear yes: as like to a no";
+  hear("yes", kSure);
   EXPECT_EQ(answer(), "library");
   EXPECT_EQ(talk_.hint(), "");
+  EXPECT_EQ(talk_.counts().confirmed, 1U);
+}
+
+TEST_F(Talk, NeedNotTellTwoWaysToSayTheSameApart) {
+  show(screen(7, {"yes", "no"}));
+  talk_.take_wishes();
+  ASSERT_EQ(talk_.phrases()[1].words, "yeah");
+  hear({{{0, kSure, 0.0}, {1, kSure, 0.1}, {3, kSure - 8.0, 8.0}}});
+  EXPECT_EQ(answer(), "yes");
+  hear({{{0, kSure, 0.0}, {1, kSure, 0.1}, {3, kSure - 1.0, 1.0}}});
+  EXPECT_EQ(answer(), "");
+  EXPECT_TRUE(talk_.asks());
+  hear({{{96, kSure, 0.0}}});
+  EXPECT_EQ(answer(), "") << "what is on no list is nothing";
+}
+
+TEST_F(Talk, AsksNobodyWhileTheScreenWaitsForNoAnswer) {
+  auto way = screen(7, {"stop", "cancel", "stay", "repeat"});
+  way.listens = false;
+  show(way);
+  talk_.take_wishes();
+  EXPECT_FALSE(talk_.awaits_answer());
+  for (const char* words : {"repeat", "cancel", "stay"}) {
+    hear(words, kUnsure);
+    EXPECT_FALSE(talk_.asks()) << words;
+    EXPECT_EQ(answer(), "") << words;
+  }
+  hear("repeat", kSure);
+  EXPECT_EQ(answer(), "") << "nobody was asked";
+  hear("cancel", kSure);
+  EXPECT_EQ(answer(), "cancel");
+  hear("stay", kSure);
+  EXPECT_EQ(answer(), "stay") << "the robot has lost him and calls";
+  hear("stop", kUnsure);
+  EXPECT_EQ(answer(), "stop") << "whenever it may be one";
+  auto languages = screen(8, {"language:de"});
+  languages.listens = false;
+  show(languages);
+  hear("german", kSure);
+  EXPECT_EQ(answer(), "");
+  languages.listens = true;
+  show(languages);
+  hear("german", kSure);
+  EXPECT_EQ(answer(), "language:de");
 }
 
 TEST_F(Talk, OffersTheSecondAfterNoAndThenGivesUp) {
@@ -215,13 +264,17 @@ TEST_F(Talk, ForgetsAQuestionBackWithoutReplyOrWhenTheScreenChanges) {
   EXPECT_FALSE(talk_.asks());
 }
 
-TEST_F(Talk, IgnoresWhatWasSaidToAnotherScreen) {
+TEST_F(Talk, IgnoresWhatWasSaidToAnotherScreenButForAStop) {
   show(screen(7, {"yes", "no"}));
-  const auto old = talk_.phrases_id();
-  show(screen(8, {"library"}));
+  const auto old = talk_.phrases();
+  const auto old_id = talk_.phrases_id();
+  show(screen(8, {"library", "stop"}));
   talk_.take_wishes();
-  talk_.heard(hearing(0, kSure), old, now_);
+  talk_.heard(hearing(0, kSure), old, old_id, now_);
   EXPECT_EQ(answer(), "");
+  ASSERT_EQ(old.back().option_id, "stop");
+  talk_.heard(hearing(old.size() - 1, kUnsure, 10.0, 0), old, old_id, now_);
+  EXPECT_EQ(answer(), "stop");
 }
 
 TEST_F(Talk, StopsAtOnceHoweverUnsure) {
@@ -232,12 +285,39 @@ TEST_F(Talk, StopsAtOnceHoweverUnsure) {
   show(screen(8, {"library", "cancel"}));
   hear("library", kUnsure);
   talk_.take_wishes();
+  EXPECT_EQ(talk_.hint(), "Did you say library?");
   hear("stop", kUnsure);
-  EXPECT_EQ(answer(), "cancel") << "where there is nothing to stop";
-  show(screen(9, {"yes"}));
+  auto wishes = talk_.take_wishes();
+  EXPECT_FALSE(wishes.answer.has_value()) << "nothing is called off";
+  EXPECT_TRUE(wishes.halt) << "the robot may turn although nothing can be stopped";
+  EXPECT_FALSE(talk_.asks());
+  EXPECT_EQ(talk_.hint(), "Stopped.");
+}
+
+TEST_F(Talk, AStopSaidAgainChangesNothing) {
+  show(screen(7, {"stop", "cancel"}));
+  hear("stop", kSure);
+  show(screen(8, {"continue", "cancel"}));
   talk_.take_wishes();
-  hear("stop", kUnsure);
-  EXPECT_TRUE(talk_.take_wishes().halt) << "the robot may turn although nothing can be stopped";
+  hear("stop", kSure);
+  const auto wishes = talk_.take_wishes();
+  EXPECT_FALSE(wishes.answer.has_value()) << "the visit goes on";
+  EXPECT_FALSE(wishes.halt) << "the dialogue holds the robot";
+  EXPECT_FALSE(talk_.holds());
+  talk_.hear_dialogue(false);
+  hear("stop", kSure);
+  EXPECT_TRUE(talk_.take_wishes().halt) << "nobody knows what the dialogue does";
+}
+
+TEST_F(Talk, StopsWhenTheSecondGuessIsConfirmed) {
+  show(screen(7, {"library"}));
+  const std::size_t last = talk_.phrases().size() - 1;
+  hear(hearing(0, kUnsure, 1.0, last));
+  hear("no", kUnsure);
+  EXPECT_EQ(talk_.hint(), "Did you say stop?");
+  talk_.take_wishes();
+  hear("yes", kSure);
+  EXPECT_TRUE(talk_.take_wishes().halt);
 }
 
 TEST_F(Talk, LiftsItsStopWhenSomebodyAnswers) {
@@ -252,6 +332,56 @@ TEST_F(Talk, LiftsItsStopWhenSomebodyAnswers) {
   show(answered);
   EXPECT_FALSE(talk_.holds());
   EXPECT_TRUE(talk_.take_wishes().go_on);
+  hear("stop", kUnsure);
+  auto stopped = screen(10, {"continue", "cancel"});
+  stopped.answer_client = "tablet";
+  stopped.answer_id = 5;
+  show(stopped);
+  EXPECT_TRUE(talk_.holds()) << "the answer was a stop";
+}
+
+TEST_F(Talk, KeepsItsStopOverRestarts) {
+  talk_.hold_again();
+  auto first = screen(7, {"yes"});
+  first.answer_client = "tablet";
+  first.answer_id = 4;
+  show(first);
+  EXPECT_TRUE(talk_.holds()) << "that was answered before it was restarted";
+  EXPECT_FALSE(talk_.take_wishes().go_on);
+  EXPECT_EQ(talk_.hint(), "Stopped.");
+  show(screen(8, {"yes"}));
+  EXPECT_TRUE(talk_.holds()) << "the dialogue was restarted: no answer yet";
+  auto answered = screen(9, {"yes"});
+  answered.answer_client = "tablet";
+  answered.answer_id = 1;
+  show(answered);
+  EXPECT_FALSE(talk_.holds());
+  EXPECT_TRUE(talk_.take_wishes().go_on);
+}
+
+TEST_F(Talk, LiftsItsStopAtTheEndOfTheVisit) {
+  show(screen(7, {"yes"}));
+  talk_.hear_visit(false);
+  hear("stop", kUnsure);
+  talk_.take_wishes();
+  talk_.hear_visit(false);
+  EXPECT_TRUE(talk_.holds()) << "nobody was served";
+  talk_.hear_visit(true);
+  EXPECT_TRUE(talk_.holds());
+  talk_.hear_visit(false);
+  EXPECT_FALSE(talk_.holds()) << "the next visitor finds no held robot";
+  EXPECT_TRUE(talk_.take_wishes().go_on);
+  EXPECT_EQ(talk_.hint(), "");
+}
+
+TEST_F(Talk, LiftsItsStopForWhoIsStillHere) {
+  show(screen(7, {"yes", "stay"}));
+  hear("stop", kUnsure);
+  talk_.take_wishes();
+  hear("stay", kSure);
+  const auto wishes = talk_.take_wishes();
+  EXPECT_TRUE(wishes.go_on);
+  EXPECT_TRUE(wishes.answer.has_value());
 }
 
 TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueIsGoneAndGoesOnWhenAsked) {
@@ -284,8 +414,14 @@ TEST_F(Talk, DoesNotListenInOtherLanguagesAndSaysSo) {
   pass(seconds(2));
   EXPECT_TRUE(talk_.take_wishes().tones.empty());
   talk_.can_understand(false);
-  show(screen(8, {"yes"}));
+  auto english = screen(8, {"yes"});
+  show(english);
   EXPECT_FALSE(talk_.listens());
+  EXPECT_FALSE(talk_.understands());
+  EXPECT_EQ(talk_.hint(), "Please touch.") << "without a microphone, too";
+  english.listens = false;
+  show(english);
+  EXPECT_EQ(talk_.hint(), "");
 }
 
 }  // namespace
