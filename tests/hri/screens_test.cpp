@@ -303,7 +303,7 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
   for (const std::string& language : kLanguages) {
     tablet::Tablet tablet(
         *phrases::PhraseBook::load(kTexts, kLanguages, "tablet", tablet::kTextKeys));
-    tablet.hear(true, true);
+    tablet.hear(true, true, {});
     tablet.locate(geometry::Pose2{10.0, 5.0, 0.5});
     int number = 0;
     Visit visit(language, [&](const guide::Screen& screen, const char* suffix) {
@@ -320,11 +320,11 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
       }
       EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(name) + ".png"));
     });
-    tablet.hear(false, false);
+    tablet.hear(false, false, {});
     draw(tablet.view({}));
     judge(language + " away");
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-90-away.png"));
-    tablet.hear(true, true);
+    tablet.hear(true, true, {});
     static_cast<void>(tablet.touch(tablet::Tablet::kStop, {}));
     draw(tablet.view({}));
     judge(language + " held");
@@ -339,7 +339,7 @@ TEST_F(Screens, OfTheMeetingAssistantHaveRoomInEveryLanguage) {
   for (std::size_t language = 0; language < kLanguages.size(); ++language) {
     tablet::Tablet tablet(
         *phrases::PhraseBook::load(kTexts, kLanguages, "tablet", tablet::kTextKeys));
-    tablet.hear(true, true);
+    tablet.hear(true, true, {});
     tablet.locate(geometry::Pose2{10.0, 5.0, 0.5});
     std::set<std::string> states;
     show_meeting(language, [&](const service::Screen& screen) {

@@ -10,6 +10,7 @@ namespace usher::tablet {
 namespace {
 
 constexpr const char* kDialogueStop = "stop";
+constexpr const char* kDialogueStart = "start";
 constexpr const char* kDialogueContinue = "continue";
 constexpr const char* kStay = "stay";
 
@@ -38,20 +39,55 @@ bool Tablet::offers(std::string_view id) const {
                      [&](const Screen::Option& option) { return option.id == id; });
 }
 
-Touched Tablet::take(const Screen& screen, Time /*now*/) {
+void Tablet::hear(bool robot, bool dialogue, Time now) {
+  robot_heard_ = robot;
+  dialogue_heard_ = dialogue;
+  watch_buttons(now);
+}
+
+/// A stop of this visitor must not hold the robot for the next.
+Touched Tablet::hear_visit(bool goes_on, Time now) {
+  const bool ended = visit_ && !goes_on;
+  visit_ = goes_on;
+  Touched touched{.move = ended && lift_hold()};
+  watch_buttons(now);
+  return touched;
+}
+
+Touched Tablet::take(const Screen& screen, Time now) {
   const bool another = screen.id != screen_.id;
   screen_ = screen;
   if (another) {
     pending_.reset();
     typed_.clear();
   }
-  const bool drives = screen.state == "guide_active", paused = screen.state == "guide_paused";
+  // Who offers a stop moves the robot, or means to.
+  const bool drives = offers(kDialogueStop), paused = offers(kDialogueContinue);
   if (hold_ == Hold::kDialogue && paused) hold_ = Hold::kDialogueTookOver;
   const bool goes_on = (hold_ == Hold::kDialogueTookOver && !paused) ||
                        (hold_ == Hold::kDialogue && !drives && !paused);
-  if (!goes_on) return {};
+  Touched touched{.move = goes_on && lift_hold()};
+  watch_buttons(now);
+  return touched;
+}
+
+bool Tablet::lift_hold() {
+  const bool held = holds();
   hold_ = Hold::kNone;
-  return {.move = true};
+  return held;
+}
+
+void Tablet::watch_buttons(Time now) {
+  const View shown = view(now);
+  std::vector<std::string> buttons{std::to_string(shown.screen_id)};
+  for (const auto* panel : {&shown.primary, &shown.secondary, &shown.service}) {
+    for (const Button& button : *panel) buttons.push_back(button.id);
+  }
+  if (shown.stop_offered) buttons.emplace_back(kStop);
+  if (shown.start_offered) buttons.emplace_back(kStart);
+  if (buttons == buttons_) return;
+  buttons_ = std::move(buttons);
+  settled_ = now + kSettles;
 }
 
 Touched Tablet::stop() {
@@ -65,10 +101,16 @@ Touched Tablet::stop() {
 }
 
 Touched Tablet::touch(const std::string& id, Time now) {
-  if (id == kStop || id == kDialogueStop) return stop();  // again and again, if need be
+  const bool stops = id == kStop || id == kDialogueStop;
+  if (!stops && now < settled_) return {};
+  Touched touched = stops ? stop() : press(id, now);  // a stop again and again, if need be
+  watch_buttons(now);
+  return touched;
+}
+
+Touched Tablet::press(const std::string& id, Time now) {
   if (id == kStart) {
-    Touched touched{.move = holds()};
-    hold_ = Hold::kNone;
+    Touched touched{.move = lift_hold()};
     if (shows_dialogue() && offers(kDialogueContinue))
       touched.answer = Answer{screen_.id, kDialogueContinue, {}};
     return touched;
@@ -76,12 +118,8 @@ Touched Tablet::touch(const std::string& id, Time now) {
   if (!shows_dialogue() || !offers(id)) return {};
   if (pending_ && now - pending_->since < kPatience) return {};
   pending_ = Pending{id, now};
-  Touched touched{.answer = Answer{screen_.id, id, {}}};
-  if (id == kDialogueContinue && holds()) {
-    touched.move = true;
-    hold_ = Hold::kNone;
-  }
-  return touched;
+  const bool goes_on = id == kDialogueStart || id == kDialogueContinue || id == kStay;
+  return {.answer = Answer{screen_.id, id, {}}, .move = goes_on && lift_hold()};
 }
 
 Touched Tablet::type(const std::string& text, Time /*now*/) {
@@ -149,11 +187,13 @@ View Tablet::view(Time now) const {
       view.pending_id = pending_->id;
     }
   }
-  const bool dialogue_starts = shows_dialogue() && offers(kDialogueContinue);
+  const bool dialogue_goes_on = shows_dialogue() && offers(kDialogueContinue);
+  const bool dialogue_starts = dialogue_goes_on || (shows_dialogue() && offers(kDialogueStart));
   const bool dialogue_stops = shows_dialogue() && offers(kDialogueStop);
   view.start_offered = holds() && !dialogue_starts;
-  view.stop_offered = !holds() && !dialogue_stops && !dialogue_starts;
-  if (hold_ == Hold::kOwn && shows_dialogue()) view.text = say(Text::kHeld);
+  view.stop_offered = !holds() && !dialogue_stops && !dialogue_goes_on;
+  // Beside the question, which can be answered all the same.
+  if (hold_ == Hold::kOwn && shows_dialogue() && !dialogue_goes_on) view.status = say(Text::kHeld);
   return view;
 }
 

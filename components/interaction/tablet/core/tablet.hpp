@@ -71,8 +71,8 @@ struct Touched {
 /// The logic of the tablet: what to show, what a touch means, whose stop holds.
 ///
 /// A stop goes to the dialogue and, so that it works when the dialogue does not, straight to the
-/// supervisor. The tablet lifts its own stop when the visitor touches Start, or when the dialogue,
-/// having taken the stop over, goes on.
+/// supervisor. The tablet lifts its own stop when the visitor touches Start, "I am still here" or
+/// Continue, when the dialogue, having taken the stop over, goes on, and when the visit ends.
 class Tablet {
  public:
   explicit Tablet(phrases::PhraseBook phrases) : phrases_(std::move(phrases)) {}
@@ -80,12 +80,14 @@ class Tablet {
   /// How long a touched button stays so without a reply.
   static constexpr Time kPatience = std::chrono::seconds(2);
   static constexpr std::size_t kMostTyped = 40;  ///< [byte]
+  /// Buttons that have just come are not touched yet: the finger was meant for those before. So
+  /// long a double tap takes; reading what is new takes longer.
+  static constexpr Time kSettles = std::chrono::milliseconds(400);
 
   /// Whether robot (supervisor) and dialogue (guide) are heard.
-  void hear(bool robot, bool dialogue) {
-    robot_heard_ = robot;
-    dialogue_heard_ = dialogue;
-  }
+  void hear(bool robot, bool dialogue, Time now);
+  /// A visit goes on or does not; whether the tablet's own stop ends with it.
+  Touched hear_visit(bool goes_on, Time now);
   void locate(const std::optional<geometry::Pose2>& pose) { pose_ = pose; }
   /// What the robot's ear has to say: a question back takes the place of the text, anything else
   /// that of the status; empty: nothing.
@@ -99,7 +101,7 @@ class Tablet {
   void replied() { pending_.reset(); }
 
   /// A button was touched; ids that are not on the view do nothing, nor does a second touch before
-  /// the reply.
+  /// the reply, nor, but for a stop, one of buttons that came less than kSettles ago.
   Touched touch(const std::string& id, Time now);
   /// The line to type into has this text now.
   Touched type(const std::string& text, Time now);
@@ -124,6 +126,9 @@ class Tablet {
   bool offers(std::string_view id) const;
   bool shows_dialogue() const { return robot_heard_ && dialogue_heard_ && screen_.id != 0; }
   Touched stop();
+  Touched press(const std::string& id, Time now);
+  bool lift_hold();
+  void watch_buttons(Time now);
   void add_options(View& view) const;
 
   phrases::PhraseBook phrases_;
@@ -133,7 +138,10 @@ class Tablet {
   std::optional<Pending> pending_;
   std::string typed_, hint_;
   bool asks_ = false;
+  bool visit_ = false;
   Hold hold_ = Hold::kNone;
+  std::vector<std::string> buttons_;  ///< ids on the view, the screen's first
+  Time settled_{};                    ///< when they may be touched
 };
 
 /// "34 m · 2 min" of what is known; empty when nothing is.

@@ -48,7 +48,8 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   guide_ = host.input(
       topics::kGuideStatus,
       {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works", .optional = true},
-      [this](const auto&, const auto&) { show(); }, [this] { show(); });
+      [this](const auto& status, const auto&) { act(core_.hear_visit(status.serves(), now())); },
+      [this] { show(); });
   meeting_ = host.input(
       topics::kMeetingStatus,
       {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works", .optional = true},
@@ -190,7 +191,7 @@ void TabletComponent::tick() {
 }
 
 void TabletComponent::show() {
-  core_.hear(supervisor_.fresh() != nullptr, dialogue());
+  core_.hear(supervisor_.fresh() != nullptr, dialogue(), now());
   const auto* speech = speech_.fresh();
   core_.hear_speech(speech != nullptr ? speech->hint() : "",
                     speech != nullptr && speech->state() == speech_state::STATE_ASKING);

@@ -20,6 +20,7 @@ class Component : public testing::Test {
     host_.publish(topics::kSupervisorStatus, supervisor, "supervisor");
     usher_msgs::msg::GuideStatus status;
     status.header(wire::header(host_.now(), ""));
+    status.serves(serves_);
     if (guide) host_.publish(topics::kGuideStatus, status, "guide");
     host_.run_for(milliseconds(110));
   }
@@ -50,6 +51,7 @@ class Component : public testing::Test {
                            }},
                           "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml"};
   std::uint64_t request_seen_ = 0;
+  bool serves_ = false;
 };
 
 TEST_F(Component, ShowsWhatTheEarAsks) {
@@ -89,6 +91,11 @@ TEST_F(Component, ShowsTheDialogueAndSaysWhenTheRobotIsAway) {
 TEST_F(Component, RepeatsAnAnswerUntilTheScreenNamesIt) {
   hear();
   show(screen(5, "guide_ask", {"yes", "no"}));
+  window_.touches.push_back({false, "yes"});
+  host_.run_for(milliseconds(100));
+  EXPECT_TRUE(host_.written(topics::kDialogueAnswer).empty())
+      << "touched for what was there before";
+  host_.run_for(milliseconds(250));
   window_.touches.push_back({false, "yes"});
   host_.run_for(milliseconds(450));
   const auto answers = host_.written(topics::kDialogueAnswer);
@@ -131,6 +138,20 @@ TEST_F(Component, StopsEvenWithoutDialogue) {
   ASSERT_TRUE(host_.last(topics::kSupervisorRequest));
   EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
   EXPECT_TRUE(window_.view.start_offered);
+}
+
+TEST_F(Component, LiftsItsStopAtTheEndOfTheVisit) {
+  serves_ = true;
+  hear();
+  show(screen(5, "guide_ask", {"yes", "no"}));
+  window_.touches.push_back({false, Tablet::kStop});
+  hear();
+  EXPECT_TRUE(window_.view.start_offered);
+  request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  serves_ = false;
+  hear();
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
+  EXPECT_FALSE(window_.view.start_offered);
 }
 
 /// A finger at the end of a line.

@@ -18,9 +18,12 @@ Tablet make() {
                                         {"en", "mi", "de", "fr"}, "tablet", kTextKeys);
   EXPECT_TRUE(book.ok()) << (book.ok() ? "" : book.error());
   Tablet tablet(std::move(book).value());
-  tablet.hear(true, true);
+  tablet.hear(true, true, {});
   return tablet;
 }
+
+/// When the buttons of time 0 may be touched.
+constexpr Time kSettled = Tablet::kSettles;
 
 Screen screen(std::uint64_t id, const char* state, std::vector<std::string> options) {
   Screen screen;
@@ -37,16 +40,16 @@ TEST(Tablet, SaysInTheVisitorsLanguageThatTheRobotIsAway) {
   Screen german = screen(1, "guide_ask", {"yes", "no"});
   german.language = "de";
   static_cast<void>(tablet.take(german, {}));
-  tablet.hear(false, false);
+  tablet.hear(false, false, {});
   const View away = tablet.view({});
   EXPECT_EQ(away.page, Page::kAway);
   EXPECT_EQ(away.title, "MARVIN ist nicht erreichbar.");
   EXPECT_TRUE(away.primary.empty());
   EXPECT_TRUE(away.stop_offered) << "Stop is always there";
-  EXPECT_FALSE(tablet.touch("yes", {}).answer) << "an answer would hit nobody";
-  tablet.hear(true, false);
+  EXPECT_FALSE(tablet.touch("yes", kSettled).answer) << "an answer would hit nobody";
+  tablet.hear(true, false, {});
   EXPECT_EQ(tablet.view({}).page, Page::kStarting);
-  tablet.hear(true, true);
+  tablet.hear(true, true, {});
   EXPECT_EQ(tablet.view({}).page, Page::kButtons);
 }
 
@@ -73,27 +76,53 @@ TEST(Tablet, SortsButtonsIntoPanels) {
 TEST(Tablet, AnswersOnceUntilTheReply) {
   Tablet tablet = make();
   static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes", "no"}), {}));
-  EXPECT_EQ(tablet.touch("yes", {}).answer, (Answer{7, "yes", ""}));
-  EXPECT_EQ(tablet.view({}).pending_id, "yes");
-  EXPECT_FALSE(tablet.touch("no", milliseconds(100)).answer) << "a second finger";
-  EXPECT_FALSE(tablet.touch("else", {}).answer) << "not on the screen";
-  EXPECT_TRUE(tablet.touch("no", milliseconds(2100)).answer) << "nobody replied";
+  EXPECT_EQ(tablet.touch("yes", kSettled).answer, (Answer{7, "yes", ""}));
+  EXPECT_EQ(tablet.view(kSettled).pending_id, "yes");
+  EXPECT_FALSE(tablet.touch("no", milliseconds(500)).answer) << "a second finger";
+  EXPECT_FALSE(tablet.touch("else", kSettled).answer) << "not on the screen";
+  EXPECT_TRUE(tablet.touch("no", milliseconds(2500)).answer) << "nobody replied";
   tablet.replied();
-  EXPECT_FALSE(tablet.view(milliseconds(2200)).pending);
-  EXPECT_TRUE(tablet.touch("yes", milliseconds(2200)).answer);
-  static_cast<void>(tablet.take(screen(8, "guide_options", {"lab"}), {}));
-  EXPECT_TRUE(tablet.touch("lab", milliseconds(2300)).answer);
+  EXPECT_FALSE(tablet.view(milliseconds(2600)).pending);
+  EXPECT_TRUE(tablet.touch("yes", milliseconds(2600)).answer);
+  static_cast<void>(tablet.take(screen(8, "guide_options", {"lab"}), milliseconds(2700)));
+  EXPECT_TRUE(tablet.touch("lab", milliseconds(3100)).answer);
 }
 
 TEST(Tablet, StopGoesToDialogueAndSupervisorAtOnce) {
   Tablet tablet = make();
   static_cast<void>(tablet.take(screen(7, "guide_active", {"stop", "cancel"}), {}));
   EXPECT_FALSE(tablet.view({}).stop_offered) << "the dialogue offers it, large";
-  static_cast<void>(tablet.touch("cancel", {}));
-  const Touched stop = tablet.touch("stop", {});
+  EXPECT_TRUE(tablet.touch("cancel", kSettled).answer);
+  const Touched stop = tablet.touch("stop", kSettled);
   EXPECT_TRUE(stop.stop);
   EXPECT_EQ(stop.answer, (Answer{7, "stop", ""})) << "even while another answer is under way";
   EXPECT_TRUE(tablet.holds());
+}
+
+TEST(Tablet, TakesNoSecondTapForTheNextQuestion) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes", "no"}), milliseconds(1000)));
+  EXPECT_FALSE(tablet.touch("yes", milliseconds(1399)).answer);
+  EXPECT_TRUE(tablet.touch("yes", milliseconds(1400)).answer);
+  tablet.replied();
+  Screen asks = screen(8, "guide_error", {"yes", "no"});
+  static_cast<void>(tablet.take(asks, milliseconds(1500)));
+  EXPECT_FALSE(tablet.touch("yes", milliseconds(1550)).answer)
+      << "the same place, another question";
+  asks.text = "Are you still there?";
+  static_cast<void>(tablet.take(asks, milliseconds(1800)));
+  EXPECT_TRUE(tablet.touch("no", milliseconds(1900)).answer) << "the same buttons";
+  tablet.replied();
+  asks.options.push_back({"stay", "stay!", 1, 2});
+  static_cast<void>(tablet.take(asks, milliseconds(2000)));
+  EXPECT_FALSE(tablet.touch("stay", milliseconds(2100)).answer) << "one more button";
+  tablet.hear(false, false, milliseconds(3000));
+  tablet.hear(true, true, milliseconds(3100));
+  EXPECT_FALSE(tablet.touch("yes", milliseconds(3200)).answer) << "the robot has come back";
+  EXPECT_TRUE(tablet.touch(Tablet::kStop, milliseconds(3200)).stop) << "a stop is never too soon";
+  EXPECT_FALSE(tablet.touch(Tablet::kStart, milliseconds(3250)).move) << "Start came under it";
+  EXPECT_TRUE(tablet.touch(Tablet::kStop, milliseconds(3260)).stop);
+  EXPECT_TRUE(tablet.touch(Tablet::kStart, milliseconds(3600)).move);
 }
 
 TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
@@ -111,51 +140,106 @@ TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
   static_cast<void>(tablet.take(screen(11, "guide_active", {"stop"}), {}));
   static_cast<void>(tablet.touch("stop", {}));
   static_cast<void>(tablet.take(screen(12, "guide_paused", {"continue"}), {}));
-  const Touched go = tablet.touch("continue", {});
+  const Touched go = tablet.touch("continue", kSettled);
   EXPECT_TRUE(go.move);
   EXPECT_TRUE(go.answer);
+  // Behind a visitor, too, the robot drives: nothing but his answer lifts it.
+  static_cast<void>(tablet.take(screen(13, "follow_me", {"done", "stop"}), {}));
+  static_cast<void>(tablet.touch("stop", {}));
+  EXPECT_FALSE(tablet.take(screen(13, "follow_me", {"done", "stop"}), {}).move);
+  EXPECT_TRUE(tablet.holds());
+  EXPECT_TRUE(tablet.take(screen(14, "end_ask", {"yes", "no"}), {}).move);
 }
 
 TEST(Tablet, KeepsItsOwnStopUntilStart) {
   Tablet tablet = make();
-  static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes"}), {}));
+  Screen asks = screen(7, "guide_error", {"yes"});
+  asks.text = "Would you like to try again?";
+  static_cast<void>(tablet.take(asks, {}));
   const Touched stop = tablet.touch(Tablet::kStop, {});
   EXPECT_TRUE(stop.stop);
   EXPECT_FALSE(stop.answer);
-  EXPECT_FALSE(tablet.take(screen(8, "guide_options", {"lab"}), {}).move);
   View view = tablet.view({});
+  EXPECT_EQ(view.text, "Would you like to try again?") << "the question is still there";
+  EXPECT_EQ(view.status, "Stopped. Touch Start when I may move.");
+  EXPECT_FALSE(tablet.take(screen(8, "guide_options", {"lab"}), {}).move);
+  view = tablet.view({});
   EXPECT_TRUE(view.start_offered);
   EXPECT_FALSE(view.stop_offered);
-  EXPECT_EQ(view.text, "I have been stopped. Touch Start when I may move again.");
-  EXPECT_TRUE(tablet.touch(Tablet::kStart, {}).move);
+  EXPECT_FALSE(tablet.touch("lab", kSettled).move) << "another answer is no leave to move";
+  EXPECT_TRUE(tablet.touch(Tablet::kStart, kSettled).move);
   EXPECT_FALSE(tablet.holds());
-  EXPECT_FALSE(tablet.touch(Tablet::kStart, {}).move);
+  EXPECT_FALSE(tablet.touch(Tablet::kStart, milliseconds(900)).move);
 
   Tablet restarted = make();
   restarted.hold_again();
   EXPECT_TRUE(restarted.view({}).start_offered) << "a restart does not forget it";
 }
 
+TEST(Tablet, NamesTheButtonThatLiftsItsStop) {
+  for (const char* language : {"en", "mi", "de", "fr"}) {
+    Tablet tablet = make();
+    Screen shown = screen(7, "guide_ask", {"yes"});
+    shown.language = language;
+    static_cast<void>(tablet.take(shown, {}));
+    static_cast<void>(tablet.touch(Tablet::kStop, {}));
+    const View view = tablet.view({});
+    EXPECT_NE(view.status.find(view.start_label), std::string::npos) << view.status;
+  }
+}
+
+TEST(Tablet, LiftsItsOwnStopWhenTheVisitorStartsOrIsStillHere) {
+  for (const char* id : {"start", "stay"}) {
+    Tablet tablet = make();
+    static_cast<void>(tablet.take(screen(7, "guide_start", {id, "cancel"}), {}));
+    static_cast<void>(tablet.touch(Tablet::kStop, {}));
+    EXPECT_EQ(tablet.view({}).start_offered, std::string(id) != "start") << "one Start is enough";
+    const Touched touched = tablet.touch(id, kSettled);
+    EXPECT_TRUE(touched.move) << id;
+    EXPECT_TRUE(touched.answer) << id;
+    EXPECT_FALSE(tablet.holds());
+  }
+}
+
+TEST(Tablet, LiftsItsOwnStopAtTheEndOfTheVisit) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes"}), {}));
+  EXPECT_FALSE(tablet.hear_visit(true, {}).move);
+  static_cast<void>(tablet.touch(Tablet::kStop, {}));
+  EXPECT_FALSE(tablet.hear_visit(true, {}).move);
+  EXPECT_TRUE(tablet.hear_visit(false, {}).move) << "the next visitor finds no held robot";
+  EXPECT_FALSE(tablet.holds());
+  static_cast<void>(tablet.touch(Tablet::kStop, {}));
+  EXPECT_FALSE(tablet.hear_visit(false, {}).move) << "while nobody is served it is nobody's end";
+  EXPECT_TRUE(tablet.holds());
+}
+
 TEST(Tablet, StartOrStopIsOneTouchAwayWhateverHappens) {
   Random random(5);
   Tablet tablet = make();
   const std::vector<std::vector<std::string>> sets{
-      {"stop", "cancel"}, {"continue", "cancel"}, {"yes", "no"}, {}};
-  const char* const states[] = {"guide_active", "guide_paused", "guide_ask", "guide_success"};
+      {"stop", "cancel"}, {"continue", "cancel"}, {"yes", "no"}, {}, {"start", "cancel"}};
+  const char* const states[] = {"guide_active", "guide_paused", "guide_ask", "guide_success",
+                                "guide_start"};
   for (int i = 1; i < 5000; ++i) {
-    const auto which = random.below(4);
+    const Time now = milliseconds(300 * i);
+    const auto which = random.below(5);
     if (random.below(3) > 0) {
       static_cast<void>(
-          tablet.take(screen(static_cast<std::uint64_t>(i), states[which], sets[which]), {}));
+          tablet.take(screen(static_cast<std::uint64_t>(i), states[which], sets[which]), now));
     }
-    tablet.hear(random.below(5) > 0, random.below(5) > 0);
-    const char* const ids[] = {"stop", "continue", Tablet::kStart, Tablet::kStop, "yes"};
-    if (random.below(2) == 0)
-      static_cast<void>(tablet.touch(ids[random.below(5)], milliseconds(i)));
-    const View view = tablet.view(milliseconds(i));
+    tablet.hear(random.below(5) > 0, random.below(5) > 0, now);
+    if (random.below(5) == 0) static_cast<void>(tablet.hear_visit(random.below(2) == 0, now));
+    const char* const ids[] = {"stop", "continue", Tablet::kStart, Tablet::kStop, "yes", "start"};
+    if (random.below(2) == 0) static_cast<void>(tablet.touch(ids[random.below(6)], now));
+    const View view = tablet.view(now);
     int ways = (view.stop_offered ? 1 : 0) + (view.start_offered ? 1 : 0);
-    for (const Button& button : view.primary)
+    bool starts = false;
+    for (const Button& button : view.primary) {
       ways += button.id == "stop" || button.id == "continue";
+      starts = starts || button.id == "start";
+    }
+    if (starts) ways += tablet.holds() ? 1 : 0;
     ASSERT_GE(ways, 1);
     ASSERT_LE(ways, 2);
   }
