@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -12,13 +13,32 @@
 namespace usher::guide {
 namespace {
 
+// They need not be said: there are robots without speech, and languages that it does not
+// understand.
+TEST(Guide, NamesTheButtonThatItWaitsFor) {
+  constexpr std::array<std::pair<Text, Text>, 6> kNames{{{Text::kLocationShow, Text::kDone},
+                                                         {Text::kPlaceShow, Text::kDone},
+                                                         {Text::kTellWhenReady, Text::kStart},
+                                                         {Text::kLetsGo, Text::kStop},
+                                                         {Text::kTellWhenToGoOn, Text::kGoOn},
+                                                         {Text::kWalkAhead, Text::kDone}}};
+  const auto texts = book();
+  for (std::size_t language = 0; language < texts.languages().size(); ++language) {
+    for (const auto& [sentence, button] : kNames) {
+      const auto said = texts.phrase(language, static_cast<std::size_t>(sentence));
+      const auto label = texts.phrase(language, static_cast<std::size_t>(button));
+      EXPECT_NE(said.find(label), std::string::npos) << said << " does not name " << label;
+    }
+  }
+}
+
 TEST(Guide, SpeaksTheSentencesOfTheThesis) {
   Rig rig;
   EXPECT_EQ(rig.guide.screen().title, "Hello, I am MARVIN.");
   rig.to_location_ask();
   EXPECT_EQ(rig.guide.screen().title, "Would you like to see our location?");
   rig.press("yes");
-  EXPECT_EQ(rig.guide.screen().title, "Here is our location, tell me when you are done.");
+  EXPECT_EQ(rig.guide.screen().title, "Here is our location, choose Done when you have seen it.");
   EXPECT_EQ(rig.guide.screen().text, "We are at CO239.") << "the nearest place";
   rig.press("done");
   EXPECT_EQ(rig.guide.screen().title, "Would you like me to guide you somewhere?");
@@ -27,9 +47,9 @@ TEST(Guide, SpeaksTheSentencesOfTheThesis) {
   EXPECT_EQ(rig.guide.screen().options[0], (Option{"am218", "AM218"}));
   rig.press("am218");
   EXPECT_EQ(rig.guide.screen().title, "I will take you to AM218.");
-  EXPECT_EQ(rig.guide.screen().text, "Tell me when you are ready to go.");
+  EXPECT_EQ(rig.guide.screen().text, "Choose Start when you are ready to go.");
   rig.press("start");
-  EXPECT_EQ(rig.guide.screen().text, "All right, let's go. Tell me if we need to stop.");
+  EXPECT_EQ(rig.guide.screen().text, "All right, let's go. Choose Stop if we need to stop.");
   EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
   rig.wait(1000);
   rig.navigate(GoalState::kFailed);
@@ -611,7 +631,7 @@ TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {
   rig.wait(10500);
   EXPECT_EQ(rig.said, std::vector<std::string>(3, "I cannot see you. Please come back to me."));
   rig.see(1.5), rig.wait(200);
-  EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Tell me when we are there.");
+  EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Choose Done when we are there.");
 }
 
 TEST(Guide, FollowsAgainAfterAHaltAndNeverPastTheVisitor) {
