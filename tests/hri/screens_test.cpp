@@ -30,6 +30,7 @@ using std::chrono::milliseconds;
 
 const std::string kTexts = USHER_SOURCE_DIR "/config/dialogue";
 const std::vector<std::string> kLanguages{"en", "mi", "de", "fr"};
+constexpr std::array<std::string_view, 3> kSpeechTexts{"did_you_say", "by_touch", "held"};
 
 /// The places of the office, with the longest names that a building might have among them.
 std::vector<guide::Location> office() {
@@ -270,7 +271,7 @@ class Screens : public testing::Test {
         solid.emplace_back(name, box);
         EXPECT_TRUE(window.adjusted(-1, -1, 1, 1).contains(box)) << "outside: " << name;
       }
-      if (name == "floorPlan") solid.emplace_back(name, box);
+      if (name == "floorPlan" || name == "timeBar") solid.emplace_back(name, box);
       if (name.starts_with("button:")) {
         EXPECT_GE(box.width(), tablet::Sizes::kButtonWidth * u - 1.0) << name;
         EXPECT_GE(box.height(), tablet::Sizes::kButtonHeight * u - 1.0) << name;
@@ -326,9 +327,24 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-90-away.png"));
     tablet.hear(true, true, {});
     static_cast<void>(tablet.touch(tablet::Tablet::kStop, {}));
+    tablet::Screen hurries;  // what the status has to share its line with
+    hurries.id = 1000000;
+    hurries.language = language;
+    hurries.title = "Title";
+    hurries.text = "Text";
+    hurries.options = {{"stay", "Stay", 1, 2}};
+    hurries.time_left = 20.0;
+    static_cast<void>(tablet.take(hurries, {}));
     draw(tablet.view({}));
     judge(language + " held");
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-91-held.png"));
+    static_cast<void>(tablet.touch(tablet::Tablet::kStart, tablet::Tablet::kSettles));
+    const auto said = *phrases::PhraseBook::load(kTexts, kLanguages, "speech", kSpeechTexts);
+    for (const std::size_t text : {1U, 2U}) {
+      tablet.hear_speech(said.phrase(said.find(language), text), false);
+      draw(tablet.view({}));
+      judge(language + ", what speech has to say");
+    }
   }
   EXPECT_EQ(states.size(), static_cast<std::size_t>(guide::State::kEnd) + 1) << "every state";
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "foundation/random/random.hpp"
+#include "interaction/speech/core/conversation.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "interaction/speech/core/resample.hpp"
 #include "interaction/speech/core/voice_activity.hpp"
@@ -17,6 +18,7 @@
 #include "interaction/speech/engine/pocketsphinx.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
+#include "tasks/guide/core/texts.hpp"
 
 namespace usher::operations {
 
@@ -33,8 +35,8 @@ constexpr double kNear = 16.9;       // [dB]
 constexpr double kRoom = 20.5;       // [dB] over a room of 42 dB: no clip's own noise is louder
 constexpr double kRoomBefore = 2.0;  // [s] in which the room alone is heard
 constexpr double kRoomAfter = 1.0;   // [s]
-constexpr std::size_t kMostQuestions = 2;
-constexpr double kShortest = 0.1;  // [s] the collection has cuts of 30 ms, too
+constexpr int kMostReplies = 2;      ///< to questions back: yes, or no and yes, or yes said again
+constexpr double kShortest = 0.1;    // [s] the collection has cuts of 30 ms, too
 
 constexpr std::array kCommands{"one",   "two",  "three", "four",  "five",
                                "front", "back", "left",  "right", "stop"};
@@ -42,10 +44,9 @@ constexpr std::array kDigits{"zero", "one", "two",   "three", "four",
                              "five", "six", "seven", "eight", "nine"};
 constexpr std::array kYesNo{"yes", "no"};
 constexpr std::array kVoices{"", "m3", "f2", "m7", "f5"};
-/// Everything that is a button of the guide, in one list: more than any of its screens has.
-constexpr std::array<std::string_view, 16> kButtons{
-    "yes",    "no",   "start",  "stop", "go_on",    "cancel",   "more",      "done",
-    "repeat", "stay", "search", "back", "where_is", "guide_me", "languages", "again"};
+/// What may be said while the guide drives or waits for its visitor, and what stands there besides.
+constexpr std::array<std::string_view, 3> kOnTheWay{"stop", "cancel", "stay"};
+constexpr std::string_view kOnTheWayToo = "repeat";
 
 struct Clip {
   std::string label;      ///< an option's id; no option of the grammar: foreign
@@ -128,14 +129,29 @@ std::optional<Sound> utterance_of(std::span<const std::int16_t> heard) {
 struct Score {
   int words = 0, first = 0, acted_right = 0, acted_wrong = 0, after_questions = 0, asked = 0;
   int unheard = 0;  ///< words that no utterance was cut out for
-  int foreign = 0, foreign_acted = 0, foreign_asked = 0;
+  int foreign = 0, foreign_acted = 0, foreign_asked = 0, foreign_confirmed = 0, foreign_stopped = 0;
 
+  Score& operator+=(const Score& other) {
+    words += other.words;
+    first += other.first;
+    acted_right += other.acted_right;
+    acted_wrong += other.acted_wrong;
+    after_questions += other.after_questions;
+    asked += other.asked;
+    unheard += other.unheard;
+    foreign += other.foreign;
+    foreign_acted += other.foreign_acted;
+    foreign_asked += other.foreign_asked;
+    foreign_confirmed += other.foreign_confirmed;
+    foreign_stopped += other.foreign_stopped;
+    return *this;
+  }
   double share_understood() const {
     return words > 0 ? static_cast<double>(acted_right + after_questions) / words : 0.0;
   }
   double share_first() const { return words > 0 ? static_cast<double>(first) / words : 0.0; }
   double share_foreign() const {
-    return foreign > 0 ? static_cast<double>(foreign_acted) / foreign : 0.0;
+    return foreign > 0 ? static_cast<double>(foreign_acted + foreign_confirmed) / foreign : 0.0;
   }
 };
 
@@ -144,41 +160,19 @@ bool offers(std::span<const Phrase> phrases, const std::string& label) {
                      [&](const Phrase& phrase) { return phrase.option_id == label; });
 }
 
-/// Plays a clip to the recognizer and takes its verdict; asked back, the visitor says the truth.
-void judge_clip(Score& score, const Clip& clip, const Hearing& hearing,
-                std::span<const Phrase> phrases, bool heard) {
-  const auto option = [&](std::size_t i) {
-    return phrases[hearing.candidates[i].phrase].option_id;
-  };
-  const bool foreign = !offers(phrases, clip.label);
-  const bool stops = !hearing.candidates.empty() && option(0) == kStop;
-  const speech::Verdict verdict = judge(hearing, DecisionRule{}, stops);
-  if (foreign) {
-    ++score.foreign;
-    score.foreign_acted += verdict == speech::Verdict::kAct;
-    score.foreign_asked += verdict == speech::Verdict::kAsk;
-    return;
-  }
-  ++score.words;
-  score.unheard += !heard;
-  const bool right = !hearing.candidates.empty() && option(0) == clip.label;
-  score.first += right;
-  score.acted_right += verdict == speech::Verdict::kAct && right;
-  score.acted_wrong += verdict == speech::Verdict::kAct && !right;
-  score.asked += verdict == speech::Verdict::kAsk;
-  if (verdict != speech::Verdict::kAsk) return;
-  for (std::size_t i = 0; i < std::min(kMostQuestions, hearing.candidates.size()); ++i) {
-    if (option(i) != clip.label) continue;
-    ++score.after_questions;
-    break;
-  }
+template <std::size_t N>
+std::vector<Option> options_of(const std::array<const char*, N>& words) {
+  std::vector<Option> options;
+  options.reserve(words.size());
+  for (const char* word : words) options.push_back({word, word, false});
+  return options;
 }
 
-template <std::size_t N>
-std::vector<Phrase> phrases_of(const std::array<const char*, N>& words) {
+/// These words and no others.
+std::vector<Phrase> phrases_of(std::span<const Option> words) {
   std::vector<Phrase> phrases;
   phrases.reserve(words.size());
-  for (const char* word : words) phrases.push_back({word, word, word});
+  for (const Option& word : words) phrases.push_back({word.id, word.label, word.label});
   return phrases;
 }
 
@@ -208,8 +202,10 @@ Result<std::vector<Clip>> read_clips(const fs::path& folder, bool label_is_folde
 struct Set {
   std::string name;
   std::vector<Phrase> phrases;
+  std::vector<Option> options;  ///< of the screen that they are for
   std::vector<const Clip*> clips;
   Room room;
+  bool listens = true;  ///< the screen waits for an answer
 };
 
 void add(Set& set, const std::vector<Clip>& clips) {
@@ -225,33 +221,157 @@ void add_foreign(Set& set, const std::vector<Clip>& clips) {
   }
 }
 
-/// The texts of buttons by several voices of espeak-ng.
+/// The texts of buttons by several voices of espeak-ng. Where two buttons are called the same, the
+/// first is meant.
 Result<std::vector<Clip>> synthesized(Synthesizer& synthesizer, std::span<const Option> options) {
+  const auto phrases = phrases_for(options);
   std::vector<Clip> clips;
   for (const Option& option : options) {
+    const std::string words = spoken_words(option.label);
+    const auto meant = std::find_if(phrases.begin(), phrases.end(),
+                                    [&](const Phrase& phrase) { return phrase.words == words; });
+    if (meant == phrases.end()) continue;
     for (const char* voice : kVoices) {
       Synthesizer::Settings settings;
       settings.voice = voice;
       auto said = synthesizer.say(option.label, "en", settings);
       if (!said) return Error{said.error()};
-      clips.push_back({option.id, true, std::move(said->sound)});
+      clips.push_back({meant->option_id, true, std::move(said->sound)});
     }
   }
   return clips;
 }
 
+/// Everything that stands on a button of the guide, in one list: more than any of its screens has.
 Result<std::vector<Option>> read_buttons(const std::string& path) {
   std::vector<Option> buttons;
   try {
-    const YAML::Node guide = YAML::LoadFile(path)["guide"];
-    for (const std::string_view key : kButtons) {
-      const std::string id(key);
-      buttons.push_back({id, guide[id].as<std::string>(), false});
+    const YAML::Node texts = YAML::LoadFile(path)["guide"];
+    for (std::size_t i = 0; i < guide::kTextKeys.size(); ++i) {
+      if (!guide::labels_button(static_cast<guide::Text>(i))) continue;
+      const std::string id(guide::kTextKeys[i]);
+      buttons.push_back({id, texts[id].as<std::string>(), false});
     }
   } catch (const YAML::Exception& error) {
     return Error{path + ": " + error.what()};
   }
   return buttons;
+}
+
+struct Heard {
+  Hearing hearing;
+  bool cut = false;         ///< an utterance was cut out
+  double worked = 0.0;      ///< [s] of the processor
+  double recognized = 0.0;  ///< [s] of it in the recognizer
+};
+
+Result<Heard> hear(Recognizer& recognizer, const Clip& clip, const Room& room, std::uint64_t seed,
+                   std::span<const Phrase> phrases) {
+  const auto since = [](std::clock_t then) {
+    return static_cast<double>(std::clock() - then) / CLOCKS_PER_SEC;
+  };
+  const auto microphone = at_microphone(clip.sound, room, seed);
+  Heard heard;
+  const std::clock_t begin = std::clock();
+  const auto utterance = utterance_of(microphone);
+  heard.cut = utterance.has_value();
+  const std::clock_t ended = std::clock();
+  if (utterance) {
+    auto hearing = recognizer.hear(*utterance, phrases);
+    if (!hearing) return Error{hearing.error()};
+    heard.hearing = one_for_each_option(*hearing, phrases);
+  }
+  heard.recognized = since(ended);
+  heard.worked = since(begin);
+  return heard;
+}
+
+/// What was done then: the option that was answered, "stop" when the robot was halted, or nothing.
+std::string deed(const Wishes& wishes) {
+  if (wishes.halt) return std::string(kStop);
+  return wishes.answer ? wishes.answer->option_id : "";
+}
+
+/// Who plays what when the robot asks back: the visitor answers truly, in the voices by turns;
+/// foreign clips go on, the next one of the set.
+class Replies {
+ public:
+  Replies(const Set& set, const std::vector<Clip>& yes_no) : set_(set) {
+    for (const Clip& clip : yes_no) (clip.label == kYes ? yes_ : no_).push_back(&clip);
+  }
+  const Clip& true_one(const std::string& label, const std::string& asked, std::uint64_t turn) {
+    const auto meant = std::find_if(set_.options.begin(), set_.options.end(),
+                                    [&](const Option& option) { return option.id == label; });
+    const auto& clips = meant != set_.options.end() && meant->label == asked ? yes_ : no_;
+    return *clips[turn % clips.size()];
+  }
+  const Clip& foreign_after(std::size_t place) const {
+    for (std::size_t i = 1; i < set_.clips.size(); ++i) {
+      const Clip& clip = *set_.clips[(place + i) % set_.clips.size()];
+      if (!offers(set_.phrases, clip.label)) return clip;
+    }
+    return *set_.clips[place];
+  }
+
+ private:
+  const Set& set_;
+  std::vector<const Clip*> yes_, no_;
+};
+
+/// A clip comes to a screen, through the conversation as it is in the component.
+Status judge_clip(Score& score, const Set& set, std::size_t place, const Heard& first,
+                  Replies& replies, Recognizer& recognizer) {
+  const Clip& clip = *set.clips[place];
+  const bool foreign = !offers(set.phrases, clip.label);
+  Conversation talk{DecisionRule{}};
+  talk.can_understand(true);
+  talk.set_sentences({"{answer}", "", ""});
+  Screen screen;
+  screen.id = 1;
+  screen.language = "en";
+  screen.listens = set.listens;
+  screen.options = set.options;
+  talk.take(screen, {});
+  static_cast<void>(talk.take_wishes());
+  talk.heard(first.hearing, set.phrases, talk.phrases_id(), {});
+  const bool asked = talk.asks();
+  const std::string at_once = deed(talk.take_wishes());
+  std::string after;
+  std::size_t at = place;
+  for (int i = 0; talk.asks() && i < kMostReplies; ++i) {
+    const std::uint64_t turn = place + static_cast<std::uint64_t>(i);
+    const Clip* reply = nullptr;
+    if (foreign) {
+      reply = &replies.foreign_after(at);
+      at = static_cast<std::size_t>(std::find(set.clips.begin(), set.clips.end(), reply) -
+                                    set.clips.begin());
+    } else {
+      reply = &replies.true_one(clip.label, talk.hint(), turn);
+    }
+    const auto phrases = talk.phrases();
+    const auto heard = hear(recognizer, *reply, set.room, 1000 + turn, phrases);
+    if (!heard) return Error{heard.error()};
+    talk.heard(heard->hearing, phrases, talk.phrases_id(), {});
+    after = deed(talk.take_wishes());
+  }
+  if (foreign) {
+    ++score.foreign;
+    score.foreign_acted += !at_once.empty();
+    score.foreign_asked += asked;
+    score.foreign_confirmed += !after.empty();
+    score.foreign_stopped += at_once == kStop || after == kStop;
+    return {};
+  }
+  ++score.words;
+  score.unheard += !first.cut;
+  const auto& guesses = first.hearing.candidates;
+  score.first += !guesses.empty() && set.phrases[guesses[0].phrase].option_id == clip.label;
+  score.acted_right += at_once == clip.label;
+  score.acted_wrong +=
+      (!at_once.empty() && at_once != clip.label) || (!after.empty() && after != clip.label);
+  score.asked += asked;
+  score.after_questions += after == clip.label;
+  return {};
 }
 
 std::string ratio(int part, int whole) {
@@ -265,7 +385,9 @@ void add_row(Table& table, const std::string& name, const Score& score) {
              ratio(score.acted_right + score.after_questions, score.words),
              std::to_string(score.unheard), std::to_string(score.acted_right),
              std::to_string(score.acted_wrong), std::to_string(score.asked),
-             ratio(score.foreign_acted, score.foreign), std::to_string(score.foreign_asked)});
+             ratio(score.foreign_acted + score.foreign_confirmed, score.foreign),
+             std::to_string(score.foreign_stopped), std::to_string(score.foreign_asked),
+             std::to_string(score.foreign_confirmed)});
 }
 
 }  // namespace
@@ -289,31 +411,56 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
   const auto said = synthesized(**synthesizer, *buttons);
   const Option yes_no[] = {{"yes", "Yes", false}, {"no", "No", false}};
   const auto said_yes_no = synthesized(**synthesizer, yes_no);
-  if (!said || !said_yes_no) return Error{!said ? said.error() : said_yes_no.error()};
+  std::vector<Option> on_the_way;
+  for (const Option& button : *buttons) {
+    if (std::find(kOnTheWay.begin(), kOnTheWay.end(), button.id) != kOnTheWay.end())
+      on_the_way.push_back(button);
+  }
+  const auto said_on_the_way = synthesized(**synthesizer, on_the_way);
+  for (const Option& button : *buttons) {
+    if (button.id == kOnTheWayToo) on_the_way.push_back(button);
+  }
+  for (const auto* clips : {&said, &said_yes_no, &said_on_the_way}) {
+    if (!clips->ok()) return Error{clips->error()};
+  }
 
   std::vector<Set> sets;
   const Room rooms[] = {{"", {}}, {"_52dB", kFar}, {"_52dB_near", kNear}};
   for (const Room& room : rooms) {
-    const std::string& end = room.name;
-    sets.push_back({"commands" + end, phrases_of(kCommands), {}, room});
-    add(sets.back(), *commands);
-    add_foreign(sets.back(), *micro);
-    add_foreign(sets.back(), *digits);
-    sets.push_back({"yes_no" + end, phrases_of(kYesNo), {}, room});
-    add(sets.back(), *micro);
-    add(sets.back(), *said_yes_no);
-    add_foreign(sets.back(), *commands);
-    sets.push_back({"digits" + end, phrases_of(kDigits), {}, room});
-    add(sets.back(), *digits);
-    add_foreign(sets.back(), *commands);
-    add_foreign(sets.back(), *micro);
-    sets.push_back({"buttons" + end, phrases_for(*buttons), {}, room});
-    add(sets.back(), *said);
-    add_foreign(sets.back(), *commands);
-    add_foreign(sets.back(), *micro);
+    const auto add_set = [&](const char* name, std::vector<Option> screen) -> Set& {
+      Set& set = sets.emplace_back();
+      set.name = name + room.name;
+      set.phrases = phrases_of(screen);
+      set.options = std::move(screen);
+      set.room = room;
+      return set;
+    };
+    Set& ten = add_set("commands", options_of(kCommands));
+    add(ten, *commands);
+    add_foreign(ten, *micro);
+    add_foreign(ten, *digits);
+    Set& two = add_set("yes_no", options_of(kYesNo));
+    add(two, *micro);
+    add(two, *said_yes_no);
+    add_foreign(two, *commands);
+    Set& numbers = add_set("digits", options_of(kDigits));
+    add(numbers, *digits);
+    add_foreign(numbers, *commands);
+    add_foreign(numbers, *micro);
+    Set& all = add_set("buttons", *buttons);
+    all.phrases = phrases_for(*buttons);
+    add(all, *said);
+    add_foreign(all, *commands);
+    add_foreign(all, *micro);
+    Set& way = add_set("on_the_way", on_the_way);
+    way.phrases = phrases_for(on_the_way);
+    way.listens = false;
+    add(way, *said_on_the_way);
+    add_foreign(way, *commands);
+    add_foreign(way, *micro);
   }
   Table table({"set", "first guess", "understood", "not heard", "at once", "wrong", "asked back",
-               "foreign acted on", "foreign asked"});
+               "foreign acted on", "of them stops", "foreign asked", "foreign confirmed"});
   ResultSheet sheet;
   sheet.name = "voice";
   std::string csv = "set,held_out,label,heard,fit,second,behind\n";
@@ -322,29 +469,23 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
   for (const Set& set : sets) {
     if (!options.only.empty() && !set.name.starts_with(options.only)) continue;
     Score held_out, all;
-    std::uint64_t seed = 1;
-    for (const Clip* clip : set.clips) {
-      show_progress(set.name + " " + std::to_string(seed) + " of " +
+    Replies replies(set, *said_yes_no);
+    for (std::size_t i = 0; i < set.clips.size(); ++i) {
+      const Clip& clip = *set.clips[i];
+      show_progress(set.name + " " + std::to_string(i + 1) + " of " +
                     std::to_string(set.clips.size()));
-      ++seed;
-      const auto microphone = at_microphone(clip->sound, set.room, seed);
-      const std::clock_t begin = std::clock();
-      const auto utterance = utterance_of(microphone);
-      const std::clock_t ended = std::clock();
-      const auto hearing =
-          utterance ? recognizer->hear(*utterance, set.phrases) : Result<Hearing>(Hearing{});
-      if (!hearing) return Error{hearing.error()};
-      const auto since = [](std::clock_t then) {
-        return static_cast<double>(std::clock() - then) / CLOCKS_PER_SEC;
-      };
-      seconds += clip->sound.duration();
-      worked += since(begin);
-      latencies.push_back(VoiceActivity::Settings{}.pause + since(ended));
-      const bool heard = utterance.has_value();
-      judge_clip(all, *clip, *hearing, set.phrases, heard);
-      if (clip->held_out) judge_clip(held_out, *clip, *hearing, set.phrases, heard);
-      const auto& candidates = hearing->candidates;
-      csv += set.name + (clip->held_out ? ",1," : ",0,") + clip->label + ",";
+      const auto heard = hear(*recognizer, clip, set.room, i + 2, set.phrases);
+      if (!heard) return Error{heard.error()};
+      seconds += clip.sound.duration();
+      worked += heard->worked;
+      latencies.push_back(VoiceActivity::Settings{}.pause + heard->recognized);
+      Score one;
+      if (Status judged = judge_clip(one, set, i, *heard, replies, *recognizer); !judged)
+        return Error{judged.error()};
+      all += one;
+      if (clip.held_out) held_out += one;
+      const auto& candidates = heard->hearing.candidates;
+      csv += set.name + (clip.held_out ? ",1," : ",0,") + clip.label + ",";
       if (!candidates.empty())
         csv += set.phrases[candidates[0].phrase].option_id + format(",%.2f", candidates[0].fit);
       else
@@ -383,7 +524,9 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
       "before and 1 s after, cut by VoiceActivity; noise: pink with a hum, 10.5 dB below the "
       "loudest "
       "0.2 s (62.5 dB at 1.25 m, noise 52 dB), near 16.9 dB (from 0.6 m); understood: at once or "
-      "after at most two questions, answered truly; answer_after: the pause that ends an utterance "
+      "after at most two replies of a synthetic voice to questions back, heard in the same room; "
+      "foreign acted on: at once, or asked about and then confirmed by the next foreign clips; "
+      "answer_after: the pause that ends an utterance "
       "and the processor time of the recognizer";
   std::printf("%s\n", table.text().c_str());
   Status saved = write_file(options.out + "/sets.md", table.markdown());

@@ -140,7 +140,11 @@ void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phras
     ++counts_.ignored;
     return;
   }
-  const Phrase first = phrases[hearing.candidates.front().phrase];
+  // By value: the list may be our own, which changes below.
+  const auto phrase_of = [&](const Hearing::Candidate& candidate) -> Phrase {
+    return phrases[candidate.phrase];
+  };
+  const Phrase first = phrase_of(hearing.candidates.front());
   const bool stops = first.option_id == kStop;
   const bool in_time = phrases_id == phrases_id_;
   // Who chats nearby must not confirm himself: a yes must be a clear one, a no need not.
@@ -170,7 +174,7 @@ void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phras
     Question question;
     for (const auto& candidate : hearing.candidates) {
       if (question.candidates.size() < kMostQuestions)
-        question.candidates.push_back(phrases[candidate.phrase]);
+        question.candidates.push_back(phrase_of(candidate));
     }
     question_ = std::move(question);
     ask(now);

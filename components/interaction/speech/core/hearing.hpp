@@ -17,7 +17,7 @@ struct Hearing {
     double fit = 0.0;        ///< {.., about 0} of its speech, against any sequence of sounds at all
     double behind = 0.0;     ///< {0..} of the whole utterance: how much less likely than the first
   };
-  std::vector<Candidate> candidates;  ///< best first, at most 3; empty: nothing like speech
+  std::vector<Candidate> candidates;  ///< best first; empty: nothing like speech
   bool in_noise = false;              ///< that was taken out: anything fits better then
 };
 

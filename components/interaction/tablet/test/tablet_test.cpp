@@ -161,7 +161,7 @@ TEST(Tablet, KeepsItsOwnStopUntilStart) {
   EXPECT_FALSE(stop.answer);
   View view = tablet.view({});
   EXPECT_EQ(view.text, "Would you like to try again?") << "the question is still there";
-  EXPECT_EQ(view.status, "Stopped. Touch Start when I may move.");
+  EXPECT_EQ(view.status, "Stopped. Touch Start to go on.");
   EXPECT_FALSE(tablet.take(screen(8, "guide_options", {"lab"}), {}).move);
   view = tablet.view({});
   EXPECT_TRUE(view.start_offered);

@@ -188,4 +188,10 @@ inline constexpr std::array<std::string_view, 95> kTextKeys{"hello",
                                                             "statement_13"};
 static_assert(static_cast<std::size_t>(Text::kStatement) + kStatements == kTextKeys.size());
 
+/// Whether it stands on a button.
+constexpr bool labels_button(Text text) {
+  return (text >= Text::kYes && text <= Text::kAgain) ||
+         (text >= Text::kFollowMe && text < Text::kStatement);
+}
+
 }  // namespace usher::guide

@@ -155,6 +155,7 @@ Item {
             spacing: 24 * kiosk.u
             visible: kiosk.model.timeLeft >= 0
             Rectangle {
+                objectName: "timeBar"
                 anchors.verticalCenter: parent.verticalCenter
                 width: 480 * kiosk.u
                 height: 28 * kiosk.u
