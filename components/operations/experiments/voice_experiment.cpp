@@ -456,7 +456,7 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
     way.phrases = phrases_for(on_the_way);
     way.listens = false;
     add(way, *said_on_the_way);
-    add_foreign(way, *commands);
+    add(way, *commands);  // a stop among them
     add_foreign(way, *micro);
   }
   Table table({"set", "first guess", "understood", "not heard", "at once", "wrong", "asked back",

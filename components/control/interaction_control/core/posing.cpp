@@ -25,7 +25,9 @@ void Posing::step(const Moment& moment, double seconds) {
 
   if (moment.torso && !known_) motion_.start_at(*moment.torso);
   known_ = moment.torso.has_value();
-  motion_.hold(moment.listens || moment.occasion == Occasion::kHold);
+  // Who drives does not drive off leaning, whoever is heard meanwhile.
+  const bool drives = moment.occasion == Occasion::kDrive;
+  motion_.hold((moment.listens && !drives) || moment.occasion == Occasion::kHold);
   if (known_ && pose_ != nullptr) motion_.go_to(pose_->pose);
   if (known_) motion_.step(seconds);
   if (pose_ != nullptr)

@@ -50,8 +50,7 @@ void Conversation::take(const Screen& screen, Time /*now*/) {
 void Conversation::listen() {
   std::vector<Phrase> phrases;
   if (understands() && screen_.id != 0) {
-    // Also where only few of them would be obeyed: with fewer words, noise is taken for a stop more
-    // often.
+    // Also where only few of them are obeyed: noise that is like one of the others is no stop then.
     std::vector<Option> options = screen_.options;
     if (holds_) options.push_back({kStart, kStart, false});
     phrases = question_ ? phrases_for_question(options) : phrases_for(options);
