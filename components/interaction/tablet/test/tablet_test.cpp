@@ -25,13 +25,13 @@ Tablet make() {
 /// When the buttons of time 0 may be touched.
 constexpr Time kSettled = Tablet::kSettles;
 
-Screen screen(std::uint64_t id, const char* state, std::vector<std::string> options) {
+Screen screen(std::uint64_t id, const char* state, const std::vector<std::string>& options) {
   Screen screen;
   screen.id = id;
   screen.state = state;
   screen.language = "en";
   screen.title = "Title";
-  for (auto& option : options) screen.options.push_back({option, option + "!"});
+  for (const auto& option : options) screen.options.push_back({option, option + "!"});
   return screen;
 }
 
@@ -297,7 +297,8 @@ TEST(FloorPlan, IsCutToWhatIsKnownAndNorthIsUp) {
   ASSERT_EQ(plan.width, 5);
   ASSERT_EQ(plan.height, 6);
   const auto at = [&](int x, int y) {
-    return plan.pixels[static_cast<std::size_t>(y * plan.width + x)];
+    return plan.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(plan.width) +
+                       static_cast<std::size_t>(x)];
   };
   EXPECT_EQ(at(1, 4), 0xffe6e8ecU) << "the wall, at the lower left";
   EXPECT_EQ(at(3, 1), 0xff454952U) << "the floor, at the upper right";
