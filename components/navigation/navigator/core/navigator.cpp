@@ -199,13 +199,14 @@ void Navigator::request(const GoalRequest& goal) {
            geometry::distance(status_.goal, status.goal) <= kMoved;
   status_ = status;
   goal_max_speed_ = goal.max_speed;
+  pace_.reset();
   fresh_ = true;
 }
 
 bool Navigator::pace(std::uint64_t id, const std::string& client, double max_speed) {
   if (!open() || id != status_.id || client != status_.client) return false;
   if (!std::isfinite(max_speed) || max_speed < 0.0) return false;
-  goal_max_speed_ = max_speed;
+  pace_ = max_speed;
   return true;
 }
 
@@ -621,7 +622,7 @@ void Navigator::set_motion(MotionMode mode, double amount) {
 
 void Navigator::limit_speed(const Situation& s) {
   if (motion_.mode != MotionMode::kFollow) return;
-  double limit = goal_max_speed_;
+  double limit = pace_.value_or(goal_max_speed_);
   if (s.localization == Localization::kDegraded)
     limit = limit > 0.0 ? std::min(limit, config_.degraded_speed) : config_.degraded_speed;
   if (limit == motion_.max_speed) return;

@@ -199,6 +199,8 @@ class Navigator {
   /// Another pace for the goal of this id and client while it runs [m/s]; 0 = the planner's own
   /// limit. Returns whether there was one; a pace that is negative or not finite is none.
   bool pace(std::uint64_t id, const std::string& client, double max_speed);
+  /// Nobody says a pace any more: the goal's own counts again.
+  void forget_pace() { pace_.reset(); }
   /// Ends the goal of this id, or whatever runs for 0. Returns whether there was one.
   bool cancel(std::uint64_t id);
   /// Answers other than to the newest plan request are ignored.
@@ -274,6 +276,7 @@ class Navigator {
 
   // The goal.
   double goal_max_speed_ = 0.0;
+  std::optional<double> pace_;  // [m/s] instead, while it is said
   double started_at_ = 0.0;
   double longest_ = 0.0;     // [m] way of this goal by the longest of its plans
   std::string waiting_for_;  // for the status while it stands

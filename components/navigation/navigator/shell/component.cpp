@@ -20,6 +20,7 @@ constexpr int kStatusEvery = 2;                 // of those periods: 5 Hz
 constexpr auto kWordStands = milliseconds(80);  // less than a period
 constexpr std::size_t kMostWords = 8;
 constexpr auto kFollowAge = milliseconds(500);
+constexpr auto kPaceAge = milliseconds(1000);
 constexpr auto kOdomAge = milliseconds(200);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kSupervisorAge = milliseconds(1000);
@@ -115,10 +116,13 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
                          core_.cancel(cancel.id());
                          step();
                        });
-  pace_ =
-      host.input(topics::kNavigatePace, {.optional = true}, [this](const auto& pace, const auto&) {
+  pace_ = host.input(
+      topics::kNavigatePace,
+      {.max_age = kPaceAge, .on_loss = "drives at the goal's own pace", .optional = true},
+      [this](const auto& pace, const auto&) {
         core_.pace(pace.id(), pace.client(), pace.max_speed());
-      });
+      },
+      [this] { core_.forget_pace(); });
   reply_ = host.input(topics::kPlanReply, {},
                       [this](const auto& reply, const auto&) { take_reply(reply); });
   follow_ = host.input(topics::kFollowStatus,

@@ -413,5 +413,23 @@ TEST_F(Component, RejectsAndCountsNonsense) {
   EXPECT_TRUE(host.written(topics::kFollowGoal).empty()) << "the robot drives on";
 }
 
+TEST_F(Component, ForgetsAPaceThatNobodySaysAnyMore) {
+  drive();
+  const auto own = task->max_speed();
+  usher_msgs::msg::NavigatePace pace;
+  pace.id(1);
+  pace.client("guide");
+  pace.max_speed(0.4F);
+  for (int i = 0; i < 15; ++i) {
+    host.publish(topics::kNavigatePace, pace, "guide");
+    run(200);
+    ASSERT_EQ(task->max_speed(), 0.4F);
+  }
+  run(700);
+  EXPECT_EQ(task->max_speed(), 0.4F);
+  run(400);
+  EXPECT_EQ(task->max_speed(), own);
+}
+
 }  // namespace
 }  // namespace usher::navigator

@@ -319,6 +319,9 @@ TEST(Navigator, TakesAnotherPaceFromTheGoalsOwnClient) {
   EXPECT_TRUE(rig.navigator.pace(7, "guide", 0.5));
   rig.run(0.2);
   EXPECT_EQ(rig.navigator.motion().max_speed, 0.5);
+  rig.navigator.forget_pace();
+  rig.run(0.2);
+  EXPECT_EQ(rig.navigator.motion().max_speed, 1.0) << "the goal's own";
 }
 
 TEST(Navigator, CancelsByIdOrWhateverRuns) {

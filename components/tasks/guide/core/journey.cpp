@@ -171,10 +171,12 @@ void Guide::watch_navigation(Time now) {
 void Guide::watch_follower(Time now) {
   std::optional<FollowerSighting> sighting;
   if (const auto& visitor = surroundings_.visitor) {
-    sighting = FollowerSighting{visitor->seen, std::hypot(visitor->x, visitor->y)};
+    sighting =
+        FollowerSighting{visitor->seen, std::hypot(visitor->x, visitor->y), visitor->x < 0.0};
   }
+  const auto& pose = surroundings_.pose;
   const Follower before = follow_.state();
-  follow_.update(sighting, now);
+  follow_.update(sighting, pose ? std::optional(pose->position()) : std::nullopt, now);
   if (follow_.lost()) {
     lost_visitor_ = true;
     visit_.travel_time += now - departed_;

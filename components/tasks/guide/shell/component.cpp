@@ -60,7 +60,11 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   number("follow_far", "m", {1, 6}, p.follow.far, "At this gap the robot waits.");
   number("follow_resume", "m", {0.5, 6}, p.follow.resume, "At this gap it goes on.");
   time("follow_unseen", p.follow.unseen, "Nobody behind for so long: it waits.");
-  time("follow_grace", p.follow.grace, "After a departure, while the visitor steps behind.");
+  time("follow_grace", p.follow.grace,
+       "After a departure the visitor steps behind: for so long at most, and until he was seen "
+       "there.");
+  number("follow_grace_way", "m", {0, 10}, p.follow.grace_way,
+         "The same: until the robot has gone so far.");
   time("follow_call", p.follow.call, "Waiting for so long it calls, and again.");
   time("follow_give_up", p.follow.give_up, "Waiting for so long it gives up.");
   number("follow_behind", "m", {0.8, 4}, p.behind,

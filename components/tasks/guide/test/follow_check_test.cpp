@@ -11,13 +11,15 @@ using std::chrono::milliseconds;
 
 class Follow : public testing::Test {
  protected:
-  void pass(double gap, int ms) { pass(FollowerSighting{true, gap}, ms); }
+  void pass(double gap, int ms) { pass(FollowerSighting{true, gap, true}, ms); }
   void pass_unseen(int ms) { pass(FollowerSighting{}, ms); }
   void pass(const std::optional<FollowerSighting>& sighting, int ms) {
-    for (int end = now_ms + ms; now_ms < end;) check.update(sighting, milliseconds(now_ms += 100));
+    for (int end = now_ms + ms; now_ms < end;)
+      check.update(sighting, at, milliseconds(now_ms += 100));
   }
   void SetUp() override { check.depart({}); }
   FollowCheck check{{}};
+  std::optional<geometry::Point2> at;  ///< in map
   int now_ms = 0;
 };
 
@@ -33,7 +35,8 @@ TEST_F(Follow, FitsThePaceToTheGap) {
     last = check.pace(1.15);
   }
   pass(4.0, 100);
-  EXPECT_EQ(check.pace(1.15), 0.0);
+  EXPECT_TRUE(check.waits());
+  EXPECT_EQ(check.pace(1.15), 0.4) << "on the wire 0 were no limit";
 }
 
 // A visitor at a steady 0.6 m/s, a robot with 1.48 s of stopping time: the gap settles and never
@@ -59,15 +62,15 @@ TEST_F(Follow, NeverLeavesAVisitorWhoStopsMoreThanSixMetresBehind) {
   pass(1.5, 9000);
   for (int i = 0; i < 300; ++i) {
     pass(robot, 100);
-    v += (check.pace(1.15) - v) * 0.1 / 0.8;
+    v += ((check.waits() ? 0.0 : check.pace(1.15)) - v) * 0.1 / 0.8;
     robot += 0.1 * v;
   }
   EXPECT_LT(robot, 6.0);
   EXPECT_TRUE(check.waits());
 }
 
-TEST_F(Follow, NoticesALossWithinTwoSeconds) {
-  pass(1.5, 10000);
+TEST_F(Follow, NoticesALossWithinTwoSecondsOfTheDeparture) {
+  pass(1.5, 200);
   int unseen = 0;
   while (!check.waits() && unseen < 5000) pass_unseen(100), unseen += 100;
   EXPECT_LE(unseen, 1200)
@@ -75,10 +78,39 @@ TEST_F(Follow, NoticesALossWithinTwoSeconds) {
 }
 
 TEST_F(Follow, GivesTheVisitorTimeToStepBehind) {
-  pass_unseen(7900);
+  pass(FollowerSighting{true, 1.2, false}, 1000);
+  pass_unseen(6900);
   EXPECT_FALSE(check.waits());
   pass_unseen(300);
   EXPECT_TRUE(check.waits());
+}
+
+TEST_F(Follow, GivesNoMoreTimeToStepBehindThanTheRobotStaysNear) {
+  at = {10.0, 10.0};
+  pass(FollowerSighting{true, 1.2, false}, 500);
+  pass_unseen(1000);
+  at = {10.0, 12.4};
+  pass_unseen(1000);
+  EXPECT_FALSE(check.waits());
+  at = {10.0, 12.6};
+  pass_unseen(100);
+  EXPECT_TRUE(check.waits());
+  check.depart(milliseconds(now_ms));
+  pass_unseen(2000);
+  EXPECT_FALSE(check.waits()) << "a new departure, from here";
+}
+
+TEST_F(Follow, GoesOnWaitingWhileNobodyLooks) {
+  pass(4.5, 1000);
+  ASSERT_TRUE(check.waits());
+  pass(std::nullopt, 10000);
+  EXPECT_TRUE(check.waits()) << "a silent camera brings nobody back";
+  EXPECT_EQ(check.calls(), 2U);
+  pass(1.5, 100);
+  EXPECT_FALSE(check.waits());
+  pass(4.5, 100);
+  pass(std::nullopt, 60000);
+  EXPECT_TRUE(check.lost());
 }
 
 TEST_F(Follow, CallsAgainAndAgainThenGivesUp) {
@@ -105,7 +137,7 @@ TEST_F(Follow, ResumesOnlyWhenTheVisitorIsNear) {
 }
 
 TEST_F(Follow, IsUnknownWhileNobodyLooksAndNotANumberIsNotSeen) {
-  pass(4.5, 1000);
+  pass(3.5, 1000);
   pass(std::nullopt, 100);
   EXPECT_EQ(check.state(), Follower::kUnknown);
   EXPECT_EQ(check.pace(1.15), 1.15);

@@ -268,6 +268,19 @@ TEST(Guide, FitsThePaceWaitsCallsAndGoesOn) {
   EXPECT_EQ(rig.guide.visit().waits, 1U);
 }
 
+TEST(Guide, GoesOnWaitingWhenNobodyLooksAnyMore) {
+  Rig rig;
+  rig.see(1.2), rig.to_active();
+  rig.see(-4.1), rig.wait(200);
+  ASSERT_EQ(rig.taken(), "stop");
+  rig.around.visitor.reset();
+  rig.wait(30000);
+  EXPECT_EQ(rig.taken(), "") << "who was missing is missing still";
+  ASSERT_TRUE(rig.offers("stay"));
+  rig.press("stay"), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "on") << "he says that he is there";
+}
+
 TEST(Guide, CountsTheAnswerThatEndsTheVisit) {
   Rig rig;
   rig.to_location_ask();
@@ -282,7 +295,7 @@ TEST(Guide, GoesOnWithAVisitorWhomItDoesNotSeeButWhoSaysThatHeIsThere) {
   Rig rig;
   rig.see(-1.0), rig.to_active();
   EXPECT_FALSE(rig.offers("stay"));
-  rig.see_nobody(), rig.wait(9000);
+  rig.see_nobody(), rig.wait(1200);
   EXPECT_EQ(rig.taken(), "stop");
   ASSERT_TRUE(rig.offers("stay"));
   rig.press("stay");
