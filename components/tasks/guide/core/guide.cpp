@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kMostClients = 32;
 constexpr std::size_t kMostTyped = 80;  ///< [byte]
-constexpr double kFaced = 0.26;         ///< [rad] so far to the side somebody is faced
+constexpr std::size_t kMostGreeted = 32;
+constexpr double kFaced = 0.26;  ///< [rad] so far to the side somebody is faced
 
 /// Where a guide goes on that was restarted in `state`.
 State resumed(std::optional<State> state) {
@@ -66,10 +67,15 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
       goal_id_ = memory.goal_id;
       goal_at_ = departed_ = now;
       acknowledged_ = goal_id_ != 0;
-      if (goal_id_ == 0) move_at_ = now + parameters_.tone;
       follow_.depart(now);
       sentence_ = say(Text::kOneMoment);
       sentence_at_ = now;
+      if (state_ == State::kGuideActive && stopped_ && goal_id_ != 0) {  // it waited for him
+        follow_.await(now);
+        sentence_ = say(Text::kWaitingForYou);
+      } else if (state_ == State::kGuideActive && goal_id_ == 0) {
+        move_at_ = now + parameters_.tone;
+      }
     }
     if (follows()) {
       first_goal_ = goal_id_ = memory.goal_id;
@@ -252,8 +258,12 @@ void Guide::choose_language(std::size_t language) { language_ = language; }
 
 bool Guide::choose_service(const std::string& option, Time now) {
   if (option == button::kRepeat) {
+    if (question()) {
+      since_ = now;
+      warned_ = false;
+      screen_ = build(now);  // not the warning again, but the question
+    }
     speak_screen();
-    if (question()) since_ = now;
     return true;
   }
   if (option == button::kStay) {
@@ -395,6 +405,7 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   watch_encounter(now);
   if (const auto bearing = turns_to(); bearing && std::abs(*bearing) <= kFaced) turns_ = false;
   if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);
+  if (state_ == State::kGuideActive || follows()) tell_why_it_stands(now);
   if (follows()) watch_following(now);
   if (follows()) follow_visitor(now);
   if (journey()) move_when_due(now);
@@ -416,21 +427,47 @@ void Guide::watch_encounter(Time now) {
   const bool near = visitor.seen && visitor.x > 0.0 &&
                     std::hypot(visitor.x, visitor.y) <= parameters_.greet_within &&
                     !(visitor.speed > parameters_.greet_below);
-  if (!near) near_since_.reset();
-  if (near && !near_since_) near_since_ = now;
+  if (!near || visitor.person != near_person_) near_since_.reset();
+  if (near && !near_since_) {
+    near_since_ = now;
+    near_person_ = visitor.person;
+  }
   if (there(visitor)) nobody_since_.reset();
   if (!there(visitor) && !nobody_since_) nobody_since_ = now;
-  if (nobody_since_ && now - *nobody_since_ >= parameters_.left) greeted_ = false;
-  if (state_ == State::kInactive && ready() && !greeted_ && near_since_ &&
+  if (nobody_since_ && now - *nobody_since_ >= parameters_.left) {
+    greeted_ = false;
+    greeted_persons_.clear();
+  }
+  if (state_ == State::kInactive && ready() && (!greeted_ || another(visitor)) && near_since_ &&
       now - *near_since_ >= parameters_.greet_after) {
     greeted_ = true;
     begin_visit(true, now);
     enter(State::kIntroduction, Cause::kVisitor, now);
   }
+  // On the way he may come by another identity.
+  if (serves() && there(visitor) && (another(visitor) || greeted_persons_.empty())) {
+    if (greeted_persons_.size() == kMostGreeted) greeted_persons_.erase(greeted_persons_.begin());
+    if (visitor.person != 0) greeted_persons_.push_back(visitor.person);
+  }
+}
+
+/// Somebody who was not greeted yet, beside one who was.
+bool Guide::another(const VisitorSighting& visitor) const {
+  return visitor.person != 0 && !greeted_persons_.empty() &&
+         std::ranges::find(greeted_persons_, visitor.person) == greeted_persons_.end();
+}
+
+/// Whether what the screen says is being said, or about to be.
+bool Guide::speaks() const {
+  const auto& speech = surroundings_.speech;
+  return speech && !(speech->finished && speech->spoken_id >= screen_.spoken_id);
 }
 
 void Guide::pass_time(Time now) {
   const Time passed = now - since_;
+  const auto shown = [&](Time least) {
+    return passed >= least && (!speaks() || passed >= least + parameters_.finish);
+  };
   const bool gone = nobody_since_ && now - *nobody_since_ >= parameters_.left &&
                     passed >= parameters_.left && !journey();
   if (question()) {
@@ -456,7 +493,7 @@ void Guide::pass_time(Time now) {
     case State::kIntroduction:
       if (gone) {
         enter(State::kEnd, Cause::kLeft, now);
-      } else if (passed >= parameters_.introduction) {
+      } else if (shown(parameters_.introduction)) {
         enter(State::kLocationAsk, Cause::kDelay, now);
       }
       break;
@@ -467,11 +504,12 @@ void Guide::pass_time(Time now) {
       }
       break;
     case State::kGuideSuccess:
-      if (passed >= parameters_.arrived) enter(State::kEndAsk, Cause::kDelay, now);
+      if (shown(parameters_.arrived)) enter(State::kEndAsk, Cause::kDelay, now);
       break;
     case State::kEnd:
-      // Who stays may start again; after a while the robot is free for others.
-      if (passed >= (human() == Human::kYes ? parameters_.answer : parameters_.goodbye)) {
+      // Who stays may start again; after a while, or when another comes, the robot is free.
+      if (shown(human() == Human::kYes && !another(*surroundings_.visitor) ? parameters_.answer
+                                                                           : parameters_.goodbye)) {
         language_ = 0;
         enter(State::kInactive, Cause::kDelay, now);
       }

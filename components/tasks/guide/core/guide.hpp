@@ -38,6 +38,7 @@ struct Parameters {
   Time tone = std::chrono::milliseconds(1000);         ///< from the tone to the first motion
   Time acknowledge = std::chrono::seconds(5);          ///< the navigator must take the goal by then
   Time recovery = std::chrono::seconds(60);            ///< a robot that may not move is waited for
+  Time finish = std::chrono::seconds(6);   ///< what is said may hold a screen so much longer
   Time refresh = std::chrono::seconds(1);  ///< least time between two updates of progress
   Time please = std::chrono::seconds(3);   ///< blocked for so long: asks to make way
   Time please_again = std::chrono::seconds(8);
@@ -63,6 +64,19 @@ struct Navigation {
   std::uint32_t replans = 0;
 };
 
+/// What holds a robot that wants to drive.
+enum class Hold : std::uint8_t {
+  kNone,
+  kStopped,  ///< somebody else's stop
+  kRefused,  ///< the supervisor gives nobody the right to drive
+};
+
+/// What the speech component does, where it can be heard.
+struct Speech {
+  std::uint64_t spoken_id = 0;  ///< of the newest sentence that it said or says
+  bool finished = true;         ///< it was said to its end, or broken off
+};
+
 /// Whom the people detector sees: before a journey in front, on it behind.
 struct VisitorSighting {
   bool seen = false;
@@ -70,14 +84,17 @@ struct VisitorSighting {
   double speed = kNothing;  ///< [m/s] in the map
   /// [m] in map, where the robot was when it saw him; nothing: not known.
   std::optional<geometry::Point2> in_map = std::nullopt;
+  std::uint64_t person = 0;  ///< identity; 0: none
 };
 
 /// What is known of the rest of the robot.
 struct Surroundings {
   Supervisor supervisor = Supervisor::kUnknown;
+  Hold hold = Hold::kNone;
   std::optional<Navigation> navigation;    ///< nothing: the navigator is silent
   std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
   std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
+  std::optional<Speech> speech;            ///< nothing: nobody speaks aloud
 };
 
 struct Goal {
@@ -164,6 +181,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void build_map(Screen& screen) const;
   void build_languages(Screen& screen) const;
   void build_statement(Screen& screen) const;
+  bool stands() const;
   std::string status() const;
   void add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const;
   std::string say(Text text) const;
@@ -202,6 +220,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void go_on(Time now);
   void fail(Text reason, Cause cause, Time now);
   void watch_robot(Time now);
+  std::optional<Text> stands_for(Time now) const;
+  void tell_why_it_stands(Time now);
   void watch_navigation(Time now);
   void watch_follower(Time now);
   void follow_visitor(Time now);
@@ -211,6 +231,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::optional<std::uint64_t> own_goal() const;
   void watch_obstacle(Time now);
   void watch_encounter(Time now);
+  bool another(const VisitorSighting& visitor) const;
+  bool speaks() const;
   void refresh_journey(Time now);
   void say_on_the_way(Text text, Tone tone, Time now);
   bool there(const VisitorSighting& visitor) const;
@@ -240,6 +262,10 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   Funnel funnel_;
   std::vector<std::string> recent_;
   bool greeted_ = false;  ///< the visitor who is there was greeted already
+  /// Those who were greeted or served since somebody came, newest last, at most kMostGreeted;
+  /// empty: not known who it was.
+  std::vector<std::uint64_t> greeted_persons_;
+  std::uint64_t near_person_ = 0;
   bool lost_visitor_ = false;
   bool turns_ = false;  ///< to the visitor, on arrival
   std::optional<Time> near_since_, nobody_since_;
@@ -254,7 +280,9 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::optional<Time> move_at_;        ///< after the tone
   bool stopped_ = false;               ///< this guide has asked the supervisor to stop
   std::optional<Time> unheard_since_;  ///< the navigator's silence
-  std::optional<Time> held_since_;     ///< the supervisor lets nothing move
+  std::optional<Time> held_since_;     ///< the supervisor lets nothing move, or somebody's stop
+  std::optional<Time> waits_since_;    ///< the navigator, for something else than the way
+  std::optional<Text> stands_told_;    ///< why it stands, as the visitor was told last
   Time asked_again_{};
   std::optional<Time> blocked_since_;
   Time pleaded_{};

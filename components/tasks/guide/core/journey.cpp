@@ -37,6 +37,7 @@ void Guide::depart(Time now) {
   move_at_ = now + parameters_.tone;
   follow_.depart(now);
   calls_heard_ = follow_.calls();
+  stands_told_.reset();
   sentence_ = say(Text::kLetsGo);
   sentence_at_ = now;
   screen_.progress = 0.0;
@@ -70,6 +71,7 @@ void Guide::go_on(Time now) {
   say_on_the_way(Text::kHereWeGo, Tone::kMoving, now);
   move_at_ = now + parameters_.tone;
   follow_.depart(now);
+  stands_told_.reset();
 }
 
 /// Gives up the goal, if there is one. A stop of this visitor must not hold the robot for the next.
@@ -97,20 +99,50 @@ void Guide::watch_robot(Time now) {
     return fail(Text::kOperatorTookOver, Cause::kFailure, now);
   }
   // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
-  const bool held = supervisor != Supervisor::kNavigation &&
-                    (supervisor != Supervisor::kAvailable || on_the_way());
+  // A visitor who stopped it himself has his own time.
+  const bool refused =
+      surroundings_.hold != Hold::kNone && (state_ == State::kGuideActive || follows());
+  const bool held = refused || (supervisor != Supervisor::kNavigation &&
+                                (supervisor != Supervisor::kAvailable || on_the_way()));
   if (!held) {
     held_since_.reset();
     return;
   }
   if (!held_since_) held_since_ = now;
   const Time lasted = now - *held_since_;
-  if (lasted >= parameters_.recovery) return fail(Text::kPartSilent, Cause::kFailure, now);
+  const bool stopped = surroundings_.hold == Hold::kStopped;
+  if (lasted >= (stopped ? parameters_.pause : parameters_.recovery)) {
+    return fail(stopped ? Text::kStoppedMe : Text::kPartSilent, Cause::kFailure, now);
+  }
   // One that was restarted knows nothing of this journey.
   if (on_the_way() && supervisor == Supervisor::kAvailable && lasted >= kAskAgainAfter &&
       now - asked_again_ >= kAskAgainEvery) {
     asked_again_ = now;
     start_navigation();
+  }
+}
+
+/// Why a robot stands that wants to drive; nothing: it drives, or waits for the visitor or the way.
+std::optional<Text> Guide::stands_for(Time now) const {
+  if (held_since_ && now - *held_since_ >= parameters_.refresh) {
+    return surroundings_.hold == Hold::kStopped ? Text::kStoppedMe : Text::kOneMoment;
+  }
+  const bool lost = waits_since_ && now - *waits_since_ >= parameters_.refresh;
+  return lost && !stopped_ ? std::optional(Text::kNotLocated) : std::nullopt;
+}
+
+void Guide::tell_why_it_stands(Time now) {
+  // The navigator waits for the way, too; that the visitor sees, and hears otherwise.
+  const auto& navigation = surroundings_.navigation;
+  const bool lost = navigation && navigation->state == GoalState::kWaiting && !surroundings_.pose;
+  if (!lost) waits_since_.reset();
+  if (lost && !waits_since_) waits_since_ = now;
+  const auto why = stands_for(now);
+  if (why == stands_told_) return;
+  stands_told_ = why;
+  if (why) return say_on_the_way(*why, Tone::kNone, now);
+  if (!stopped_) {
+    say_on_the_way(follows() ? Text::kWalkAhead : Text::kHereWeGo, Tone::kMoving, now);
   }
 }
 
@@ -235,9 +267,6 @@ void Guide::watch_obstacle(Time now) {
 }
 
 void Guide::refresh_journey(Time now) {
-  const bool held = held_since_ && now - *held_since_ >= parameters_.refresh;
-  if (held && sentence_ != say(Text::kOneMoment))
-    say_on_the_way(Text::kOneMoment, Tone::kNone, now);
   const auto& navigation = surroundings_.navigation;
   if (!navigation || goal_id_ == 0 || navigation->goal_id != goal_id_) return;
   if (now - refreshed_ < parameters_.refresh) return;
@@ -254,7 +283,7 @@ void Guide::refresh_journey(Time now) {
     first_eta_at_ = now;
   }
   const bool busy =
-      held || follow_.waits() || pleads_ || move_at_ || now - sentence_at_ < kSentence;
+      stands_told_ || follow_.waits() || pleads_ || move_at_ || now - sentence_at_ < kSentence;
   if (busy) return;
   const bool tells_eta = !told_eta_ && now - departed_ >= kEtaSettles;
   const bool tells_almost =

@@ -48,6 +48,14 @@ Text Guide::idle_text() const {
   return Text::kNotReady;
 }
 
+/// Whether the robot stands though it is on the way.
+bool Guide::stands() const {
+  const auto& navigation = surroundings_.navigation;
+  const bool waits = navigation && goal_id_ != 0 && navigation->goal_id == goal_id_ &&
+                     navigation->state == GoalState::kWaiting;
+  return stopped_ || move_at_ || held_since_ || waits;
+}
+
 std::string Guide::status() const {
   switch (state_) {
     case State::kInitialise:
@@ -56,9 +64,9 @@ std::string Guide::status() const {
     case State::kEnd:
       return say(Text::kWaitingForHuman);
     case State::kGuideActive:
-      return say(stopped_ || move_at_ ? Text::kStanding : Text::kDriving);
+      return say(stands() ? Text::kStanding : Text::kDriving);
     case State::kFollowMe:
-      return say(goal_id_ == 0 ? Text::kStanding : Text::kDriving);
+      return say(stands() || goal_id_ == 0 ? Text::kStanding : Text::kDriving);
     case State::kGuidePaused:
       return say(Text::kStanding);
     case State::kIntroduction:

@@ -85,13 +85,14 @@ enum class Text : std::size_t {
   kFollowMe,
   kSkip,
   kNoThanks,
+  kStoppedMe,
   kAgree,                   ///< the first of five, from strongly disagrees on
   kStatement = kAgree + 5,  ///< the first of kStatements, in the order of table 7.1
 };
 
 inline constexpr std::size_t kStatements = 13;
 
-inline constexpr std::array<std::string_view, 95> kTextKeys{"hello",
+inline constexpr std::array<std::string_view, 96> kTextKeys{"hello",
                                                             "choose_language",
                                                             "not_ready",
                                                             "no_places",
@@ -168,6 +169,7 @@ inline constexpr std::array<std::string_view, 95> kTextKeys{"hello",
                                                             "follow_me",
                                                             "skip",
                                                             "no_thanks",
+                                                            "stopped_me",
                                                             "agree_1",
                                                             "agree_2",
                                                             "agree_3",

@@ -17,6 +17,7 @@ constexpr auto kNavigationAge = milliseconds(2000);
 constexpr auto kFollowAge = milliseconds(1000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kVisitorAge = milliseconds(500);
+constexpr auto kSpeechAge = milliseconds(2000);
 constexpr auto kPoseAge = milliseconds(1000);
 constexpr const char* kMemory = "dialogue";
 constexpr const char* kLog = "visits.csv";
@@ -53,6 +54,9 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   time("tone_time", p.tone, "From the tone to the first motion; ISO 13482 asks for a warning.");
   time("acknowledge_timeout", p.acknowledge, "The navigator must take a goal by then.");
   time("recovery_timeout", p.recovery, "How long a robot that may not move is waited for.");
+  time("finish_time", p.finish,
+       "Greeting, arrival and goodbye stay so much longer at most, until they are said to their "
+       "end.");
   time("please_after", p.please, "Blocked for so long it asks to make way.");
   number("guide_speed", "m/s", {0.2, 1.4}, p.speed,
          "Pace of guiding; the limits of the place still hold.");
@@ -126,6 +130,10 @@ GuideComponent::GuideComponent(runtime::Host& host)
                          .on_loss = "greets nobody, waits for nobody: the visitor is unknown",
                          .optional = true},
                         [this](const auto& visitor, const auto&) { place(visitor); });
+  speech_ =
+      host.input(topics::kSpeechStatus, {.max_age = kSpeechAge,
+                                         .on_loss = "its screens do not wait for what is said",
+                                         .optional = true});
   answers_ = host.input(topics::kDialogueAnswer, {.optional = true},
                         [this](const auto& answer, const auto&) { take_answer(answer); });
   screen_ = host.output(topics::kDialogueScreen);
@@ -158,8 +166,12 @@ void GuideComponent::tick() {
 
 Surroundings GuideComponent::surroundings() const {
   Surroundings s;
-  if (const auto* status = supervisor_.fresh())
+  if (const auto* status = supervisor_.fresh()) {
     s.supervisor = service::supervisor_from(status->state());
+    const bool stopped = std::ranges::any_of(
+        status->stopped_by(), [&](const auto& client) { return client != host_.name(); });
+    s.hold = stopped ? Hold::kStopped : status->granted() ? Hold::kNone : Hold::kRefused;
+  }
   if (const auto* status = navigation_.fresh()) {
     const auto* follow = follow_.fresh();
     const bool blocked = follow != nullptr &&
@@ -174,9 +186,15 @@ Surroundings GuideComponent::surroundings() const {
   namespace seen = usher_msgs::msg::Visitor_Constants;
   const auto* visitor = visitor_.fresh();
   if (visitor != nullptr && visitor->presence() != seen::PRESENCE_UNKNOWN) {
-    s.visitor = VisitorSighting{visitor->presence() == seen::PRESENCE_SEEN, visitor->x(),
-                                visitor->y(), visitor->speed(), visitor_in_map_};
+    s.visitor = VisitorSighting{visitor->presence() == seen::PRESENCE_SEEN,
+                                visitor->x(),
+                                visitor->y(),
+                                visitor->speed(),
+                                visitor_in_map_,
+                                visitor->person()};
   }
+  if (const auto* speech = speech_.fresh(); speech != nullptr && speech->audible())
+    s.speech = Speech{speech->spoken_id(), speech->finished()};
   const auto* localization = localization_.fresh();
   if (localization != nullptr &&
       localization->state() != usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST) {

@@ -481,6 +481,140 @@ TEST(Guide, FailsWhenTheRobotDoesNotAnswerForLong) {
   EXPECT_EQ(refused.state(), "guide_error");
 }
 
+TEST(Guide, SaysThatSomebodyElseHasStoppedItAndGivesUpInTheEnd) {
+  Rig rig;
+  rig.to_active();
+  rig.around.navigation->remaining = 20.0, rig.around.navigation->eta = 20.0;
+  rig.wait(5000);
+  EXPECT_EQ(rig.guide.screen().status, "Driving");
+  rig.around.hold = Hold::kStopped;
+  rig.navigate(GoalState::kWaiting);
+  EXPECT_EQ(rig.guide.screen().status, "Standing");
+  rig.wait(6000);
+  EXPECT_EQ(rig.guide.screen().text, "Somebody has stopped me.");
+  EXPECT_EQ(rig.said.back(), "Somebody has stopped me.");
+  rig.wait(80000);
+  EXPECT_EQ(rig.state(), "guide_active") << "as long as a stop of the visitor";
+  rig.around.hold = Hold::kNone;
+  rig.navigate(GoalState::kActive);
+  EXPECT_EQ(rig.said.back(), "Here we go.");
+  EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
+  EXPECT_EQ(rig.guide.screen().status, "Driving");
+  rig.around.hold = Hold::kStopped;
+  rig.wait(120100);
+  EXPECT_EQ(rig.state(), "guide_error");
+  EXPECT_TRUE(rig.guide.screen().text.starts_with("Somebody has stopped me."));
+  EXPECT_EQ(rig.taken(), "end cancel");
+}
+
+TEST(Guide, AStopOfTheVisitorIsNotCutShortByAnotherOne) {
+  Rig rig;
+  rig.to_active();
+  rig.press("stop");
+  rig.around.hold = Hold::kStopped;
+  rig.wait(100000), rig.press("stay"), rig.wait(100000);
+  EXPECT_EQ(rig.state(), "guide_paused");
+}
+
+TEST(Guide, SaysWhyItMayNotMove) {
+  Rig rig;
+  rig.to_active();
+  rig.around.hold = Hold::kRefused;
+  rig.wait(1100);
+  EXPECT_EQ(rig.guide.screen().text, "One moment, please. I have to wait for a part of me.");
+  EXPECT_EQ(rig.guide.screen().status, "Standing");
+  rig.around.hold = Hold::kNone;
+  rig.around.pose.reset();
+  rig.navigate(GoalState::kWaiting);
+  EXPECT_EQ(rig.guide.screen().status, "Standing");
+  rig.wait(1100);
+  EXPECT_EQ(rig.guide.screen().text, "I am not sure where we are.");
+  rig.around.pose = geometry::Pose2{};
+  rig.navigate(GoalState::kActive);
+  EXPECT_EQ(rig.guide.screen().text, "Here we go.");
+  Rig leads;
+  leads.to_following();
+  leads.around.hold = Hold::kStopped;
+  leads.wait(1100);
+  EXPECT_EQ(leads.guide.screen().text, "Somebody has stopped me.");
+  leads.around.hold = Hold::kNone;
+  leads.wait(100);
+  EXPECT_EQ(leads.guide.screen().text, "Walk ahead. Tell me when we are there.");
+}
+
+TEST(Guide, ARepeatGivesTheWholeTimeAgainWithAWarningBeforeItsEnd) {
+  Rig rig;
+  rig.to_location_ask();
+  rig.wait(45000);
+  ASSERT_EQ(rig.said.back(), "Are you still there?");
+  rig.press("repeat");
+  EXPECT_EQ(rig.said.back(), "Would you like to see our location?");
+  EXPECT_TRUE(std::isnan(rig.guide.screen().time_left));
+  EXPECT_EQ(rig.guide.screen().text, "");
+  rig.wait(39900);
+  EXPECT_TRUE(std::isnan(rig.guide.screen().time_left));
+  rig.wait(200);
+  EXPECT_EQ(rig.said.back(), "Are you still there?");
+  EXPECT_TRUE(rig.offers("stay"));
+}
+
+TEST(Guide, LetsItselfFinishBeforeTheNextScreen) {
+  Rig rig;
+  rig.around.speech = Speech{0, true};  // it has not heard of the greeting yet
+  rig.begin();
+  rig.wait(3500);
+  EXPECT_EQ(rig.state(), "introduction");
+  rig.around.speech = Speech{rig.guide.screen().spoken_id, false};
+  rig.wait(1000);
+  EXPECT_EQ(rig.state(), "introduction");
+  rig.around.speech->finished = true;
+  rig.wait(100);
+  EXPECT_EQ(rig.state(), "location_ask");
+  Rig mute;
+  mute.around.speech = Speech{};
+  mute.begin();
+  mute.wait(8900);
+  EXPECT_EQ(mute.state(), "introduction");
+  mute.wait(200);
+  EXPECT_EQ(mute.state(), "location_ask") << "whatever the voice says";
+}
+
+TEST(Guide, GreetsEverybodyOnce) {
+  Rig rig;
+  rig.meet(1), rig.wait(1100);
+  ASSERT_EQ(rig.state(), "introduction");
+  rig.wait(3000), rig.press("no"), rig.press("no"), rig.press("no");
+  ASSERT_EQ(rig.state(), "end");
+  rig.meet(2), rig.wait(4000);
+  EXPECT_EQ(rig.state(), "inactive") << "for somebody else";
+  rig.wait(100);
+  EXPECT_EQ(rig.state(), "introduction");
+  EXPECT_EQ(rig.guide.funnel().greeted, 2U);
+  rig.wait(3000), rig.press("no"), rig.press("no"), rig.press("no");
+  rig.meet(1), rig.wait(60000);
+  EXPECT_EQ(rig.state(), "inactive");
+  rig.wait(5000), rig.meet(2), rig.wait(5000);
+  EXPECT_EQ(rig.state(), "inactive") << "each of them was greeted";
+  rig.meet(3), rig.wait(500), rig.meet(4), rig.wait(700);
+  EXPECT_EQ(rig.state(), "inactive") << "who passes by is not greeted";
+  rig.see_nobody(), rig.wait(15100), rig.meet(1), rig.wait(1100);
+  EXPECT_EQ(rig.state(), "introduction") << "he comes again";
+}
+
+TEST(Guide, AVisitorWhoseIdentityChangedOnTheWayIsNotGreetedAgain) {
+  Rig rig;
+  rig.meet(1), rig.to_active();
+  rig.meet(7), rig.wait(1000);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.wait(4000), rig.press("no"), rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  rig.wait(5000);
+  EXPECT_EQ(rig.state(), "inactive");
+  rig.meet(1), rig.wait(5000);
+  EXPECT_EQ(rig.state(), "inactive");
+}
+
 TEST(Guide, GoesOnAfterItsOwnRestart) {
   Rig before;
   before.press("language:de");
@@ -505,6 +639,33 @@ TEST(Guide, GoesOnAfterItsOwnRestart) {
   EXPECT_EQ(after.state(), "guide_success");
   EXPECT_EQ(after.guide.funnel().arrived, 1U);
   EXPECT_EQ(after.guide.visit().touches, 4U) << "the visit is the same one";
+}
+
+TEST(Guide, StaysStoppedAfterItsOwnRestart) {
+  Rig before;
+  before.to_start(), before.press("start"), before.wait(500), before.press("stop");
+  ASSERT_EQ(before.taken(), "start:am218 go stop") << "stopped before the first motion";
+  Rig paused({}, before.guide.memory(), 1000000);
+  paused.around.supervisor = Supervisor::kNavigation;
+  paused.wait(10000);
+  EXPECT_EQ(paused.state(), "guide_paused");
+  EXPECT_EQ(paused.taken(), "");
+  paused.press("continue"), paused.wait(1000);
+  EXPECT_EQ(paused.taken(), "on goal:am218");
+
+  Rig waits;
+  waits.see(-1.0), waits.to_active(), waits.see(-5.0), waits.wait(100);
+  ASSERT_EQ(waits.taken(), "stop");
+  Rig again({}, waits.guide.memory(), 1000000);
+  again.around.supervisor = Supervisor::kNavigation;
+  again.goal = waits.goal;
+  again.navigate(GoalState::kWaiting);
+  EXPECT_EQ(again.taken(), "goal:am218") << "to a navigator that forgot it, too";
+  again.wait(10000);
+  EXPECT_EQ(again.taken(), "") << "nobody is there";
+  EXPECT_TRUE(again.offers("stay"));
+  again.see(-1.0), again.wait(1200);
+  EXPECT_EQ(again.taken(), "on");
 }
 
 TEST(Guide, PutsRecentPlacesFirst) {
@@ -781,7 +942,12 @@ TEST(Guide, HasNoDeadEnd) {
                                                                              : 3);
       if (random.below(3) == 0) rig.see(random.uniform(-6.0, 3.0), random.uniform(0.0, 2.0));
       if (random.below(4) == 0) rig.see_nobody();
+      if (rig.around.visitor) rig.around.visitor->person = random.below(4);
       if (random.below(9) == 0) rig.around.visitor.reset();
+      rig.around.hold = static_cast<Hold>(random.below(9) == 0 ? random.below(3) : 0);
+      rig.around.speech.reset();
+      if (random.below(2) == 0)
+        rig.around.speech = Speech{rig.guide.screen().spoken_id, random.below(2) == 0};
       if (random.below(4) == 0) {
         rig.around.navigation = Navigation{
             rig.goal - random.below(2), static_cast<GoalState>(random.below(7)),    0.3, 4.0, 8.0,
@@ -808,6 +974,7 @@ TEST(Guide, HasNoDeadEnd) {
       last_id = screen.id;
     }
     rig.around.supervisor = Supervisor::kAvailable;
+    rig.around.hold = Hold::kNone;
     rig.around.navigation = Navigation{};
     rig.see_nobody();
     rig.wait(400000);

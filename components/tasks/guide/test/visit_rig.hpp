@@ -73,6 +73,11 @@ class Rig {
     around.visitor = VisitorSighting{true, x, y, speed};
     if (around.pose) around.visitor->in_map = *around.pose * geometry::Point2{x, y};
   }
+  /// Somebody stands before the robot.
+  void meet(std::uint64_t person) {
+    see(1.5);
+    around.visitor->person = person;
+  }
   void see_nobody() { around.visitor = VisitorSighting{}; }
 
   // Shortcuts into the dialogue; each asserts nothing.
