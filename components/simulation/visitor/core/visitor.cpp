@@ -31,7 +31,10 @@ void Visitor::see(const Screen& screen, double now) {
   if ((screen.state == "guide_active" || screen.state == "follow_me") && !departed_at_)
     departed_at_ = now;
   if (screen.state == "guide_paused") stopped_at_ = now;
-  if (screen.state == "guide_success") ++arrivals_;
+  if (screen.state == "location_show") saw_map_ = true;
+  if (screen.state == "location_ask") misled_ = false;
+  if (screen.state == "guide_success" && wrong_place()) misled_ = true;
+  if (screen.state == "guide_success" && !wrong_place()) ++arrivals_;
   if (screen.state == "guide_error") ++errors_;
   if (screen.state == "guide_success" || screen.state == "guide_error" ||
       screen.state == "end_ask") {
@@ -52,6 +55,11 @@ bool Visitor::offers(std::string_view option) const {
 std::optional<Choice> Visitor::press(std::string_view option) const {
   if (!offers(option)) return std::nullopt;
   return Choice{std::string(option), {}};
+}
+
+std::optional<Choice> Visitor::turn_back(std::string_view option) {
+  misled_ = true;
+  return press(option);
 }
 
 std::optional<Choice> Visitor::answer(double now) {
@@ -88,6 +96,7 @@ std::optional<Choice> Visitor::on_the_way(double now) {
     return press("stay");
   }
   if (answered_) return std::nullopt;
+  if (wrong_place()) return turn_back("cancel");
   if (due(character_.cancels_at, since)) return press("cancel");
   if (!stopped_ && due(character_.stops_at, since)) {
     stopped_ = true;
@@ -113,6 +122,7 @@ std::optional<Choice> Visitor::choice(double now) {
     return screen_.language == character_.language ? std::nullopt : press(language);
   }
   if (state == "location_ask") {
+    if (satisfied()) return press("no");
     if (character_.looks_at_map && arrivals_ == 0) return press("yes");
     return press(character_.leads ? "no" : "guide_me");
   }
@@ -123,19 +133,23 @@ std::optional<Choice> Visitor::choice(double now) {
     }
     return asked_where_ && offers("guide_me") ? press("guide_me") : press("done");
   }
-  if (state == "location_options" || state == "guide_options") return choose_place();
-  if (state == "guide_ask")
+  if (state == "location_options" || state == "guide_options")
+    return satisfied() ? press("cancel") : choose_place();
+  if (state == "guide_ask") {
+    if (satisfied()) return press("no");
+    if (misses_map()) return turn_back("no");
     return press(character_.leads && !led_at_ && offers("follow_me") ? "follow_me" : "yes");
+  }
   if (state == "follow_me") {
     return led_at_ && now - *led_at_ >= kComesUp ? press("done") : std::nullopt;
   }
   if (state == "feedback") return rate();
-  if (state == "guide_start") return press("start");
+  if (state == "guide_start") return wrong_place() ? turn_back("cancel") : press("start");
   if (state == "guide_active" || state == "guide_paused") return on_the_way(now);
   if (state == "guide_error") return press(errors_ < kMostTries ? "yes" : "no");
   if (state == "end_ask") {
     const bool again = arrivals_ == 1 && !character_.returns_to.empty();
-    return press(again ? "yes" : "no");
+    return press(again || misled_ ? "yes" : "no");
   }
   return std::nullopt;
 }

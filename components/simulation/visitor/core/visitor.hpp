@@ -13,6 +13,7 @@ struct Screen {
   std::uint64_t id = 0;
   std::string state;                 ///< of the dialogue
   std::string language;              ///< of its texts
+  std::string place;                 ///< that it is about; empty: none
   std::vector<std::string> options;  ///< ids of its buttons
   std::string text_option;           ///< id of the line to type into; empty: none
   double time_left = -1.0;           ///< [s] until the question is given up; negative: not soon
@@ -77,9 +78,15 @@ class Visitor {
   std::optional<Choice> choose_place();
   std::optional<Choice> on_the_way(double now);
   std::optional<Choice> rate();
+  std::optional<Choice> turn_back(std::string_view option);
   bool offers(std::string_view option) const;
   std::optional<Choice> press(std::string_view option) const;
   const std::string& wanted() const;
+  /// It was understood wrongly, and the robot is about to go elsewhere.
+  bool wrong_place() const { return !screen_.place.empty() && screen_.place != wanted(); }
+  /// It has been everywhere that it wanted to.
+  bool satisfied() const { return arrivals_ >= (character_.returns_to.empty() ? 1 : 2); }
+  bool misses_map() const { return character_.looks_at_map && !saw_map_ && arrivals_ == 0; }
 
   Character character_;
   Screen screen_;
@@ -89,6 +96,8 @@ class Visitor {
   bool gave_up_ = false;
   std::optional<double> departed_at_, stopped_at_;
   bool asked_where_ = false, stopped_ = false, ended_ = false;
+  bool saw_map_ = false;
+  bool misled_ = false;  ///< it was understood wrongly, and begins anew
   std::optional<double> led_at_, awaited_at_;
   int arrivals_ = 0, errors_ = 0, rated_ = 0;
 };

@@ -60,10 +60,29 @@ Character VisitorComponent::read_character(runtime::Parameters& parameters) {
   return c;
 }
 
+HearingRates VisitorComponent::read_hearing(runtime::Host& host) {
+  HearingRates rates;
+  const auto share = [&](const char* name, double& value, const char* text) {
+    value = host.parameters().number(name, "-", {0, 1}, value, text);
+  };
+  share("voice_understood", rates.understood,
+        "Share of what it says that is understood at once, where it has no mouth.");
+  share("voice_asked_back", rates.asked_back, "That the robot asks back for.");
+  share("voice_mistaken", rates.mistaken,
+        "That is taken for another button; what remains is not heard.");
+  if (rates.understood + rates.asked_back + rates.mistaken > 1.0 + 1e-9)
+    host.fault("voice_understood, voice_asked_back and voice_mistaken must not exceed 1 together");
+  return rates;
+}
+
 VisitorComponent::VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> voice)
     : host_(host),
       core_(read_character(host.parameters())),
+      hearing_(read_hearing(host), host.random("hearing")),
       fell_back_(host.health().counter("answers: touched since nobody understood")),
+      said_(host.health().counter("voice: said")),
+      asked_back_(host.health().counter("voice: asked back")),
+      mistaken_(host.health().counter("voice: taken for another")),
       answers_(host, topics::kDialogueAnswer) {
   auto& parameters = host.parameters();
   person_ = parameters.text("person", "visitor", "Name of the person in the world.");
@@ -109,7 +128,10 @@ VisitorComponent::VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> v
 
 void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
   if (screen.answer_client() == host_.name()) answers_.answered(screen.answer_id());
-  Screen seen{.id = screen.id(), .state = screen.state(), .language = screen.language()};
+  Screen seen{.id = screen.id(),
+              .state = screen.state(),
+              .language = screen.language(),
+              .place = screen.place()};
   for (const auto& option : screen.options()) {
     seen.options.push_back(option.id());
     if (option.takes_text()) seen.text_option = option.id();
@@ -117,6 +139,7 @@ void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
   if (screen.time_left() >= 0.0F) seen.time_left = screen.time_left();
   core_.see(seen, in_seconds(host_.now()));
   delivery_.see(seen.id, seen.options);
+  hearing_.see(seen.id, seen.options);
 }
 
 std::string VisitorComponent::label_of(const std::string& option) const {
@@ -140,7 +163,11 @@ void VisitorComponent::give(const Choice& choice) {
   const bool voice = input_ == Input::kVoice || (input_ == Input::kMixed && turns_++ % 2 == 1);
   // Nobody spells what can be typed.
   const Means means = voice && choice.text.empty() ? Means::kVoice : Means::kTouch;
-  if (!limbs_ || !(means == Means::kVoice ? limbs_->has_mouth() : limbs_->has_finger())) {
+  if (means == Means::kVoice && !(limbs_ && limbs_->has_mouth())) {
+    hearing_.want(core_.screen_id(), choice.option, in_seconds(host_.now()));
+    return;
+  }
+  if (means == Means::kTouch && !(limbs_ && limbs_->has_finger())) {
     write(choice, means);
     return;
   }
@@ -163,7 +190,7 @@ void VisitorComponent::deliver(double now) {
     ear.hint = speech->hint();
   }
   const auto deed = delivery_.step(ear, now);
-  fell_back_ = delivery_.fell_back();
+  fell_back_ = delivery_.fell_back() + hearing_.fell_back();
   if (!deed) return;
   if (deed->means == Means::kVoice) {
     limbs_->say(deed->what);
@@ -174,9 +201,17 @@ void VisitorComponent::deliver(double now) {
   }
 }
 
+void VisitorComponent::speak(double now) {
+  if (const auto answer = hearing_.step(now)) write({answer->option, {}}, answer->means);
+  said_ = hearing_.said();
+  asked_back_ = hearing_.asked_back();
+  mistaken_ = hearing_.mistaken();
+}
+
 void VisitorComponent::step() {
   const double now = in_seconds(host_.now());
   if (const auto choice = core_.answer(now)) give(*choice);
+  speak(now);
   if (limbs_) {
     deliver(now);
     host_.health().set(

@@ -10,6 +10,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "simulation/visitor/core/delivery.hpp"
+#include "simulation/visitor/core/hearing.hpp"
 #include "simulation/visitor/core/visitor.hpp"
 #include "simulation/visitor/shell/limbs.hpp"
 #include "wire/repeater.hpp"
@@ -27,11 +28,13 @@ class VisitorComponent final : public runtime::Component {
  private:
   enum class Input : std::uint8_t { kTouch, kVoice, kMixed };
   static Character read_character(runtime::Parameters& parameters);
+  static HearingRates read_hearing(runtime::Host& host);
   void take(const usher_msgs::msg::DialogueScreen& screen);
   void step();
   void give(const Choice& choice);
   void write(const Choice& choice, Means means);
   void deliver(double now);
+  void speak(double now);
   bool at_screen(double now);
   /// Where the robot and somebody are, if it is told.
   std::optional<geometry::Pose2> robot() const;
@@ -62,7 +65,11 @@ class VisitorComponent final : public runtime::Component {
   std::uint64_t turns_ = 0;
   std::unique_ptr<Limbs> limbs_;
   Delivery delivery_;
+  Hearing hearing_;  ///< of the robot, where this visitor has no mouth
   std::uint64_t& fell_back_;
+  std::uint64_t& said_;
+  std::uint64_t& asked_back_;
+  std::uint64_t& mistaken_;
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
   runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
   runtime::Input<usher_sim_msgs::msg::GroundTruth> truth_;

@@ -95,6 +95,19 @@ TEST_F(Someone, WritesItsAnswersWhereThereAreNoDevices) {
   EXPECT_TRUE(line_->got.empty());
 }
 
+TEST_F(Someone, IsAskedBackWhereNoSoundIsSimulated) {
+  start("input: voice\nvoice_understood: 0\nvoice_asked_back: 1\nvoice_mistaken: 0", false);
+  show(1, "guide_options", {"library", "lounge"});
+  pass(30);
+  EXPECT_TRUE(answers().empty()) << "did you say ...?";
+  pass(30);
+  ASSERT_FALSE(answers().empty());
+  EXPECT_EQ(answers().front().option_id(), "library");
+  EXPECT_EQ(answers().front().input(), input::INPUT_VOICE);
+  EXPECT_EQ(host_->counter("voice: said"), 2U);
+  EXPECT_EQ(host_->counter("voice: asked back"), 1U);
+}
+
 TEST_F(Someone, TouchesAndTypesOnTheTablet) {
   start("finger: tcp://127.0.0.1:7431\ntypes: true");
   show(7, "guide_options", {"lounge", "search"});

@@ -90,6 +90,62 @@ TEST(Visitor, ThanksAfterTheArrivalOrGoesBack) {
   }
 }
 
+Screen about(std::uint64_t id, const char* state, std::vector<std::string> options,
+             const char* place) {
+  Screen made = screen(id, state, std::move(options));
+  made.place = place;
+  return made;
+}
+
+TEST(Visitor, WhoWasMisunderstoodTurnsBackAndAsksAgain) {
+  Visitor visitor(kitchen());
+  visitor.see(about(1, "guide_start", {"start", "cancel"}, "lab"), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "cancel");
+  visitor.see(screen(2, "end_ask", {"yes", "no"}), 1.0);
+  EXPECT_EQ(chosen(visitor, 1.0), "yes");
+  visitor.see(screen(3, "location_ask", {"yes", "no", "guide_me"}), 2.0);
+  EXPECT_EQ(chosen(visitor, 2.0), "guide_me");
+  visitor.see(about(4, "guide_start", {"start", "cancel"}, "kitchen"), 3.0);
+  EXPECT_EQ(chosen(visitor, 3.0), "start");
+  visitor.see(about(5, "guide_active", {"stop", "cancel"}, "kitchen"), 4.0);
+  EXPECT_EQ(chosen(visitor, 4.0), "");
+  visitor.see(about(6, "guide_success", {}, "kitchen"), 5.0);
+  visitor.see(screen(7, "end_ask", {"yes", "no"}), 6.0);
+  EXPECT_EQ(chosen(visitor, 6.0), "no");
+  visitor.see(screen(8, "location_ask", {"yes", "no", "guide_me"}), 7.0);
+  EXPECT_EQ(chosen(visitor, 7.0), "no") << "his no was taken for a yes";
+  visitor.see(screen(9, "guide_ask", {"yes", "no"}), 8.0);
+  EXPECT_EQ(chosen(visitor, 8.0), "no");
+  visitor.see(screen(10, "guide_options", {"kitchen", "lab", "cancel"}), 9.0);
+  EXPECT_EQ(chosen(visitor, 9.0), "cancel");
+}
+
+TEST(Visitor, WhoIsLedElsewhereCancelsOrIsNotThereYet) {
+  Visitor visitor(kitchen());
+  visitor.see(about(1, "guide_active", {"stop", "cancel"}, "lab"), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "cancel");
+  visitor.see(about(2, "guide_success", {}, "lab"), 1.0);
+  EXPECT_FALSE(visitor.arrived());
+  visitor.see(screen(3, "end_ask", {"yes", "no"}), 2.0);
+  EXPECT_EQ(chosen(visitor, 2.0), "yes");
+}
+
+TEST(Visitor, WhoMissedTheMapAsksForItAgain) {
+  Character curious = kitchen();
+  curious.looks_at_map = true;
+  Visitor visitor(curious);
+  visitor.see(screen(1, "guide_ask", {"yes", "no"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "no");
+  visitor.see(screen(2, "end_ask", {"yes", "no"}), 1.0);
+  EXPECT_EQ(chosen(visitor, 1.0), "yes");
+  visitor.see(screen(3, "location_ask", {"yes", "no"}), 2.0);
+  EXPECT_EQ(chosen(visitor, 2.0), "yes");
+  visitor.see(screen(4, "location_show", {"done"}), 3.0);
+  EXPECT_EQ(chosen(visitor, 3.0), "done");
+  visitor.see(screen(5, "guide_ask", {"yes", "no"}), 4.0);
+  EXPECT_EQ(chosen(visitor, 4.0), "yes");
+}
+
 TEST(Visitor, AsksForTimeWhenItRunsOut) {
   Character slow = kitchen();
   slow.reading_time = 50.0;
