@@ -21,7 +21,8 @@ using std::chrono::seconds;
 
 constexpr int kSeeds = 18;  // participants of the thesis' study
 constexpr auto kLongest = seconds(900);
-constexpr double kWalking = 0.05;  // [m/s]
+constexpr double kWalking = 0.05;     // [m/s]
+constexpr double kMostSucceed = 0.9;  // of those who speak
 constexpr const char* kVisitor = "visitor";
 
 struct Input {
@@ -33,7 +34,8 @@ constexpr std::array kInputs{Input{"touch", 30, 120, 60}, Input{"voice", 40, 90,
 
 struct Visit {
   std::vector<double> tasks;  ///< [s] from the moment that the robot waited for a visitor
-  std::uint32_t touches = 0, utterances = 0, ignored = 0, contacts = 0;
+  std::uint32_t touches = 0, ignored = 0, contacts = 0;
+  std::uint64_t said = 0, asked_back = 0, mistaken = 0;  ///< utterances of the visitor
   double distance = NAN;  ///< [m] of the visitor from the robot at a question, median
   double speed = NAN;     ///< [m/s] of the robot while it guides and moves, mean
   std::string state, complaints;
@@ -87,6 +89,14 @@ Result<Visit> take_part(Deployment deployment, const Input& input, const std::st
     if (waits_since && (states.empty() || states.back().second != screen.state()))
       states.emplace_back(now - *waits_since, screen.state());
   });
+  world.observe(topics::kHeartbeat, [&](const auto& heartbeat, const auto&) {
+    if (heartbeat.component_name() != kVisitor) return;
+    for (const auto& counter : heartbeat.counters()) {
+      if (counter.name() == "voice: said") visit.said = counter.count();
+      if (counter.name() == "voice: asked back") visit.asked_back = counter.count();
+      if (counter.name() == "voice: taken for another") visit.mistaken = counter.count();
+    }
+  });
   world.observe(topics::kGuideVisit, [&](const auto& message, const auto&) { report = message; });
   world.observe(topics::kSimGroundTruth, [&](const auto& truth, const auto&) {
     if (states.empty()) return;
@@ -109,7 +119,6 @@ Result<Visit> take_part(Deployment deployment, const Input& input, const std::st
   visit.speed = mean(speeds);
   if (report) {
     visit.touches = report->touches();
-    visit.utterances = report->utterances();
     visit.ignored = report->ignored();
   }
   return visit;
@@ -180,16 +189,19 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
   if (!ran) return Error{ran.error()};
 
   Table table({"input", "visits", "all seven tasks", "tasks", "mean s", "touches", "utterances",
-               "late answers", "contacts"});
+               "asked back", "misunderstood", "late answers", "contacts"});
   std::vector<std::string> columns{"input"};
   for (const VisitTask& task : visit_tasks()) columns.emplace_back(task.text);
   Table times(columns);
   std::vector<Curve> curves;
   std::vector<Visit> all;
-  std::string csv = "input,seed,tasks,seconds,touches,utterances,late,contacts,last_state\n";
+  std::string csv =
+      "input,seed,tasks,seconds,touches,utterances,asked_back,misunderstood,late,contacts,last_"
+      "state\n";
   ResultSheet sheet;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    double done = 0, tasks = 0, touches = 0, utterances = 0, late = 0, contacts = 0;
+    double done = 0, tasks = 0, touches = 0, said = 0, asked = 0, mistaken = 0, late = 0,
+           contacts = 0;
     std::vector<double> whole;
     std::vector<std::vector<double>> each_task(visit_tasks().size());
     for (std::size_t i = k; i < results.size(); i += inputs.size()) {
@@ -198,7 +210,9 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
       done += visit.done() ? 1 : 0;
       tasks += static_cast<double>(visit.tasks.size());
       touches += visit.touches;
-      utterances += visit.utterances;
+      said += static_cast<double>(visit.said);
+      asked += static_cast<double>(visit.asked_back);
+      mistaken += static_cast<double>(visit.mistaken);
       late += visit.ignored;
       contacts += visit.contacts;
       if (visit.done()) whole.push_back(visit.tasks.back());
@@ -207,14 +221,16 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
       csv += std::string(inputs[k]->name) + "," + std::to_string(1 + i) + "," +
              std::to_string(visit.tasks.size()) + "," +
              format("%.1f", visit.tasks.empty() ? NAN : visit.tasks.back()) + "," +
-             std::to_string(visit.touches) + "," + std::to_string(visit.utterances) + "," +
+             std::to_string(visit.touches) + "," + std::to_string(visit.said) + "," +
+             std::to_string(visit.asked_back) + "," + std::to_string(visit.mistaken) + "," +
              std::to_string(visit.ignored) + "," + std::to_string(visit.contacts) + "," +
              visit.state + "\n";
     }
     const auto n = static_cast<double>(seeds);
     table.add({inputs[k]->name, format("%.0f", n), format("%.0f", done), format("%.1f", tasks / n),
-               format("%.0f", mean(whole)), format("%.1f", touches / n),
-               format("%.1f", utterances / n), format("%.0f", late), format("%.0f", contacts)});
+               format("%.0f", mean(whole)), format("%.1f", touches / n), format("%.1f", said / n),
+               format("%.1f", asked / n), format("%.2f", mistaken / n), format("%.0f", late),
+               format("%.0f", contacts)});
     std::vector<std::string> row{inputs[k]->name};
     Curve curve{inputs[k]->name, inputs[k]->red, inputs[k]->green, inputs[k]->blue, {{0.0, 0.0}}};
     double sum = 0.0;
@@ -226,8 +242,12 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
     times.add(row);
     curves.push_back(std::move(curve));
     sheet.metrics[std::string(inputs[k]->name) + "_did_all_seven_tasks"] = done;
-    sheet.targets[std::string(inputs[k]->name) + "_did_all_seven_tasks"] = {Bound::kAtLeast, n};
+    // Who is misunderstood may lose a task for good.
+    const bool spoken = inputs[k]->name != std::string_view("touch");
+    sheet.targets[std::string(inputs[k]->name) + "_did_all_seven_tasks"] = {
+        Bound::kAtLeast, spoken ? std::floor(kMostSucceed * n) : n};
     sheet.metrics[std::string(inputs[k]->name) + "_seconds"] = mean(whole);
+    sheet.metrics[std::string(inputs[k]->name) + "_utterances"] = said / n;
     sheet.metrics["contacts"] += contacts;
   }
   Table said(
@@ -244,8 +264,8 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
       "the seven tasks of the thesis' usability study, MARVIN with its depth cameras in the "
       "office among others, lock-step, " +
       std::to_string(seeds) +
-      " simulated participants by each input; what is said is understood (ctest -L hri has "
-      "true voices)";
+      " simulated participants by each input; what is said is understood, asked back for or "
+      "mistaken as often as in usher experiment voice (ctest -L hri has true voices)";
   sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
   const auto again = run_visit(0);
   if (!again) return Error{again.error()};

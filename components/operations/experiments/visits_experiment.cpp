@@ -12,6 +12,7 @@
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
+#include "operations/experiments/visit_end.hpp"
 
 namespace usher::operations {
 
@@ -23,6 +24,7 @@ namespace outcome = usher_msgs::msg::GuideVisit_Constants;
 constexpr int kSeeds = 100;
 constexpr auto kLongest = seconds(900);
 constexpr double kStands = 0.05;  // [m/s]
+constexpr auto kStandsFor = seconds(10);
 constexpr const char* kVisitor = "visitor";
 
 /// In the corners of the foyer.
@@ -106,8 +108,8 @@ const std::array kManners{
     Manner{"silent", "stops answering", gives_up}};
 
 struct Visit {
-  bool ended = false;  ///< and the robot is free for the next one
-  bool stands = false;
+  bool ended = false;                    ///< and the robot is free for the next one
+  std::optional<std::string> waits_for;  ///< unless it ended, and safely
   std::uint8_t outcome = outcome::OUTCOME_OPEN;
   std::string language, place, state, complaints;
   double duration = NAN;  ///< [s]
@@ -116,6 +118,12 @@ struct Visit {
   std::uint32_t contacts = 0, touched = 0;
   std::uint64_t digest = 0;
 };
+
+bool stands(const std::vector<RunRecord::Sample>& samples) {
+  return !samples.empty() && std::ranges::none_of(samples, [&](const auto& sample) {
+    return samples.back().stamp - sample.stamp <= kStandsFor && std::abs(sample.v) >= kStands;
+  });
+}
 
 Result<Visit> visit(Deployment deployment, const Manner& manner, const std::string& place,
                     std::uint64_t seed, const std::string& trace, const grid::OccupancyGrid& map) {
@@ -137,13 +145,18 @@ Result<Visit> visit(Deployment deployment, const Manner& manner, const std::stri
   const RunRecord& record = (*run)->record();
   std::optional<usher_msgs::msg::GuideVisit> report;
   world.observe(topics::kGuideVisit, [&](const auto& message, const auto&) { report = message; });
+  OpenVisit open;
+  world.observe(topics::kSupervisorStatus,
+                [&](const auto& status, const auto&) { open.supervisor = status; });
   const auto free = [&] { return report && record.dialogue().back() == "inactive"; };
   while (world.elapsed() < kLongest && !free()) world.run_for(std::chrono::milliseconds(500));
   Visit visit;
   visit.ended = free();
-  visit.stands = !record.samples().empty() && std::abs(record.samples().back().v) < kStands;
   visit.place = place;
   visit.state = record.dialogue().empty() ? "no dialogue" : record.dialogue().back();
+  open.dialogue = visit.state;
+  open.stands = stands(record.samples());
+  if (!visit.ended) visit.waits_for = waits_safely_for(open);
   visit.contacts = record.summary().contacts;
   visit.touched = record.summary().touches;
   visit.complaints = (*run)->complaints();
@@ -175,7 +188,7 @@ std::string line(const Manner& manner, std::size_t seed, const Visit& visit) {
          format(",%.1f", visit.duration) + "," + std::to_string(visit.touches) + "," +
          std::to_string(visit.utterances) + "," + std::to_string(visit.waits) + "," +
          std::to_string(visit.ratings) + "," + std::to_string(visit.contacts) + "," + visit.state +
-         "\n";
+         "," + visit.waits_for.value_or("") + "\n";
 }
 
 }  // namespace
@@ -222,9 +235,10 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
     if (!each) return Error{each.error()};
     std::string said;
     if (!each->ended || each->contacts > 0) {
-      said = name + " to " + each->place + ": " + each->state + ", contacts " +
-             std::to_string(each->contacts) + "; again with usher experiment visits --only " +
-             name + "_" + std::to_string(first + i) + "\n" + each->complaints;
+      said = name + " to " + each->place + ": " + each->state + ", waits for " +
+             each->waits_for.value_or("nothing") + ", contacts " + std::to_string(each->contacts) +
+             "; again with usher experiment visits --only " + name + "_" +
+             std::to_string(first + i) + "\n" + each->complaints;
     }
     visits[i] = std::move(each).value();
     return said;
@@ -235,7 +249,7 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
                "mean s", "longest s", "waits", "answers", "contacts"});
   std::string csv =
       "visitor,seed,destination,language,ended,outcome,seconds,touches,utterances,waits,ratings,"
-      "contacts,last_state\n";
+      "contacts,last_state,waits_for\n";
   double arrived = 0, polite = 0, waiting = 0, dead = 0, contacts = 0, rated = 0;
   std::vector<double> durations;
   for (std::size_t m = 0; m < manners.size(); ++m) {
@@ -248,8 +262,8 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
       const bool there = each.ended && each.outcome == outcome::OUTCOME_ARRIVED;
       here += there ? 1 : 0;
       ends += each.ended && !there ? 1 : 0;
-      waits_for += !each.ended && each.stands ? 1 : 0;
-      lost += !each.ended && !each.stands ? 1 : 0;
+      waits_for += each.waits_for ? 1 : 0;
+      lost += !each.ended && !each.waits_for ? 1 : 0;
       waits += each.waits;
       answers += each.touches + each.utterances;
       hits += each.contacts;
