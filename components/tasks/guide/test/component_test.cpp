@@ -1,0 +1,138 @@
+#include "tasks/guide/shell/component.hpp"
+
+#include <gtest/gtest.h>
+
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::guide {
+namespace {
+
+using namespace usher_msgs::msg;
+using std::chrono::milliseconds;
+
+/// The component in a robot that is told by hand what it does. Its texts are their keys.
+class Stage : public testing::Test {
+ protected:
+  Stage() : host(runtime::component_factory<GuideComponent>("guide"), "") {
+    Locations locations;
+    locations.locations().emplace_back().name("lab");
+    host.publish(topics::kLocations, locations);
+    supervisor.state(SupervisorStatus_Constants::STATE_INTERACTION);
+    supervisor.granted(true);
+    run(500);
+  }
+
+  void run(int ms) {
+    for (int at = 0; at < ms; at += 100) {
+      supervisor.header(wire::header(host.now(), ""));
+      host.publish(topics::kSupervisorStatus, supervisor);
+      navigation.header(wire::header(host.now(), frames::kMap));
+      host.publish(topics::kNavigateStatus, navigation);
+      if (speech) {
+        speech->header(wire::header(host.now(), ""));
+        host.publish(topics::kSpeechStatus, *speech);
+      }
+      if (visitor) {
+        visitor->header(wire::header(host.now(), frames::kBaseFootprint));
+        host.publish(topics::kVisitor, *visitor);
+      }
+      host.run_for(milliseconds(100));
+    }
+  }
+  DialogueScreen screen() const { return host.last(topics::kDialogueScreen).value(); }
+  void press(const std::string& option) {
+    DialogueAnswer answer;
+    answer.screen_id(screen().id());
+    answer.option_id(option);
+    answer.client("tablet");
+    answer.id(++answers);
+    host.publish(topics::kDialogueAnswer, answer, "tablet");
+    run(100);
+  }
+  void drive() {
+    press("language:en"), run(3000), press("guide_me"), press("lab"), press("start");
+    supervisor.state(SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE);
+    run(1200);
+    navigation.id(host.last(topics::kNavigateGoal).value().id());
+    navigation.state(GoalStatus_Constants::STATE_ACTIVE);
+    run(1000);
+    ASSERT_EQ(screen().state(), "guide_active");
+    ASSERT_EQ(screen().status(), "driving");
+  }
+  void meet(std::uint64_t person) {
+    visitor.emplace();
+    visitor->presence(Visitor_Constants::PRESENCE_SEEN);
+    visitor->person(person);
+    visitor->x(1.5);
+    run(1300);
+  }
+
+  runtime::TestHost host;
+  SupervisorStatus supervisor;
+  NavigateStatus navigation;
+  std::optional<SpeechStatus> speech;
+  std::optional<usher_msgs::msg::Visitor> visitor;
+  std::uint64_t answers = 0;
+};
+
+TEST_F(Stage, ShowsThatSomebodyElseHoldsTheRobot) {
+  drive();
+  supervisor.stopped_by({"guide"});
+  run(1500);
+  EXPECT_EQ(screen().status(), "driving") << "its own stop is on its screen by itself";
+  supervisor.stopped_by({"guide", "operator"});
+  run(1500);
+  EXPECT_EQ(screen().status(), "standing");
+  EXPECT_EQ(screen().text(), "stopped_me");
+  supervisor.stopped_by({});
+  run(300);
+  EXPECT_EQ(screen().status(), "driving");
+  supervisor.granted(false);
+  run(1500);
+  EXPECT_EQ(screen().status(), "standing");
+  EXPECT_EQ(screen().text(), "one_moment");
+}
+
+TEST_F(Stage, LetsItsVoiceFinishWhereOneIsHeard) {
+  speech.emplace();
+  speech->audible(true);
+  press("language:en");
+  run(4000);
+  EXPECT_EQ(screen().state(), "introduction");
+  speech->spoken_id(screen().spoken_id());
+  speech->finished(true);
+  run(300);
+  EXPECT_EQ(screen().state(), "location_ask");
+}
+
+TEST_F(Stage, WaitsForNoVoiceThatCannotBeHeard) {
+  speech.emplace();
+  press("language:en"), run(3100);
+  EXPECT_EQ(screen().state(), "location_ask") << "no loudspeaker";
+}
+
+TEST_F(Stage, WaitsForNoVoiceThatHasGone) {
+  speech.emplace();
+  speech->audible(true);
+  press("language:en"), run(500);
+  speech.reset();
+  run(2700);
+  EXPECT_EQ(screen().state(), "location_ask");
+}
+
+TEST_F(Stage, GreetsWhoIsAnotherOne) {
+  meet(5);
+  EXPECT_EQ(screen().state(), "introduction");
+  run(3000), press("no"), press("no"), press("no");
+  ASSERT_EQ(screen().state(), "end");
+  meet(5), run(4000);
+  EXPECT_EQ(screen().state(), "end");
+  meet(6), run(4000);
+  EXPECT_EQ(screen().state(), "location_ask");
+  EXPECT_EQ(host.last(topics::kGuideStatus)->greeted(), 2U);
+}
+
+}  // namespace
+}  // namespace usher::guide
