@@ -51,8 +51,9 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kTasks{
     {"7 end", {"end_ask", "end"}}};
 
 /// What a visitor who wants to go there and back may answer; anything else was not his wish.
-const std::set<std::string> kWishes{"language:en", "language:de", "yes",   "no",    "guide_me",
-                                    "done",        "reception",   "foyer", "start", "stay"};
+const std::set<std::string> kWishes{"language:en", "language:de", "languages", "yes",
+                                    "no",          "guide_me",    "done",      "reception",
+                                    "foyer",       "start",       "stay"};
 
 /// How a visitor answers, and what the robot has for it.
 struct Manner {
@@ -190,7 +191,8 @@ class Witness {
       sentence.shown = sentence.shown || page.find(screen.spoken()) != std::string::npos;
       sentence.until = now();
     }
-    if (screen.listens()) languages_.insert(screen.language());
+    // Before the first question he may have missed the greeting.
+    if (screen.listens() && screen.state() != "location_ask") languages_.insert(screen.language());
     if (screen.state() == state()) return;
     if (!said_.empty()) said_.rbegin()->second.until = now();
     states_.emplace_back(now(), screen.state());

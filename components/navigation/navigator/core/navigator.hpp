@@ -183,7 +183,7 @@ struct Decision {
 /// Pure: time and everything else come as arguments. Call request(), cancel() and plan_reply() as
 /// they arrive and step() after each of them and at 5 Hz or faster; carry out its decision. Every
 /// goal ends: each wait, retry and recovery has a bound in the configuration.
-class Navigator {
+class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
  public:
   /// The error names the field, its range and what was found. Ids of plans and motions count up
   /// from `first_id`; after a restart it should be larger than any used before.

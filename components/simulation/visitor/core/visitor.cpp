@@ -121,6 +121,12 @@ std::optional<Choice> Visitor::choice(double now) {
   if (state == "introduction") {
     return screen_.language == character_.language ? std::nullopt : press(language);
   }
+  // The greeting went by before it had said so, or it was understood wrongly.
+  if (state == "location_ask" && screen_.language != character_.language &&
+      languages_asked_ < kMostTries && offers("languages")) {
+    ++languages_asked_;
+    return press("languages");
+  }
   if (state == "location_ask") {
     if (satisfied()) return press("no");
     if (character_.looks_at_map && arrivals_ == 0) return press("yes");

@@ -99,7 +99,7 @@ class Visitor {
   bool saw_map_ = false;
   bool misled_ = false;  ///< it was understood wrongly, and begins anew
   std::optional<double> led_at_, awaited_at_;
-  int arrivals_ = 0, errors_ = 0, rated_ = 0;
+  int arrivals_ = 0, errors_ = 0, rated_ = 0, languages_asked_ = 0;
 };
 
 }  // namespace usher::visitor

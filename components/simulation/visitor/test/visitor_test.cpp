@@ -120,6 +120,21 @@ TEST(Visitor, WhoWasMisunderstoodTurnsBackAndAsksAgain) {
   EXPECT_EQ(chosen(visitor, 9.0), "cancel");
 }
 
+TEST(Visitor, WhoMissedTheLanguagesAsksForThem) {
+  Character french = kitchen();
+  french.language = "fr";
+  Visitor visitor(french);
+  std::uint64_t id = 0;
+  for (int tries = 0; tries < 2; ++tries) {
+    visitor.see(screen(++id, "location_ask", {"yes", "no", "guide_me", "languages"}), 0.0);
+    EXPECT_EQ(chosen(visitor, 0.0), "languages");
+    visitor.see(screen(++id, "introduction", {"language:en", "language:fr"}), 0.0);
+    EXPECT_EQ(chosen(visitor, 0.0), "language:fr");
+  }
+  visitor.see(screen(++id, "location_ask", {"yes", "no", "guide_me", "languages"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "guide_me") << "this robot does not speak it";
+}
+
 TEST(Visitor, WhoIsLedElsewhereCancelsOrIsNotThereYet) {
   Visitor visitor(kitchen());
   visitor.see(about(1, "guide_active", {"stop", "cancel"}, "lab"), 0.0);

@@ -5,6 +5,13 @@
 
 namespace usher::guide {
 
+namespace {
+
+/// [m] from the departure. While it turns there, its cameras sweep over who stands beside it.
+constexpr double kLeaves = 0.5;
+
+}  // namespace
+
 void FollowCheck::depart(Time now) {
   departed_ = now;
   departed_from_.reset();
@@ -22,8 +29,8 @@ void FollowCheck::await(Time now) {
 void FollowCheck::update(const std::optional<FollowerSighting>& sighting,
                          const std::optional<geometry::Point2>& robot, Time now) {
   if (!departed_from_) departed_from_ = robot;
-  const bool far = robot && (*robot - *departed_from_).norm() >= limits_.grace_way;
-  if (far || now - departed_ >= limits_.grace) grace_ = false;
+  const double way = robot ? (*robot - *departed_from_).norm() : kNothing;
+  if (way >= limits_.grace_way || now - departed_ >= limits_.grace) grace_ = false;
   if (!sighting && !waits()) {
     state_ = Follower::kUnknown;
     unseen_since_.reset();
@@ -31,7 +38,7 @@ void FollowCheck::update(const std::optional<FollowerSighting>& sighting,
   }
   const bool seen = sighting && sighting->seen && std::isfinite(sighting->gap);
   if (seen) {
-    if (sighting->behind) grace_ = false;
+    if (sighting->behind && !(way < kLeaves)) grace_ = false;
     gap_ = sighting->gap;
     unseen_since_.reset();
   } else if (!unseen_since_) {

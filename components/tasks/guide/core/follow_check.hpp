@@ -19,8 +19,8 @@ struct FollowLimits {
   double resume = 2.5;   ///< [m] it goes on when the visitor is nearer than this
   double slowest = 0.4;  ///< [m/s] pace just before it stops
   Time unseen = std::chrono::milliseconds(900);  ///< nobody there for so long: waits
-  /// After a departure the visitor steps behind: for so long, until he was seen there, or until
-  /// the robot has gone so far.
+  /// After a departure the visitor steps behind: for so long, until he was seen there by a robot
+  /// that has set off, or until it has gone so far.
   Time grace = std::chrono::seconds(8);
   double grace_way = 2.5;                   ///< [m]
   Time call = std::chrono::seconds(5);      ///< waiting for so long: calls, and again

@@ -70,6 +70,9 @@ TEST_F(Follow, NeverLeavesAVisitorWhoStopsMoreThanSixMetresBehind) {
 }
 
 TEST_F(Follow, NoticesALossWithinTwoSecondsOfTheDeparture) {
+  at = {10.0, 10.0};
+  pass(1.5, 200);
+  at = {10.6, 10.0};
   pass(1.5, 200);
   int unseen = 0;
   while (!check.waits() && unseen < 5000) pass_unseen(100), unseen += 100;
@@ -83,6 +86,18 @@ TEST_F(Follow, GivesTheVisitorTimeToStepBehind) {
   EXPECT_FALSE(check.waits());
   pass_unseen(300);
   EXPECT_TRUE(check.waits());
+}
+
+TEST_F(Follow, WhoWasSeenBesideARobotThatTurnsMayStillStepBehind) {
+  at = {10.0, 10.0};
+  pass(1.5, 1000);
+  at = {10.3, 10.0};
+  pass_unseen(5000);
+  EXPECT_FALSE(check.waits());
+  at.reset();
+  pass(1.5, 100);
+  pass_unseen(1100);
+  EXPECT_TRUE(check.waits()) << "where it is not known how far the robot went";
 }
 
 TEST_F(Follow, GivesNoMoreTimeToStepBehindThanTheRobotStaysNear) {
