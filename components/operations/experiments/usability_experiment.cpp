@@ -168,8 +168,10 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
   }
   if (inputs.empty()) return Error{"--only takes touch, voice or mixed, not " + options.only};
   const auto seeds = static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
+  // The same participants by each input.
+  const auto seed_of = [&](std::size_t i) { return 1 + i / inputs.size(); };
   const auto run_visit = [&](std::size_t i) {
-    const std::size_t seed = 1 + i;  // each input has participants of its own
+    const std::size_t seed = seed_of(i);
     const std::string& place = (*places)[1 + seed % (places->size() - 1)].name;
     return take_part(*deployment, *inputs[i % inputs.size()], place, places->front().name, seed);
   };
@@ -179,7 +181,7 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
     if (!each) return Error{each.error()};
     std::string said;
     if (!each->done()) {
-      said = std::string(inputs[i % inputs.size()]->name) + ", seed " + std::to_string(1 + i) +
+      said = std::string(inputs[i % inputs.size()]->name) + ", seed " + std::to_string(seed_of(i)) +
              ": " + std::to_string(each->tasks.size()) + " tasks, contacts " +
              std::to_string(each->contacts) + ", " + each->state + "\n" + each->complaints;
     }
@@ -218,7 +220,7 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
       if (visit.done()) whole.push_back(visit.tasks.back());
       for (std::size_t t = 0; t < visit.tasks.size(); ++t)
         each_task[t].push_back(visit.tasks[t] - (t > 0 ? visit.tasks[t - 1] : 0.0));
-      csv += std::string(inputs[k]->name) + "," + std::to_string(1 + i) + "," +
+      csv += std::string(inputs[k]->name) + "," + std::to_string(seed_of(i)) + "," +
              std::to_string(visit.tasks.size()) + "," +
              format("%.1f", visit.tasks.empty() ? NAN : visit.tasks.back()) + "," +
              std::to_string(visit.touches) + "," + std::to_string(visit.said) + "," +
@@ -264,7 +266,8 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
       "the seven tasks of the thesis' usability study, MARVIN with its depth cameras in the "
       "office among others, lock-step, " +
       std::to_string(seeds) +
-      " simulated participants by each input; what is said is understood, asked back for or "
+      " simulated participants, the same by each input; what is said is understood, asked back for "
+      "or "
       "mistaken as often as in usher experiment voice (ctest -L hri has true voices)";
   sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
   const auto again = run_visit(0);

@@ -66,12 +66,12 @@ class FollowCheck {
  private:
   FollowLimits limits_;
   Follower state_ = Follower::kUnknown;
-  double gap_ = kNothing;
   bool lost_ = false;
+  bool grace_ = true;  ///< he may still be stepping behind
   std::uint32_t calls_ = 0;
+  double gap_ = kNothing;
   Time departed_{};
   std::optional<geometry::Point2> departed_from_;
-  bool grace_ = true;  ///< he may still be stepping behind
   Time waiting_since_{};
   Time called_{};
   std::optional<Time> unseen_since_;
