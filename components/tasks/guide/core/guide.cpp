@@ -434,7 +434,8 @@ void Guide::watch_encounter(Time now) {
   }
   if (there(visitor)) nobody_since_.reset();
   if (!there(visitor) && !nobody_since_) nobody_since_ = now;
-  if (nobody_since_ && now - *nobody_since_ >= parameters_.left) {
+  // Who walks away on the way and comes back is not greeted for it.
+  if (nobody_since_ && now - *nobody_since_ >= parameters_.left && !serves()) {
     greeted_ = false;
     greeted_persons_.clear();
   }

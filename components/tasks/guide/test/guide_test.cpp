@@ -602,6 +602,22 @@ TEST(Guide, GreetsEverybodyOnce) {
   EXPECT_EQ(rig.state(), "introduction") << "he comes again";
 }
 
+TEST(Guide, AVisitorWhoCameBackOnTheWayIsNotGreetedAgain) {
+  Rig rig;
+  rig.meet(1), rig.wait(1100), rig.wait(3000);
+  rig.press("guide_me"), rig.press("am218"), rig.press("start");
+  rig.around.supervisor = Supervisor::kNavigation;
+  rig.wait(1000), rig.navigate(GoalState::kActive);
+  rig.see_nobody(), rig.wait(20000);
+  rig.meet(1), rig.wait(1000);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.wait(4000), rig.press("no"), rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  rig.wait(5000);
+  EXPECT_EQ(rig.state(), "inactive");
+}
+
 TEST(Guide, AVisitorWhoseIdentityChangedOnTheWayIsNotGreetedAgain) {
   Rig rig;
   rig.meet(1), rig.to_active();
