@@ -91,13 +91,16 @@ std::optional<Choice> Visitor::on_the_way(double now) {
   }
   // The robot waits for somebody who has come up and stands where it does not look.
   if (offers("stay") && awaited_at_ && now - *awaited_at_ >= kCatchesUp &&
-      walk(now) == Walk::kFollow) {
+      (walk(now) == Walk::kFollow || walk(now) == Walk::kDawdle)) {
     awaited_at_ = now;
     return press("stay");
   }
   if (answered_) return std::nullopt;
   if (wrong_place()) return turn_back("cancel");
-  if (due(character_.cancels_at, since)) return press("cancel");
+  if (due(character_.cancels_at, since)) {
+    gave_in_ = true;
+    return press("cancel");
+  }
   if (!stopped_ && due(character_.stops_at, since)) {
     stopped_ = true;
     return press("stop");
@@ -152,10 +155,16 @@ std::optional<Choice> Visitor::choice(double now) {
   if (state == "feedback") return rate();
   if (state == "guide_start") return wrong_place() ? turn_back("cancel") : press("start");
   if (state == "guide_active" || state == "guide_paused") return on_the_way(now);
-  if (state == "guide_error") return press(errors_ < kMostTries ? "yes" : "no");
+  if (state == "guide_error") {
+    gave_in_ = errors_ >= kMostTries;
+    return press(gave_in_ ? "no" : "yes");
+  }
   if (state == "end_ask") {
+    // Where he has not been yet, and did not say no to, the robot misunderstood.
+    const bool unheard = !satisfied() && !gave_in_ && !led_at_ && begun_again_ < kMostTries;
     const bool again = arrivals_ == 1 && !character_.returns_to.empty();
-    return press(again || misled_ ? "yes" : "no");
+    if (unheard && !again) ++begun_again_;
+    return press(again || misled_ || unheard ? "yes" : "no");
   }
   return std::nullopt;
 }

@@ -97,9 +97,10 @@ class Visitor {
   std::optional<double> departed_at_, stopped_at_;
   bool asked_where_ = false, stopped_ = false, ended_ = false;
   bool saw_map_ = false;
-  bool misled_ = false;  ///< it was understood wrongly, and begins anew
+  bool gave_in_ = false;  ///< it does not want to go there any more
+  bool misled_ = false;   ///< it was understood wrongly, and begins anew
   std::optional<double> led_at_, awaited_at_;
-  int arrivals_ = 0, errors_ = 0, rated_ = 0, languages_asked_ = 0;
+  int arrivals_ = 0, errors_ = 0, rated_ = 0, languages_asked_ = 0, begun_again_ = 0;
 };
 
 }  // namespace usher::visitor

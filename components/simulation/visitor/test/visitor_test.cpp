@@ -120,6 +120,24 @@ TEST(Visitor, WhoWasMisunderstoodTurnsBackAndAsksAgain) {
   EXPECT_EQ(chosen(visitor, 9.0), "cancel");
 }
 
+TEST(Visitor, WhoseStartWasTakenForACancelBeginsAgainAFewTimes) {
+  Visitor visitor(kitchen());
+  std::uint64_t id = 0;
+  for (const char* answer : {"yes", "yes", "no"}) {
+    visitor.see(about(++id, "guide_start", {"start", "cancel"}, "kitchen"), 0.0);
+    EXPECT_EQ(chosen(visitor, 0.0), "start");
+    visitor.see(screen(++id, "end_ask", {"yes", "no"}), 1.0);
+    EXPECT_EQ(chosen(visitor, 1.0), answer);
+  }
+  Character fickle = kitchen();
+  fickle.cancels_at = 5.0;
+  Visitor cancels(fickle);
+  cancels.see(about(1, "guide_active", {"stop", "cancel"}, "kitchen"), 0.0);
+  EXPECT_EQ(chosen(cancels, 5.0), "cancel");
+  cancels.see(screen(2, "end_ask", {"yes", "no"}), 6.0);
+  EXPECT_EQ(chosen(cancels, 6.0), "no") << "that was his wish";
+}
+
 TEST(Visitor, WhoMissedTheLanguagesAsksForThem) {
   Character french = kitchen();
   french.language = "fr";
