@@ -5,12 +5,12 @@
 namespace usher::visitor {
 namespace {
 
-/// Says "yes" on screen 7 until something reaches the robot; nothing: it did not within `most`
-/// seconds.
-std::optional<Hearing::Answer> say(Hearing& hearing, double& now, double most = 60.0) {
+/// Says "yes" on screen 7 until something reaches the robot; nothing: it did not within a
+/// minute.
+std::optional<Hearing::Answer> say(Hearing& hearing, double& now) {
   hearing.see(7, {"yes", "no", "guide_me"});
   hearing.want(7, "yes", now);
-  for (const double end = now + most; now < end; now += 0.2) {
+  for (int steps = 0; steps < 300; ++steps, now += 0.2) {
     hearing.want(7, "yes", now);
     if (auto answer = hearing.step(now)) return answer;
   }
