@@ -147,8 +147,11 @@ void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phras
   const bool stops = first.option_id == kStop;
   const bool in_time = phrases_id == phrases_id_;
   // Who chats nearby must not confirm himself: a yes must be a clear one, a no need not.
-  const bool denies = question_ && first.option_id == kNo;
-  Verdict verdict = judge(hearing, rule_, stops || denies);
+  const Stake stake = stops                                  ? Stake::kHalt
+                      : question_ && first.option_id == kNo  ? Stake::kDenial
+                      : question_ && first.option_id == kYes ? Stake::kConsent
+                                                             : Stake::kUsual;
+  Verdict verdict = judge(hearing, rule_, stake);
   // While a question back is open, only a clear answer takes its place.
   if (verdict == Verdict::kAsk && (question_ || !screen_.listens)) verdict = Verdict::kIgnore;
   const bool meant = stops || (in_time && (screen_.listens || unasked(first.option_id) ||

@@ -20,14 +20,16 @@ Hearing one_for_each_option(const Hearing& hearing, std::span<const Phrase> phra
   return result;
 }
 
-Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always) {
+Verdict judge(const Hearing& hearing, const DecisionRule& rule, Stake stake) {
   if (hearing.candidates.empty()) return Verdict::kIgnore;
   const double fit = hearing.candidates.front().fit;
   if (!(fit >= rule.ask_fit)) return Verdict::kIgnore;
-  if (always) return Verdict::kAct;
+  if (stake == Stake::kHalt) return fit >= rule.stop_fit ? Verdict::kAct : Verdict::kIgnore;
+  if (stake == Stake::kDenial) return Verdict::kAct;
   const bool alone = hearing.candidates.size() < 2;
   const double margin = rule.act_margin + (hearing.in_noise ? rule.noise_margin : 0.0);
-  const double least = rule.act_fit + (hearing.in_noise ? rule.noise_fit : 0.0);
+  const double usual = rule.act_fit + (hearing.in_noise ? rule.noise_fit : 0.0);
+  const double least = stake == Stake::kConsent ? std::max(usual, rule.yes_fit) : usual;
   const bool clear = alone || hearing.candidates[1].behind >= margin;
   return fit >= least && clear ? Verdict::kAct : Verdict::kAsk;
 }

@@ -32,16 +32,25 @@ enum class Verdict : std::uint8_t {
   kAct,     ///< an answer
 };
 
-struct DecisionRule {
-  double act_fit = -13.0;     ///< at least, to act without asking
-  double act_margin = 3.0;    ///< and at least so far before the second
-  double ask_fit = -50.0;     ///< at least, to ask
-  double noise_fit = 3.0;     ///< so much more fit ...
-  double noise_margin = 2.0;  ///< ... and margin it takes to act on what was said in noise
+/// What is at stake in taking a phrase for said.
+enum class Stake : std::uint8_t {
+  kUsual,    ///< an answer
+  kHalt,     ///< taken whenever it may have been said
+  kDenial,   ///< of a question back: nothing is done
+  kConsent,  ///< to a question back: it is done, and who chats nearby must not be taken for it
 };
 
-/// A stop is an answer whenever it might be one: `always` acts where others are asked about.
-Verdict judge(const Hearing& hearing, const DecisionRule& rule, bool always);
+struct DecisionRule {
+  double act_fit = -12.0;     ///< at least, to act without asking
+  double act_margin = 3.0;    ///< and at least so far before the second
+  double ask_fit = -50.0;     ///< at least, to ask
+  double noise_fit = 2.0;     ///< so much more fit ...
+  double noise_margin = 2.0;  ///< ... and margin it takes to act on what was said in noise
+  double stop_fit = -40.0;    ///< at least, to stop; at least ask_fit counts
+  double yes_fit = -6.0;      ///< at least, to take a yes for a consent; at least act_fit counts
+};
+
+Verdict judge(const Hearing& hearing, const DecisionRule& rule, Stake stake = Stake::kUsual);
 
 /// How sure, for people: 0 at ask_fit, 0.5 at act_fit, towards 1 above.
 double confidence(const Hearing& hearing, const DecisionRule& rule);

@@ -60,6 +60,10 @@ SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
                                      "So much more fit it takes to act on what was said in noise.");
   rule.noise_margin = parameters.number("noise_margin", "-", {0.0, 50.0}, rule.noise_margin,
                                         "The same for the distance to the second phrase.");
+  rule.stop_fit = parameters.number("stop_fit", "-", {-200.0, 50.0}, rule.stop_fit,
+                                    "Fit from which on a stop is taken.");
+  rule.yes_fit = parameters.number("yes_fit", "-", {-200.0, 50.0}, rule.yes_fit,
+                                   "Fit from which on a yes to a question back is taken.");
   VoiceActivity::Settings& activity = settings.activity;
   activity.over_noise = parameters.number("over_noise", "-", {2.0, 40.0}, activity.over_noise,
                                           "Decibels that a voice is above the background's mean.");

@@ -61,19 +61,22 @@ Hearing hearing(std::size_t phrase, double fit, double margin = 10.0, std::size_
 
 TEST(Judge, ActsWhenSureAsksWhenNotAndIgnoresTheRest) {
   const DecisionRule rule{-10.0, 2.0, -40.0};
-  EXPECT_EQ(judge(hearing(0, -5.0), rule, false), Verdict::kAct);
-  EXPECT_EQ(judge(hearing(0, -5.0, 1.0), rule, false), Verdict::kAsk);
-  EXPECT_EQ(judge(hearing(0, -20.0), rule, false), Verdict::kAsk);
-  EXPECT_EQ(judge(hearing(0, -20.0), rule, true), Verdict::kAct);
-  EXPECT_EQ(judge(hearing(0, -41.0), rule, true), Verdict::kIgnore);
+  EXPECT_EQ(judge(hearing(0, -5.0), rule), Verdict::kAct);
+  EXPECT_EQ(judge(hearing(0, -5.0, 1.0), rule), Verdict::kAsk);
+  EXPECT_EQ(judge(hearing(0, -20.0), rule), Verdict::kAsk);
+  EXPECT_EQ(judge(hearing(0, -20.0), rule, Stake::kHalt), Verdict::kAct);
+  EXPECT_EQ(judge(hearing(0, -41.0), rule, Stake::kHalt), Verdict::kIgnore);
   Hearing noisy = hearing(0, -5.0, 4.5);
   noisy.in_noise = true;
-  EXPECT_EQ(judge(noisy, {-12.0, 2.0, -40.0, 6.0, 2.0}, false), Verdict::kAct);
-  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}, false), Verdict::kAsk) << "fit";
-  EXPECT_EQ(judge(noisy, {-12.0, 3.0, -40.0, 6.0, 2.0}, false), Verdict::kAsk) << "margin";
-  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}, true), Verdict::kAct) << "a stop";
-  EXPECT_EQ(judge({}, rule, true), Verdict::kIgnore);
-  EXPECT_EQ(judge(hearing(0, std::numeric_limits<double>::quiet_NaN()), rule, true),
+  EXPECT_EQ(judge(noisy, {-12.0, 2.0, -40.0, 6.0, 2.0}), Verdict::kAct);
+  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}), Verdict::kAsk) << "fit";
+  EXPECT_EQ(judge(noisy, {-12.0, 3.0, -40.0, 6.0, 2.0}), Verdict::kAsk) << "margin";
+  EXPECT_EQ(judge(noisy, {-10.0, 2.0, -40.0, 6.0, 2.0}, Stake::kHalt), Verdict::kAct) << "a stop";
+  EXPECT_EQ(judge(hearing(0, -20.0), rule, Stake::kDenial), Verdict::kAct);
+  EXPECT_EQ(judge(hearing(0, -7.0), rule, Stake::kConsent), Verdict::kAsk) << "yes_fit";
+  EXPECT_EQ(judge(hearing(0, -5.0), rule, Stake::kConsent), Verdict::kAct);
+  EXPECT_EQ(judge({}, rule, Stake::kHalt), Verdict::kIgnore);
+  EXPECT_EQ(judge(hearing(0, std::numeric_limits<double>::quiet_NaN()), rule, Stake::kHalt),
             Verdict::kIgnore);
   EXPECT_NEAR(confidence(hearing(0, -10.0), rule), 0.5, 1e-12);
   EXPECT_EQ(confidence(hearing(0, -90.0), rule), 0.0);

@@ -94,7 +94,7 @@ TEST_F(Engines, TellForeignWordsFromAnswers) {
   const auto wrong = ear_->hear(say("It will be rainy tomorrow"), phrases);
   ASSERT_TRUE(right.ok() && wrong.ok());
   ASSERT_FALSE(right->candidates.empty());
-  EXPECT_NE(judge(*wrong, DecisionRule{}, false), Verdict::kAct);
+  EXPECT_NE(judge(*wrong, DecisionRule{}), Verdict::kAct);
   if (!wrong->candidates.empty()) {
     EXPECT_LT(wrong->candidates.front().fit, right->candidates.front().fit - 10.0);
   }
@@ -108,7 +108,7 @@ TEST_F(Engines, AreSilentAboutNothing) {
                         std::vector<std::int16_t>(static_cast<std::size_t>(16000 * duration))};
     const auto hearing = ear_->hear(silence, phrases);
     ASSERT_TRUE(hearing.ok()) << hearing.error();
-    EXPECT_NE(judge(*hearing, DecisionRule{}, false), Verdict::kAct) << duration;
+    EXPECT_NE(judge(*hearing, DecisionRule{}), Verdict::kAct) << duration;
   }
   EXPECT_TRUE(ear_->hear(say("Yes"), {})->candidates.empty());
   const Phrase unknown[] = {{"x", "Xqzt", "xqzt"}};
