@@ -40,7 +40,8 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
   const auto started = std::chrono::steady_clock::now();
   const auto patience = is_stop(command) ? stop_patience : kPatience;
   if (!writer->wait_for_readers(1, kPatience)) {
-    if (is_stop(command)) std::fputs("usher: no supervisor answers in this domain yet; trying on\n", stderr);
+    if (is_stop(command))
+      std::fputs("usher: no supervisor answers in this domain yet; trying on\n", stderr);
     if (!is_stop(command) || !writer->wait_for_readers(1, patience - kPatience))
       return Error{"no supervisor in this domain"};
   }

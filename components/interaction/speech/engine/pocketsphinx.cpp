@@ -17,9 +17,9 @@ namespace {
 
 constexpr const char* kScreen = "screen";
 constexpr const char* kSounds = "sounds";
-constexpr int kMostPaths = 200;  // of the list of best paths
+constexpr int kMostPaths = 200;              // of the list of best paths
 constexpr std::size_t kMostCandidates = 12;  // three buttons with four ways to say each
-constexpr double kShortest = 0.1;  // [s] of an utterance
+constexpr double kShortest = 0.1;            // [s] of an utterance
 
 constexpr std::array kPhones{"AA", "AE", "AH", "AO", "AW", "AY", "B",  "CH", "D",  "DH",
                              "EH", "ER", "EY", "F",  "G",  "HH", "IH", "IY", "JH", "K",
