@@ -540,7 +540,7 @@ TEST(Guide, SaysWhyItMayNotMove) {
   EXPECT_EQ(leads.guide.screen().text, "Somebody has stopped me.");
   leads.around.hold = Hold::kNone;
   leads.wait(100);
-  EXPECT_EQ(leads.guide.screen().text, "Walk ahead. Tell me when we are there.");
+  EXPECT_EQ(leads.guide.screen().text, "Walk ahead. Choose Done when we are there.");
 }
 
 TEST(Guide, ARepeatGivesTheWholeTimeAgainWithAWarningBeforeItsEnd) {
