@@ -48,7 +48,7 @@ struct Parameters {
   bool movement_on_at_start = true;
   /// Clients who may clear faults, and whose kMovementOn also ends the stops of others.
   std::vector<std::string> operators{"operator", "manual_control"};
-  Time claim_slack = std::chrono::milliseconds(50);      ///< see WriterRight
+  Time claim_slack = std::chrono::milliseconds(20);      ///< see WriterRight
   Time command_expiry = std::chrono::milliseconds(120);  ///< as at the base
   Time refusal_patience =
       std::chrono::milliseconds(300);                     ///< a new right takes its way to the base

@@ -164,7 +164,8 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                  });
   command_ = host.input(topics::kDriveCommand, {.optional = true},
                         [this](const auto& message, const auto& info) {
-                          core_.drive_command(info.writer, {message.v(), message.w()}, now());
+                          core_.drive_command(info.writer, {message.v(), message.w()},
+                                              info.effective.time_since_epoch());
                         });
   base_ = host.input(topics::kBaseStatus,
                      {.max_age = kBaseAge, .on_loss = "withdraws the right to drive"},
