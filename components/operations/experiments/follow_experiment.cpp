@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numeric>
 #include <optional>
 
@@ -298,13 +299,20 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
   if (!places) return Error{places.error()};
   const auto map = site_map(*deployment);
   if (!map) return Error{map.error()};
+  // A manner, or one journey of it: lace_5.
+  const auto underscore = options.only.rfind('_');
+  const std::string only = options.only.substr(0, underscore);
+  const bool one = underscore != std::string::npos;
+  const std::size_t first = one ? std::strtoul(&options.only[underscore + 1], nullptr, 10) : 1;
   std::vector<const Manner*> manners;
   for (const Manner& manner : kManners) {
-    if (options.only.empty() || options.only == manner.name) manners.push_back(&manner);
+    if (only.empty() || only == manner.name) manners.push_back(&manner);
   }
-  if (manners.empty())
-    return Error{"--only takes follows, dawdles, lace, returns or leaves, not " + options.only};
-  const auto seeds = static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
+  if (manners.empty() || first == 0)
+    return Error{
+        "--only takes follows, dawdles, lace, returns or leaves, or one journey as lace_5, not " +
+        options.only};
+  const auto seeds = one ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   // Every place far enough for somebody to fall behind gets its turn; the first one is where the
   // robot stands.
   std::vector<std::string> far;
@@ -312,21 +320,23 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
     if (geometry::distance(each.pose, places->front().pose) >= kFarEnough) far.push_back(each.name);
   }
   if (far.empty()) return Error{"the site has no place farther than 10 m from the first one"};
-  const auto place = [&](std::size_t seed) { return far[seed % far.size()]; };
+  const auto place = [&](std::size_t seed) { return far[(seed - 1) % far.size()]; };
 
   std::vector<std::optional<Journey>> journeys(manners.size() * seeds);
   const Status done =
       run_jobs(journeys.size(), "journeys", [&](std::size_t i) -> Result<std::string> {
         const Manner& manner = *manners[i % manners.size()];
-        const std::size_t seed = i / manners.size();
-        const std::string trace = seed == 0 ? options.out + "/" + manner.name : std::string();
-        auto journey = guide(*deployment, *map, manner, place(seed), seed + 1, trace);
+        const std::size_t seed = first + i / manners.size();
+        const std::string trace = seed == first ? options.out + "/" + manner.name : std::string();
+        auto journey = guide(*deployment, *map, manner, place(seed), seed, trace);
         if (!journey) return Error{journey.error()};
         std::string said;
-        if (!journey->right)
-          said = std::string(manner.name) + ", seed " + std::to_string(seed + 1) + " to " +
-                 place(seed) + ": " + journey->outcome + "\n" + journey->complaints;
-        if (seed > 0) journey->gaps.clear();
+        if (!journey->right || journey->summary.contacts > 0)
+          said = std::string(manner.name) + " to " + place(seed) + ": " + journey->outcome +
+                 ", contacts " + std::to_string(journey->summary.contacts) +
+                 "; again with usher experiment follow --only " + manner.name + "_" +
+                 std::to_string(seed) + "\n" + journey->complaints;
+        if (seed > first) journey->gaps.clear();
         journeys[i] = std::move(journey).value();
         return said;
       });
@@ -343,10 +353,10 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
   curves.reserve(manners.size());
   for (std::size_t m = 0; m < manners.size(); ++m) {
     const Manner& manner = *manners[m];
-    for (std::size_t seed = 0; seed < seeds; ++seed) {
-      const Journey& journey = *journeys[seed * manners.size() + m];
+    for (std::size_t i = 0; i < seeds; ++i) {
+      const Journey& journey = *journeys[i * manners.size() + m];
       sums[m].add(journey);
-      csv += csv_line(manner, seed + 1, place(seed), journey);
+      csv += csv_line(manner, first + i, place(first + i), journey);
     }
     const Sums& s = sums[m];
     table.add({manner.text, format("%.0f", s.journeys), format("%.0f", s.right),
@@ -360,15 +370,17 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
   const bool some_follow = manners.front() == kManners.data();
   ResultSheet sheet = judged(sums, some_follow ? sums.data() : nullptr, seeds);
   // The first journey once more: the same bytes.
-  const auto again = guide(*deployment, *map, *manners.front(), place(0), 1, "");
+  const auto again = guide(*deployment, *map, *manners.front(), place(first), first, "");
   if (!again) return Error{again.error()};
   sheet.flags["digest_repeats"] = again->digest == journeys.front()->digest;
   std::printf("%s\n", table.text().c_str());
   Status saved = write_file(options.out + "/journeys.csv", csv);
   if (saved) saved = write_file(options.out + "/journeys.md", table.markdown());
   if (saved)
-    saved = draw_plot(curves, "How far the visitor is behind, seed 1, to " + place(0),
-                      "seconds since the departure", "m", options.out + "/gap.png");
+    saved = draw_plot(
+        curves,
+        "How far the visitor is behind, seed " + std::to_string(first) + ", to " + place(first),
+        "seconds since the departure", "m", options.out + "/gap.png");
   if (!saved) return Error{saved.error()};
   return sheet;
 }
