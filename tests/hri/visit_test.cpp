@@ -338,7 +338,8 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
     witness.print(input);
     complaints = witness.complaints(manner);
     harm = witness.harm();
-    if (!over) complaints.push_back("the visit did not end\n" + robot.story());
+    if (!over) complaints.emplace_back("the visit did not end");
+    if (!complaints.empty()) std::printf("%s", robot.story().c_str());
     robot.stop();
     if (manner.speech) judge_sound(folder.path() + "/said.wav", complaints);
     for (const char* state : {"location_show", "guide_active", "guide_success"}) {

@@ -19,11 +19,11 @@ class NavigatorLoss : public DrivingRobot {
     double before = 0.0;
     EXPECT_TRUE(becomes(
         [&] {
-          run_->world().run_for(milliseconds(400));
+          run_->world().run_for(milliseconds(200));
           const double change = std::abs(speed() - std::exchange(before, speed()));
           return speed() > 0.3 && change < 0.05;
         },
-        seconds(30)));
+        seconds(60)));
   }
   /// How far the robot gets until it stands; it has this long.
   double way_to_stand(milliseconds limit) {
@@ -48,7 +48,7 @@ class NavigatorLoss : public DrivingRobot {
           return status &&
                  status->state() == usher_msgs::msg::GoalStatus_Constants::STATE_SUCCEEDED;
         },
-        seconds(200)))
+        seconds(300)))
         << run_->complaints();
     EXPECT_EQ(run_->record().summary().contacts, 0U);
     EXPECT_EQ(faults_, 0);

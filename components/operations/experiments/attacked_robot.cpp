@@ -1,8 +1,15 @@
 #include "operations/experiments/attacked_robot.hpp"
 
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "interaction/finger/core/tap.hpp"
+#include "runtime/guard/port.hpp"
 
 namespace usher::operations {
 
@@ -24,8 +31,28 @@ float deflection(double share) {
   return static_cast<float>(std::copysign(kDeadZone + (1.0 - kDeadZone) * std::abs(share), share));
 }
 
-/// A port of its own for each domain: two robots may run beside each other.
-int emulator_port(std::uint32_t domain) { return 17420 + static_cast<int>(domain); }
+/// Ports of its own for each domain: two robots may run beside each other.
+std::string emulator_address(std::uint32_t domain) {
+  return "127.0.0.1:" + std::to_string(17420 + domain);
+}
+std::string finger_address(std::uint32_t domain) {
+  return "127.0.0.1:" + std::to_string(17720 + domain);
+}
+
+/// A line to somebody who listens there; -1 = nobody does.
+int connect_to(const std::string& uri) {
+  const auto address = runtime::StreamAddress::parse(uri);
+  const int line = address ? runtime::open_port(*address) : -1;
+  if (line < 0) return -1;
+  pollfd decided{line, POLLOUT, 0};
+  int error = 0;
+  socklen_t size = sizeof(error);
+  if (::poll(&decided, 1, 1000) == 1 &&
+      ::getsockopt(line, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0)
+    return line;
+  ::close(line);
+  return -1;
+}
 
 }  // namespace
 
@@ -35,11 +62,12 @@ AttackedRobot::AttackedRobot(Launcher launcher, Deployment deployment, std::uint
 Result<std::unique_ptr<AttackedRobot>> AttackedRobot::launch(const Installation& installation,
                                                              const std::string& run_directory,
                                                              std::uint32_t domain) {
-  const std::string port = std::to_string(emulator_port(domain));
+  const std::string base = emulator_address(domain);
   auto deployment =
       load_deployment(installation.share + "/deploy/marvin-emulated.yaml", installation,
-                      {{"segway_rmp", "address", "tcp://127.0.0.1:" + port},
-                       {"segway_emulator", "address", "listen://127.0.0.1:" + port}});
+                      {{"segway_rmp", "address", "tcp://" + base},
+                       {"segway_emulator", "address", "listen://" + base},
+                       {"tablet", "finger", "listen://" + finger_address(domain)}});
   if (!deployment) return Error{deployment.error()};
   deployment->manifest.domain = domain;
   // A component may be killed more often than a robot would forgive.
@@ -57,6 +85,7 @@ Result<std::unique_ptr<AttackedRobot>> AttackedRobot::launch(const Installation&
 AttackedRobot::~AttackedRobot() {
   ends_ = true;
   if (hand_.joinable()) hand_.join();
+  if (finger_ >= 0) ::close(finger_);
 }
 
 Status AttackedRobot::listen() {
@@ -116,6 +145,11 @@ Status AttackedRobot::listen() {
                            });
                          }),
        heartbeat_reader_);
+  keep(observer_->reader(topics::kDialogueScreen,
+                         [this, note](const auto& message, const auto&) {
+                           note([&] { screen_ = message.id(); });
+                         }),
+       screen_reader_);
   keep(observer_->writer(topics::kJoy), joy_);
   keep(observer_->writer(topics::kSupervisorRequest), request_);
   return status;
@@ -158,6 +192,18 @@ void AttackedRobot::hold(double v, double w) {
 void AttackedRobot::release() {
   const std::lock_guard lock(mutex_);
   held_ = false;
+}
+
+Status AttackedRobot::touch(const std::string& button) {
+  const std::lock_guard lock(mutex_);
+  if (finger_ < 0) finger_ = connect_to("tcp://" + finger_address(domain_));
+  if (finger_ < 0) return Error{"the tablet takes no finger at " + finger_address(domain_)};
+  const std::string line = finger::to_line({screen_, false, button});
+  const auto sent = ::send(finger_, line.data(), line.size(), MSG_NOSIGNAL);
+  if (sent == static_cast<ssize_t>(line.size())) return {};
+  ::close(finger_);
+  finger_ = -1;
+  return Error{"the tablet's line for fingers broke"};
 }
 
 bool AttackedRobot::ask(std::uint8_t command, milliseconds patience) {

@@ -49,6 +49,8 @@ class AttackedRobot {
   /// What the operator's hand does from now on: holds the button and the sticks, or lets go.
   void hold(double v, double w);
   void release();
+  /// Puts a finger on a button of the tablet, if it is drawn; returns at once.
+  Status touch(const std::string& button);
   /// Asks the supervisor until it agrees.
   bool ask(std::uint8_t command, std::chrono::milliseconds patience);
 
@@ -107,6 +109,7 @@ class AttackedRobot {
   std::map<std::string, Instant> heard_;
   bool granted_ = false;
   std::uint64_t grants_lost_ = 0;
+  std::uint64_t screen_ = 0;  ///< that the tablet shows
   bool held_ = false;
   float forward_ = 0.0F, turn_ = 0.0F;
   std::vector<std::string> events_;
@@ -117,8 +120,10 @@ class AttackedRobot {
   std::optional<runtime::Observer::Reader<usher_msgs::msg::SupervisorStatus>> status_reader_;
   std::optional<runtime::Observer::Reader<usher_msgs::msg::DriveGrant>> grant_reader_;
   std::optional<runtime::Observer::Reader<usher_msgs::msg::Heartbeat>> heartbeat_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::DialogueScreen>> screen_reader_;
   std::optional<runtime::Observer::Writer<sensor_msgs::msg::Joy>> joy_;
   std::optional<runtime::Observer::Writer<usher_msgs::msg::SupervisorRequest>> request_;
+  int finger_ = -1;  ///< the line to the tablet; under the mutex
   std::atomic<bool> ends_{false};
   std::thread hand_;  ///< launches, and moves the sticks
 };

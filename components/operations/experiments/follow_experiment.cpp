@@ -292,8 +292,8 @@ ResultSheet judged(const std::vector<Sums>& sums, const Sums* who_follows, std::
 }  // namespace
 
 Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
-  const auto deployment = load_deployment(options.installation.share + "/deploy/demo-depth.yaml",
-                                          options.installation, {});
+  const auto deployment =
+      load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/attacked_robot.hpp"
@@ -26,8 +28,18 @@ constexpr double kStoppingTime = 1.48;            // [s] times the speed: table 
 constexpr double kMedian = 140.0, kMost = 200.0;  // [ms]
 constexpr double kReturn = 1.0;                   // [s]
 constexpr double kStandstill = 1.1;  // share of the stopping distance; the table's own spread
+constexpr auto kSettles = milliseconds(500);  // the tablet's buttons, before they are touched
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-enum class Harm { kKill, kHang };
+constexpr const char* kTouched = "tablet";
+constexpr double kMostTouched = 250.0;  // [ms] from a finger on Stop to the first zero
+
+/// What happens to the victim: the tablet is only touched, on Stop.
+enum class Harm : std::uint8_t { kKill, kHang, kTouch };
+
+const char* name(Harm harm) {
+  return harm == Harm::kKill ? "kill -9" : harm == Harm::kHang ? "hang" : "touch of Stop";
+}
 
 struct Trial {
   std::string victim;
@@ -78,25 +90,15 @@ class Attack {
     robot_.forget();
     const Instant harmed = Clock::now();
     kill(process, harm == Harm::kKill ? SIGKILL : SIGSTOP);
-    Instant zero{};
-    const auto stopped = [&] {
-      for (const auto& wheels : robot_.wheels()) {
-        if (!wheels.zero() || wheels.at < harmed) continue;
-        zero = wheels.at;
-        return true;
-      }
-      return false;
-    };
-    if (!robot_.wait_for(stopped, seconds(2)))
-      return Error{victim + ": no zero at the wheels within 2 s"};
-    trial.zero_ms = ms(zero - harmed);
-    trial.standstill = std::numeric_limits<double>::quiet_NaN();
+    const auto zero = first_zero(harmed);
+    if (!zero) return Error{victim + ": no zero at the wheels within 2 s"};
+    trial.zero_ms = ms(*zero - harmed);
+    trial.standstill = kNone;
     Instant killed = harmed;
     if (harm == Harm::kHang) {
-      robot_.release();  // so that a return does not end the stop that is measured
-      if (!robot_.wait_for([&] { return robot_.stands(); }, seconds(6)))
-        return Error{victim + ": no standstill within 6 s"};
-      trial.standstill = standstill_share(zero);
+      auto share = come_to_rest(*zero);
+      if (!share) return Error{victim + ": " + share.error()};
+      trial.standstill = *share;
       killed = Clock::now();
       if (robot_.process(victim) == process) kill(process, SIGKILL);
     }
@@ -112,7 +114,52 @@ class Attack {
     return trial;
   }
 
+  /// A finger on the tablet's Stop while the operator holds the stick, then one on Start.
+  Result<Trial> touch_stop(int round) {
+    if (auto status = get_going(); !status) return Error{status.error()};
+    std::this_thread::sleep_for(milliseconds((round * 7) % 20));
+    robot_.forget();
+    const Instant touched = Clock::now();
+    if (auto status = robot_.touch("tablet:stop"); !status) return Error{status.error()};
+    const auto zero = first_zero(touched);
+    if (!zero) return Error{"tablet: no zero at the wheels within 2 s of the touch"};
+    auto share = come_to_rest(*zero);
+    if (!share) return Error{"tablet: " + share.error()};
+    const Instant at_rest = Clock::now();
+    std::this_thread::sleep_for(kSettles);
+    if (auto status = robot_.touch("tablet:start"); !status) return Error{status.error()};
+    if (auto status = get_going(); !status) return Error{"tablet: " + status.error()};
+    return Trial{.victim = kTouched,
+                 .harm = Harm::kTouch,
+                 .zero_ms = ms(*zero - touched),
+                 .standstill = *share,
+                 .back_s = kNone,
+                 .on_its_way_s = ms(Clock::now() - at_rest) / 1e3};
+  }
+
  private:
+  std::optional<Instant> first_zero(Instant harmed) {
+    std::optional<Instant> zero;
+    const auto stopped = [&] {
+      for (const auto& wheels : robot_.wheels()) {
+        if (!wheels.zero() || wheels.at < harmed) continue;
+        zero = wheels.at;
+        return true;
+      }
+      return false;
+    };
+    robot_.wait_for(stopped, seconds(2));
+    return zero;
+  }
+
+  /// The way from the first zero to a standstill over the stopping distance.
+  Result<double> come_to_rest(Instant zero) {
+    robot_.release();  // so that a return does not end the stop that is measured
+    if (!robot_.wait_for([&] { return robot_.stands(); }, seconds(6)))
+      return Error{"no standstill within 6 s"};
+    return standstill_share(zero);
+  }
+
   Status take_over() {
     const auto manual = [&] {
       return robot_.status() &&
@@ -169,15 +216,12 @@ std::vector<double> select(const std::vector<Trial>& trials, const Value& value)
   return values;
 }
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 std::string trials_csv(const std::vector<Trial>& trials) {
   std::string csv = "victim,harm,zero_ms,standstill_share,back_s,on_its_way_s,contact\n";
   for (const Trial& trial : trials) {
-    csv += trial.victim + (trial.harm == Harm::kKill ? ",kill" : ",hang") +
-           format(",%.1f", trial.zero_ms) + format(",%.3f", trial.standstill) +
-           format(",%.3f", trial.back_s) + format(",%.2f", trial.on_its_way_s) +
-           (trial.contact ? ",1\n" : ",0\n");
+    csv += trial.victim + "," + name(trial.harm) + format(",%.1f", trial.zero_ms) +
+           format(",%.3f", trial.standstill) + format(",%.3f", trial.back_s) +
+           format(",%.2f", trial.on_its_way_s) + (trial.contact ? ",1\n" : ",0\n");
   }
   return csv;
 }
@@ -186,7 +230,7 @@ Table by_victim(const std::vector<Trial>& trials, const std::vector<std::string>
   Table table({"component", "harm", "trials", "zero p50 ms", "zero max ms", "way / d(v) max",
                "back max s"});
   for (const auto& victim : victims) {
-    for (const Harm harm : {Harm::kKill, Harm::kHang}) {
+    for (const Harm harm : {Harm::kKill, Harm::kHang, Harm::kTouch}) {
       std::vector<Trial> own;
       for (const Trial& trial : trials) {
         if (trial.victim == victim && trial.harm == harm) own.push_back(trial);
@@ -195,20 +239,21 @@ Table by_victim(const std::vector<Trial>& trials, const std::vector<std::string>
       const auto zero = select(own, [](const Trial& t) { return t.zero_ms; });
       const auto way = select(own, [](const Trial& t) { return t.standstill; });
       const auto back = select(own, [](const Trial& t) { return t.back_s; });
-      table.add({victim, harm == Harm::kKill ? "kill -9" : "hang", std::to_string(own.size()),
+      table.add({victim, name(harm), std::to_string(own.size()),
                  format("%.0f", percentile(zero, 0.5)), format("%.0f", percentile(zero, 1.0)),
                  way.empty() ? "-" : format("%.2f", percentile(way, 1.0)),
-                 format("%.2f", percentile(back, 1.0))});
+                 back.empty() ? "-" : format("%.2f", percentile(back, 1.0))});
     }
   }
   return table;
 }
 
 Status draw(const std::vector<Trial>& trials, const std::string& out) {
-  std::vector<Curve> curves{{"kill -9", 200, 60, 40, {}}, {"hang", 40, 90, 190, {}}};
+  std::vector<Curve> curves{
+      {"kill -9", 200, 60, 40, {}}, {"hang", 40, 90, 190, {}}, {"touch of Stop", 50, 140, 60, {}}};
   for (std::size_t i = 0; i < curves.size(); ++i) {
     auto values = select(trials, [&](const Trial& t) {
-      return (t.harm == Harm::kKill) == (i == 0) ? t.zero_ms : kNone;
+      return static_cast<std::size_t>(t.harm) == i ? t.zero_ms : kNone;
     });
     std::sort(values.begin(), values.end());
     for (std::size_t k = 0; k < values.size(); ++k) {
@@ -222,7 +267,10 @@ Status draw(const std::vector<Trial>& trials, const std::string& out) {
 }
 
 void judge(const std::vector<Trial>& trials, ResultSheet& sheet) {
-  const auto zero = select(trials, [](const Trial& t) { return t.zero_ms; });
+  const auto zero =
+      select(trials, [](const Trial& t) { return t.harm != Harm::kTouch ? t.zero_ms : kNone; });
+  const auto touched =
+      select(trials, [](const Trial& t) { return t.harm == Harm::kTouch ? t.zero_ms : kNone; });
   const auto way = select(trials, [](const Trial& t) { return t.standstill; });
   const auto is_chain = [](const Trial& t) {
     return t.victim == "supervisor" || t.victim == "movement_control" || t.victim == "segway_rmp";
@@ -235,12 +283,14 @@ void judge(const std::vector<Trial>& trials, ResultSheet& sheet) {
   sheet.metrics["trials"] = static_cast<double>(trials.size());
   sheet.metrics["zero_ms_p50"] = percentile(zero, 0.5);
   sheet.metrics["zero_ms_max"] = percentile(zero, 1.0);
+  sheet.metrics["touch_zero_ms_max"] = percentile(touched, 1.0);
   sheet.metrics["standstill_share_max"] = percentile(way, 1.0);
   sheet.metrics["drive_chain_back_s_max"] = percentile(chain_back, 1.0);
   sheet.metrics["all_back_s_max"] = percentile(back, 1.0);
   sheet.metrics["contacts"] = static_cast<double>(contacts.size());
   sheet.targets = {{"zero_ms_p50", {Bound::kAtMost, kMedian}},
                    {"zero_ms_max", {Bound::kAtMost, kMost}},
+                   {"touch_zero_ms_max", {Bound::kAtMost, kMostTouched}},
                    {"standstill_share_max", {Bound::kAtMost, kStandstill}},
                    {"drive_chain_back_s_max", {Bound::kAtMost, kReturn}},
                    {"contacts", {Bound::kAtMost, 0.0}}};
@@ -254,26 +304,41 @@ Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options) {
   auto victims = (*robot)->components("stop");
   if (!options.only.empty())
     std::erase_if(victims, [&](const auto& name) { return name != options.only; });
-  if (victims.empty()) return Error{"no critical component '" + options.only + "'"};
+  const bool touches = options.only.empty() || options.only == kTouched;
+  if (victims.empty() && !touches) {
+    return Error{"--only takes a critical component or " + std::string(kTouched) + ", not " +
+                 options.only};
+  }
   const int rounds = options.seeds > 0 ? options.seeds : kRounds;
   Attack attack(**robot);
   std::vector<Trial> trials;
+  const auto progress = [&](int round, const std::string& victim, Harm harm) {
+    show_progress("round " + std::to_string(round + 1) + " of " + std::to_string(rounds) + ": " +
+                  victim + ", " + name(harm));
+  };
   for (int round = 0; round < rounds; ++round) {
     for (const auto& victim : victims) {
       for (const Harm harm : {Harm::kKill, Harm::kHang}) {
-        show_progress("round " + std::to_string(round + 1) + " of " + std::to_string(rounds) +
-                      ": " + victim + (harm == Harm::kKill ? ", kill -9" : ", hang"));
+        progress(round, victim, harm);
         auto trial = attack.run(victim, harm, round);
         if (!trial) return Error{trial.error()};
         trials.push_back(*trial);
       }
     }
+    if (!touches) continue;
+    progress(round, kTouched, Harm::kTouch);
+    auto trial = attack.touch_stop(round);
+    if (!trial) return Error{trial.error()};
+    trials.push_back(*trial);
   }
+  if (touches) victims.emplace_back(kTouched);
   show_progress("");
   ResultSheet sheet;
   sheet.name = "reaction";
   sheet.input = "MARVIN as processes with driver, guard and emulated base, circles at " +
-                format("%.1f", kSpeed) + " m/s; kill -9 and SIGSTOP of each critical component, " +
+                format("%.1f", kSpeed) +
+                " m/s; kill -9 and SIGSTOP of each critical component, a finger "
+                "on the tablet's Stop, " +
                 std::to_string(rounds) + " times";
   judge(trials, sheet);
   const Table table = by_victim(trials, victims);

@@ -156,8 +156,8 @@ std::string beside(std::size_t statement, const std::vector<Visit>& visits) {
 }  // namespace
 
 Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
-  const auto deployment = load_deployment(options.installation.share + "/deploy/demo-depth.yaml",
-                                          options.installation, {});
+  const auto deployment =
+      load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};

@@ -194,8 +194,8 @@ std::string line(const Manner& manner, std::size_t seed, const Visit& visit) {
 }  // namespace
 
 Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
-  const auto deployment = load_deployment(options.installation.share + "/deploy/demo-depth.yaml",
-                                          options.installation, {});
+  const auto deployment =
+      load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};

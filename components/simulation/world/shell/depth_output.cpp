@@ -10,6 +10,7 @@ namespace {
 
 /// Half a period of 30 Hz: the cameras take turns.
 constexpr auto kTurn = std::chrono::nanoseconds(16'666'667);
+constexpr int kRearEvery = 2;  ///< the rear camera has 15 Hz: the detector looks no more often
 constexpr const char* kKinectFrame = "kinect_depth_optical";
 constexpr const char* kRearFrame = "rear_camera_depth_optical";
 
@@ -143,7 +144,7 @@ void DepthOutput::publish_next() {
   told_ = true;
   const bool rendered = kind_ != Kind::kPixels || images_ / 2 % every_ == 0;
   if (rendered && kinect_next_) publish_kinect();
-  if (rendered && !kinect_next_ && has_rear_) publish_rear();
+  if (rendered && !kinect_next_ && has_rear_ && images_ / 2 % kRearEvery == 0) publish_rear();
   kinect_next_ = !kinect_next_;
   ++images_;
 }
