@@ -32,6 +32,7 @@ constexpr std::size_t kMostTaps = 64;                      ///< that wait for th
 constexpr auto kTapLasts = std::chrono::milliseconds(80);  ///< of a person's finger
 /// Frames after which a view has been drawn: the first may have been on its way already.
 constexpr int kDrawn = 2;
+constexpr auto kFrame = std::chrono::milliseconds(16);         ///< at 60 Hz
 constexpr auto kBetweenTaps = std::chrono::milliseconds(120);  ///< and until it is there again
 
 /// What is drawn and has this name.
@@ -77,7 +78,6 @@ class Application::Implementation final : public Window {
     model.on_typed = [this](const std::string& text) { touched({true, text}); };
     for (auto* timer : {&press_timer, &release_timer}) timer->setSingleShot(true);
     release_timer.setInterval(kTapLasts);
-    press_timer.setInterval(kBetweenTaps);
     QObject::connect(&release_timer, &QTimer::timeout, &model, [this] { lift_finger(); });
     QObject::connect(&press_timer, &QTimer::timeout, &model, [this] { press_next(); });
     picture_timer.setSingleShot(true);
@@ -140,7 +140,7 @@ class Application::Implementation final : public Window {
     while (!taps.empty() && display != nullptr) {
       if (drawn < kDrawn) {  // nobody touches a button before it has its place
         display->update();
-        press_timer.start();
+        press_timer.start(kFrame);
         return;
       }
       const finger::Tap next = taps.front();
@@ -158,7 +158,7 @@ class Application::Implementation final : public Window {
   }
   void lift_finger() {
     point(QEvent::MouseButtonRelease);
-    press_timer.start();
+    press_timer.start(kBetweenTaps);
   }
 
   void touched(Touch touch) {
