@@ -1,6 +1,6 @@
-// Scans, odometry and maps that are not what they should be, written to the whole simulated robot
-// while it drives: counted in a heartbeat, nobody crashes, and a robot that gets nothing else
-// stops.
+// Scans and odometry that are not what they should be from their own writers, and foreign maps,
+// while the whole simulated robot drives: counted in a heartbeat, nobody crashes, and a robot that
+// gets nothing else stops.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,25 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-class BadInput : public DrivingRobot {};
+class BadInput : public DrivingRobot {
+ protected:
+  /// From now on the topic's right writer writes these in turn, and now and then no message at all.
+  template <class Message>
+  void spoil(const topics::Topic<Message>& topic, std::vector<Message> bad) {
+    runtime::LockstepWorld& world = run_->world();
+    world.tamper(topic, [&world, bad = std::move(bad), next = std::size_t{0}](
+                            const runtime::Guid&, Message& message) mutable {
+      message = bad[next++ % bad.size()];
+      message.header().stamp(wire::to_message(world.now()));
+      return true;
+    });
+    world.tamper_bytes(std::string(topic.name),
+                       [next = 0](const runtime::Guid&, runtime::Bytes& cdr) mutable {
+                         if (++next % 4 == 0) cdr = {0, 1, 0, 0, 7, 7};
+                         return true;
+                       });
+  }
+};
 
 sensor_msgs::msg::LaserScan scan(std::size_t beams, float range, float increment) {
   sensor_msgs::msg::LaserScan message;
@@ -53,52 +71,30 @@ nav_msgs::msg::OccupancyGrid map(std::uint32_t width, std::uint32_t height, floa
 }
 
 TEST_F(BadInput, ScansAreCountedAndTheRobotStandsWhenThereAreNoOthers) {
-  const sensor_msgs::msg::LaserScan bad[] = {scan(0, 1.0F, 0.0087F), scan(541, 1.0F, 0.0F),
-                                             scan(541, 1.0F, kNan), scan(1'000'000, 1.0F, 0.0087F),
-                                             scan(3, 1.0F, -1e30F)};
-  std::size_t next = 0;
-  // The driver still lives for the supervisor; only its scans are gone.
-  run_->world().at(run_->world().now(), [this] { run_->world().hang("lms100", seconds(4)); });
-  flood(seconds(4), [&] {
-    run_->world().publish(topics::kScan, bad[next++ % std::size(bad)]);
-    run_->world().publish_bytes(topics::kScan, {0, 1, 0, 0, 7, 7}, "other");
-  });
+  spoil(topics::kScan, {scan(0, 1.0F, 0.0087F), scan(541, 1.0F, 0.0F), scan(541, 1.0F, kNan),
+                        scan(1'000'000, 1.0F, 0.0087F), scan(3, 1.0F, -1e30F)});
+  run_->world().run_for(seconds(4));
   EXPECT_LT(std::abs(speed()), 0.1);
-  EXPECT_GE(count("scan_filter", "scans: rejected"), 150U) << run_->complaints();
-  EXPECT_GE(count("scan_filter", "scan: rejected"), 150U) << run_->complaints();
+  EXPECT_GE(count("scan_filter", "scans: rejected"), 100U) << run_->complaints();
+  EXPECT_GE(count("scan_filter", "scan: rejected"), 40U) << run_->complaints();
   EXPECT_EQ(faults_, 0);
 }
 
 TEST_F(BadInput, ABlindLaserStopsTheRobot) {
-  const float blind[] = {kNan, 0.0F, std::numeric_limits<float>::infinity()};
-  std::size_t next = 0;
-  run_->world().at(run_->world().now(), [this] { run_->world().hang("lms100", seconds(4)); });
-  flood(seconds(4), [&] {
-    auto message = scan(541, blind[next++ % std::size(blind)], 0.00873F);
-    message.header().stamp(wire::to_message(run_->world().now()));
-    run_->world().publish(topics::kScan, message);
-  });
+  spoil(topics::kScan, {scan(541, kNan, 0.00873F), scan(541, 0.0F, 0.00873F),
+                        scan(541, std::numeric_limits<float>::infinity(), 0.00873F)});
+  run_->world().run_for(seconds(4));
   EXPECT_LT(std::abs(speed()), 0.1);
-  EXPECT_GE(count("scan_filter", "scans: rejected"), 150U) << run_->complaints();
+  EXPECT_GE(count("scan_filter", "scans: rejected"), 100U) << run_->complaints();
   EXPECT_EQ(faults_, 0);
 }
 
 TEST_F(BadInput, OdometryIsCountedByAllWhoReadIt) {
-  nav_msgs::msg::Odometry bad[] = {odometry(std::nan(""), 0.5), odometry(0.0, std::nan("")),
-                                   odometry(0.0, -1e300)};
-  std::size_t next = 0;
-  auto& world = run_->world();
-  // Each good one is followed by a bad one at once, so that the bad one is the newest.
-  world.observe(topics::kOdom, [&](const auto& message, const auto& info) {
-    if (world.participant_of(info.writer) != "segway_rmp") return;
-    auto& worse = bad[next++ % std::size(bad)];
-    worse.header().stamp(message.header().stamp());
-    world.publish(topics::kOdom, worse);
-    world.publish_bytes(topics::kOdom, {0, 1, 0, 0, 1, 2, 3, 4, 5}, "other");
-  });
-  world.run_for(seconds(3));
+  spoil(topics::kOdom,
+        {odometry(std::nan(""), 0.5), odometry(0.0, std::nan("")), odometry(0.0, -1e300)});
+  run_->world().run_for(seconds(3));
   for (const char* reader : {"local_planner", "navigator"}) {
-    EXPECT_GE(count(reader, "odom: rejected"), 200U) << reader << "\n" << run_->complaints();
+    EXPECT_GE(count(reader, "odom: rejected"), 60U) << reader << "\n" << run_->complaints();
     EXPECT_GE(count(reader, "inputs: rejected"), 10U) << reader << "\n" << run_->complaints();
   }
   EXPECT_LT(std::abs(speed()), 0.1) << "nothing tells it how fast it is";

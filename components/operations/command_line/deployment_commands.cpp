@@ -285,6 +285,7 @@ int launch(const LaunchArguments& arguments) {
     auto events = launcher->events();
     for (auto& news : refusals.news((*observer)->refusals())) events.push_back(std::move(news));
     if (!events.empty()) table_lines = 0;
+    std::cout.clear();  // what a full disk did not take is lost, what comes later need not be
     for (const auto& event : events) std::cout << event << "\n";
     if (terminal && std::chrono::steady_clock::now() >= next_table) {
       next_table += milliseconds(1000);

@@ -169,9 +169,19 @@ class SupervisorWatch {
       if (over && !over_since_) over_since_ = now;
       if (status->state() == STATE_FAULT) why_ = status->reason();
       if (status->state() == STATE_MANUAL) why_ = "driven by hand";
+      // Who has answered nobody has forgotten our request, too.
+      if (status->last_request() == 0) restarted_ = true;
+      ready_ = status->state() == STATE_INTERACTION;
     }
     if (!over_since_ || now - *over_since_ < kOver) return std::nullopt;
     return "the supervisor ended the navigation" + (why_.empty() ? "" : ": " + why_);
+  }
+  /// Once after each restart of the supervisor: it takes requests again, and knows of none.
+  bool forgot_navigation() {
+    if (!restarted_ || !ready_ || !why_.empty()) return false;
+    restarted_ = false;
+    over_since_.reset();
+    return true;
   }
 
  private:
@@ -179,7 +189,18 @@ class SupervisorWatch {
   Observer::Reader<SupervisorStatus>& reader_;
   std::optional<std::chrono::steady_clock::time_point> over_since_;
   std::string why_;
+  bool restarted_ = false, ready_ = false;
 };
+
+/// Lets the navigation drive.
+Status start_navigation(Observer& observer, const GoalArguments& arguments) {
+  using namespace SupervisorRequest_Constants;
+  const std::string name = arguments.location.empty() ? "pose" : arguments.location;
+  for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
+    if (auto told = tell_supervisor(observer, command, name); !told) return told;
+  }
+  return {};
+}
 
 enum class Outcome { kUnderWay, kArrived, kFailed, kReplaced };
 
@@ -222,7 +243,13 @@ Outcome pursue(Observer& observer, std::uint32_t domain, const GoalArguments& ar
       return failed(
           "the navigator has been silent for 5 s; what it did with the goal is not known");
     }
-    if (const auto why = supervisor.ended_navigation(); accepted && why) {
+    const auto why = supervisor.ended_navigation();
+    if (accepted && supervisor.forgot_navigation()) {
+      if (const auto again = start_navigation(observer, arguments); !again) {
+        progress.end();
+        return failed(again.error());
+      }
+    } else if (accepted && why) {
       const auto cancelled = cancel(observer, *reader, goal.id(), accepted);
       progress.end();
       return failed(*why + (cancelled ? "" : "; " + cancelled.error()));
@@ -268,11 +295,7 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   action.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  const std::string name = arguments.location.empty() ? "pose" : arguments.location;
-  for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
-    if (const auto told = tell_supervisor(**observer, command, name); !told)
-      return fail(told.error());
-  }
+  if (const auto told = start_navigation(**observer, arguments); !told) return fail(told.error());
   const Outcome outcome = pursue(**observer, domain, arguments);
   if (outcome == Outcome::kFailed) {  // one that was replaced leaves the navigation to the other
     if (const auto told = tell_supervisor(**observer, COMMAND_NAVIGATION_END); !told) {

@@ -55,6 +55,8 @@ constexpr std::array kSilentTopics = {
 };
 
 constexpr std::array kFloods = {"heartbeat"sv, "supervisor/request"sv, "tf"sv, "joy"sv, "people"sv};
+/// Of those, what only the robot's own components may write.
+constexpr std::array kOwnFloods = {"tf"sv, "people"sv};
 
 std::string_view pick(Random& random, std::span<const std::string_view> from) {
   return from[random.below(from.size())];
@@ -288,9 +290,15 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
         expected.words = {"base", "odom", "segway_rmp"};
       }
       break;
+    case FaultKind::kFlood:
+      if (std::find(kOwnFloods.begin(), kOwnFloods.end(), fault.target) != kOwnFloods.end()) {
+        expected.zero_within = 0.1;
+        expected.lasts = kWindow;  // latched
+        expected.words = {kFlooder};
+      }
+      break;
     case FaultKind::kSlow:
     case FaultKind::kClock:
-    case FaultKind::kFlood:
     case FaultKind::kStick:
       break;
   }

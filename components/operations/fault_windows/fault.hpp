@@ -80,6 +80,9 @@ struct FaultTargets {
   std::size_t locations = 0;       ///< {> 0} places that it may go to
 };
 
+/// The participant that floods.
+inline constexpr const char* kFlooder = "flooder";
+
 /// How long a window lasts after its hit [s].
 inline constexpr double kWindow = 20.0;
 

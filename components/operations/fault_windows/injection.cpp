@@ -26,7 +26,6 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr const char* kFlooder = "flooder";
 constexpr auto kSlowPeriod = milliseconds(100);
 constexpr auto kRoguePeriod = milliseconds(10);
 constexpr auto kFloodPeriod = microseconds(500);

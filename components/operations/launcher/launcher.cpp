@@ -36,6 +36,7 @@ constexpr auto kGrace = seconds(2);
 /// The next one's turn comes after this though the one before is not gone.
 constexpr auto kTurn = milliseconds(250);
 constexpr std::uintmax_t kLargestLog = 4'000'000;  // bytes; and one generation before
+constexpr std::uintmax_t kLeastRoom = 100'000;     // bytes; less is a full disk
 constexpr auto kLongestPollPause = milliseconds(500);
 constexpr const char* kOperator = "operator";
 constexpr const char* kDiscoveryServer = "discovery_server";
@@ -471,6 +472,18 @@ void Launcher::bound_logs() {
                                std::filesystem::copy_options::overwrite_existing, error);
     std::filesystem::resize_file(process.log, 0, error);
   }
+  watch_disk();
+}
+
+void Launcher::watch_disk() {
+  std::error_code error;
+  const auto room = std::filesystem::space(options_.run_directory, error).available;
+  if (error || disk_full_ == (room < (disk_full_ ? 2 * kLeastRoom : kLeastRoom))) return;
+  disk_full_ = !disk_full_;
+  events_.push_back(disk_full_ ? "the disk is full: the robot goes on, but logs end, and a restart "
+                                 "forgets what cannot be kept (" +
+                                     options_.run_directory + ")"
+                               : "the disk has room again");
 }
 
 void Launcher::end(Process& process) {

@@ -111,6 +111,7 @@ class Launcher {
   bool reap(Process& process);
   void kill_what_hangs();
   void bound_logs();
+  void watch_disk();
   void end(Process& process);
   void wait_until_gone(const std::function<bool(const Process&)>& which,
                        std::chrono::steady_clock::duration patience);
@@ -124,6 +125,7 @@ class Launcher {
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
   std::chrono::steady_clock::time_point logs_bounded_{};
+  bool disk_full_ = false;  ///< said
 };
 
 /// Where a deployment runs on this machine by default: one place for each user and DDS domain, in

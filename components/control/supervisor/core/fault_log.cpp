@@ -18,6 +18,8 @@ std::string_view text(Cause cause) {
       return "emergency stop";
     case Cause::kBaseUnheard:
       return "base unheard";
+    case Cause::kNotKept:
+      return "a restart would forget";
   }
   return "unknown cause";
 }

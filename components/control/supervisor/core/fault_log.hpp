@@ -18,6 +18,7 @@ enum class Cause : std::uint8_t {
   kDisobeyingBase = 3,  ///< latched
   kEmergencyStop = 4,   ///< latched
   kBaseUnheard = 5,     ///< ends by itself when the base reports again
+  kNotKept = 6,         ///< ends by itself when the memory is on the disk again
 };
 
 std::string_view text(Cause cause);

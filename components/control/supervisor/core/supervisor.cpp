@@ -12,6 +12,7 @@ constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
 
 /// A crash may have lost the last epochs that were granted; a restart begins safely above them.
 constexpr std::uint64_t kUnsavedEpochs = 1024;
+constexpr const char* kItself = "supervisor";
 constexpr const char* kOthers = "others";  // more clients than are remembered
 
 bool over(GoalState state) {
@@ -31,7 +32,7 @@ Supervisor::Supervisor(const Parameters& parameters, Memory memory)
   assert(!parameters.topics.empty());
   for (const WatchedTopic& topic : parameters.topics) {
     watched_.push_back(
-        {topic.name, drive::WriterRight(topic.participants, parameters.claim_slack)});
+        {topic.name, topic.moves, drive::WriterRight(topic.participants, parameters.claim_slack)});
   }
   stopped_by_ = std::move(memory.stopped_by);
   if (!parameters.movement_on_at_start) stop("start");
@@ -131,6 +132,8 @@ Answer Supervisor::request(const Request& request, Time now) {
   for (const Handled& handled : handled_) {
     if (handled.answer.id == request.id && handled.client == request.client &&
         !handled.client.empty()) {
+      last_request_ = handled.answer;
+      last_client_ = handled.client;
       return handled.answer;
     }
   }
@@ -380,14 +383,23 @@ SupervisorStatus Supervisor::status() const {
   status.faults = faults_.faults();
   for (const Watched& watched : watched_) {
     for (const drive::WriterRight::Known& known : watched.right.writers()) {
-      status.writers.push_back({watched.topic, known.sighting, known.since,
-                                known.role != drive::WriterRight::Role::kForeign,
+      const bool foreign = known.role == drive::WriterRight::Role::kForeign;
+      if (!watched.moves && !foreign) continue;
+      status.writers.push_back({watched.topic, known.sighting, known.since, !foreign,
                                 status.granted && known.sighting.writer == decision_.grant.writer});
     }
   }
   status.last_request = last_request_;
   status.last_client = last_client_;
   return status;
+}
+
+void Supervisor::memory_kept(const Status& outcome, Time now) {
+  if (outcome) {
+    faults_.settle(Cause::kNotKept, kItself, now);
+  } else {
+    faults_.raise(Cause::kNotKept, kItself, outcome.error(), now);
+  }
 }
 
 Memory Supervisor::memory() const {

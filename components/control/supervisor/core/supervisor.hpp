@@ -16,15 +16,17 @@
 #include "drivers/base_obedience/core/writer_right.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/goal/goal_state.hpp"
+#include "foundation/result/result.hpp"
 
 namespace usher::supervisor {
 
 using drive::WriterSighting;
 
-/// A topic that moves the robot, and who may write it.
+/// A topic that moves the robot, or by which it decides where to move, and who may write it.
 struct WatchedTopic {
   std::string name;
   std::vector<std::string> participants;  ///< names in the manifest
+  bool moves = true;  ///< the status lists its writers; of the others only foreign ones
 };
 
 /// Names in the manifest that the supervisor has a field or a rule for.
@@ -112,7 +114,7 @@ struct Decision {
   std::string_view reason;      ///< why the robot may not move; valid until the next call
 };
 
-/// Somebody who can write a topic that moves the robot.
+/// Somebody who can write a watched topic.
 struct CommandWriter {
   std::string topic;
   WriterSighting sighting;
@@ -150,7 +152,7 @@ struct SupervisorStatus {
   std::vector<std::string> stopped_by;  ///< whose stops hold; movement is off while there are any
   std::vector<ComponentHealth> components;  ///< in the manifest's order
   std::vector<Fault> faults;                ///< newest last
-  std::vector<CommandWriter> writers;       ///< of all watched topics
+  std::vector<CommandWriter> writers;       ///< see WatchedTopic
   Answer last_request;
   std::string last_client;  ///< whose request that was
 };
@@ -161,9 +163,8 @@ struct SupervisorStatus {
 /// drive/command is there and it is the right one, the base reports and is in no emergency, and no
 /// latched fault is active. Everything else is withheld at once; each new grant has a higher epoch.
 ///
-/// Latched, until an operator clears them: a foreign writer on a topic that moves the robot, a
-/// disobeying base, an emergency stop.
-/// The loss of a component ends by itself.
+/// Latched, until an operator clears them: a foreign writer on a watched topic, a disobeying base,
+/// an emergency stop. The loss of a component ends by itself.
 ///
 /// Feed it what is heard, then call step(). `now` must not go back.
 class Supervisor {
@@ -200,6 +201,9 @@ class Supervisor {
   /// To be kept over restarts whenever it differs from the last one.
   Memory memory() const;
 
+  /// What became of keeping the memory: an error is a fault that bars nothing, until it is kept.
+  void memory_kept(const Status& outcome, Time now);
+
   std::uint64_t unknown_heartbeats() const { return unknown_heartbeats_; }
   std::uint64_t rejected_reports() const { return rejected_reports_; }
 
@@ -214,6 +218,7 @@ class Supervisor {
   };
   struct Watched {
     std::string topic;
+    bool moves = true;
     drive::WriterRight right;
   };
 

@@ -21,6 +21,7 @@ constexpr auto kMovementAge = milliseconds(500);
 constexpr auto kExplorerAge = milliseconds(2000);
 constexpr const char* kMemoryKey = "supervisor";
 constexpr auto kKeeping = milliseconds(5);  // the memory on the disk, in simulation
+constexpr auto kKeepAgain = milliseconds(1000);
 constexpr int kMostComponents = 64;
 constexpr std::size_t kMostWriters = 64;  // in the status
 
@@ -63,6 +64,32 @@ Criticality criticality_from(const std::string& word) {
 
 }  // namespace
 
+void SupervisorComponent::watch_topics(const std::vector<drive::NamedComponent>& manifest,
+                                       std::vector<WatchedTopic>& watched) {
+  const auto moves = [&](const auto&... topic) {
+    (watched.push_back(
+         {std::string(topic.name), drive::allowed_writers(topic.writers, manifest), true}),
+     ...);
+  };
+  moves(topics::kCmdVelManual, topics::kCmdVelInteraction, topics::kCmdVelNavigation,
+        topics::kDriveGrant, topics::kMovementEnable, topics::kBaseRequest);
+  // What no component of the manifest writes may come from a driver of somebody else.
+  const auto tells = [&](const auto& topic) {
+    auto names = drive::allowed_writers(topic.writers, manifest);
+    if (!names.empty()) watched.push_back({std::string(topic.name), std::move(names), false});
+  };
+  const auto tell = [&](const auto&... topic) { (tells(topic), ...); };
+  tell(topics::kBaseStatus, topics::kOdom, topics::kTf, topics::kTfStatic);
+  tell(topics::kScan, topics::kScanFiltered, topics::kUltrasonic, topics::kUltrasonicFiltered,
+       topics::kWhiskers, topics::kKinectScan, topics::kKinectScanLow, topics::kRearScan,
+       topics::kPeople, topics::kPersonAhead);
+  tell(topics::kMap, topics::kAmclPose, topics::kLocalizationStatus, topics::kLocalCosts,
+       topics::kGlobalCosts, topics::kCostmapRequest);
+  tell(topics::kPlanRequest, topics::kPlanReply, topics::kFollowGoal, topics::kFollowCancel,
+       topics::kFollowStatus, topics::kNavigateStatus, topics::kNavigatePace,
+       topics::kMovementStatus, topics::kSupervisorStatus);
+}
+
 Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   auto& parameters = host.parameters();
   Parameters p;
@@ -86,15 +113,7 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   p.names.movement = parameters.text("movement_name", p.names.movement,
                                      "The component that may write drive/command.");
   p.topics = {{std::string(topics::kDriveCommand.name), {p.names.movement}}};
-  const auto watched = [&](const auto& topic) {
-    p.topics.push_back({std::string(topic.name), drive::allowed_writers(topic.writers, manifest)});
-  };
-  watched(topics::kCmdVelManual);
-  watched(topics::kCmdVelInteraction);
-  watched(topics::kCmdVelNavigation);
-  watched(topics::kDriveGrant);
-  watched(topics::kMovementEnable);
-  watched(topics::kBaseRequest);
+  watch_topics(manifest, p.topics);
   p.names.interaction = parameters.text("interaction_name", p.names.interaction,
                                         "The component that poses the robot.");
   p.names.power =
@@ -152,7 +171,8 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
     : host_(host),
       grant_valid_for_(host.parameters().number("grant_valid_for", "s", {0.04, 0.12}, 0.12,
                                                 "Life of a grant without renewal.")),
-      core_(read_parameters(host), remembered(host)) {
+      parameters_(read_parameters(host)),
+      core_(parameters_, remembered(host)) {
   heartbeat_ =
       host.input(topics::kHeartbeat, {.depth = 4 * kMostComponents},
                  [this](const auto& message, const auto& info) {
@@ -202,13 +222,7 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
       [this] { core_.exploration_lost(); });
   request_ = host.input(topics::kSupervisorRequest, {.optional = true},
                         [this](const auto& message, const auto&) { take_request(message); });
-  watch(topics::kDriveCommand.name);
-  watch(topics::kCmdVelManual.name);
-  watch(topics::kCmdVelInteraction.name);
-  watch(topics::kCmdVelNavigation.name);
-  watch(topics::kDriveGrant.name);
-  watch(topics::kMovementEnable.name);
-  watch(topics::kBaseRequest.name);
+  for (const WatchedTopic& topic : parameters_.topics) watch(topic.name);
   grant_ = host.output(topics::kDriveGrant);
   enable_ = host.output(topics::kMovementEnable);
   base_requests_ = host.output(topics::kBaseRequest);
@@ -216,13 +230,15 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
   diagnostics_ = host.output(topics::kDiagnostics);
   timer_ = host.timer("step", kPeriod, [this](auto) {
     step();
-    if (++status_share_ % kStatusEvery == 0) publish_status();
+    const bool answer = std::exchange(answer_later_, false);
+    if (answer) answered_at_ = now();
+    if (++status_share_ % kStatusEvery == 0 || answer) publish_status();
     if (status_share_ % kDiagnosticsEvery == 0) publish_diagnostics(core_.status());
   });
 }
 
-void SupervisorComponent::watch(std::string_view topic) {
-  host_.watch_writers(std::string(topic), [this, topic](const runtime::WriterInfo& writer) {
+void SupervisorComponent::watch(const std::string& topic) {
+  host_.watch_writers(topic, [this, topic](const runtime::WriterInfo& writer) {
     if (writer.alive) {
       core_.writer_appeared(topic, {writer.guid, writer.participant, writer.host}, now());
     } else {
@@ -236,6 +252,10 @@ void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest&
   core_.request(
       {message.id(), message.client(), static_cast<Command>(message.command()), message.goal()},
       now());
+  // The first one acts and is answered at once; a flood of them must not become one of answers.
+  answer_later_ = now() - answered_at_ < kPeriod;
+  if (answer_later_) return;
+  answered_at_ = now();
   step();
   publish_status();
 }
@@ -248,6 +268,7 @@ void SupervisorComponent::introduce_itself() {
   introduce(topics::kDriveGrant.name, grant_.guid());
   introduce(topics::kMovementEnable.name, enable_.guid());
   introduce(topics::kBaseRequest.name, base_requests_.guid());
+  introduce(topics::kSupervisorStatus.name, status_.guid());
 }
 
 void SupervisorComponent::step() {
@@ -306,9 +327,10 @@ void SupervisorComponent::ask_base(const Decision& decision) {
 }
 
 /// Beside the handlers: a busy disk takes longer than a grant lives. What a crash meanwhile loses
-/// is an epoch at most, which a restart skips, or a stop of the last milliseconds.
+/// is an epoch at most, which a restart skips, or a stop of the last milliseconds. A full disk
+/// stops no robot: the operator reads what a restart would forget.
 void SupervisorComponent::keep_memory() {
-  if (keeping_) return;
+  if (keeping_ || now() < keep_again_) return;
   std::string text = to_text(core_.memory());
   if (text == kept_) return;
   kept_ = text;
@@ -322,7 +344,10 @@ void SupervisorComponent::keep_memory() {
       },
       [this, outcome] {
         keeping_ = false;
-        if (!*outcome) host_.fault("cannot keep the epoch over a restart: " + outcome->error());
+        core_.memory_kept(*outcome, now());
+        if (*outcome) return;
+        kept_.clear();
+        keep_again_ = now() + kKeepAgain;
       });
 }
 

@@ -9,16 +9,18 @@
 namespace usher::supervisor {
 
 /// Grants the right to drive, enables the sources of motion, watches everybody's heartbeats and who
-/// writes drive/command.
+/// writes what the robot moves by.
 class SupervisorComponent final : public runtime::Component {
  public:
   explicit SupervisorComponent(runtime::Host& host);
 
  private:
   static Parameters read_parameters(runtime::Host& host);
+  static void watch_topics(const std::vector<drive::NamedComponent>& manifest,
+                           std::vector<WatchedTopic>& watched);
   static Memory remembered(runtime::Host& host);
   /// Tells the core who appears on the topic and who leaves it.
-  void watch(std::string_view topic);
+  void watch(const std::string& topic);
   Time now() const { return host_.now().time_since_epoch(); }
   void take_request(const usher_msgs::msg::SupervisorRequest& message);
   void introduce_itself();
@@ -32,10 +34,14 @@ class SupervisorComponent final : public runtime::Component {
 
   runtime::Host& host_;
   double grant_valid_for_;
+  const Parameters parameters_;
   Supervisor core_;
-  std::string kept_;         ///< written, or on its way to the disk
-  bool keeping_ = false;     ///< it is on its way
-  bool told_fault_ = false;  ///< in the status: an operator reads of a fault at once
+  std::string kept_;           ///< written, or on its way to the disk; empty when that failed
+  bool keeping_ = false;       ///< it is on its way
+  Time keep_again_{};          ///< not before, after a failure
+  Time answered_at_{};         ///< the last request that acted at once
+  bool answer_later_ = false;  ///< another one, with the next step
+  bool told_fault_ = false;    ///< in the status: an operator reads of a fault at once
   std::uint64_t base_request_id_ = 0;
   std::uint8_t base_request_ = 0;
   int status_share_ = 0;

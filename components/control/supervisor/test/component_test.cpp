@@ -50,6 +50,21 @@ TEST_F(Component, AStopAndAnEmergencyStopHoldOverACrash) {
   EXPECT_EQ(host.last(topics::kDriveGrant)->granted(), false);
 }
 
+TEST_F(Component, AFloodOfRequestsIsNoFloodOfAnswers) {
+  host.run_for(milliseconds(200));
+  host.clear();
+  usher_msgs::msg::SupervisorRequest request;
+  request.client("stranger");
+  for (int i = 0; i < 1000; ++i) {
+    request.id(++id);
+    host.publish(topics::kSupervisorRequest, request);
+    host.run_for(milliseconds(1));
+  }
+  EXPECT_LE(host.written(topics::kSupervisorStatus).size(), 60U);
+  EXPECT_LE(host.written(topics::kDriveGrant).size(), 110U);
+  EXPECT_EQ(ask("guide", COMMAND_STOP).stopped_by(), std::vector<std::string>{"guide"});
+}
+
 TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
   host.run_for(milliseconds(500));
   const auto status = host.last(topics::kSupervisorStatus).value();

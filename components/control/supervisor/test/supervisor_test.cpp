@@ -379,11 +379,12 @@ Parameters watching_everything() {
   Parameters given = parameters();
   given.topics.push_back({"cmd_vel/manual", {"manual_control", "operator"}});
   given.topics.push_back({"drive/grant", {"supervisor"}});
+  given.topics.push_back({"scan", {"lms100"}, false});
   return given;
 }
 
-TEST(Supervisor, StopsForAForeignWriterOnEveryTopicThatMovesTheRobot) {
-  for (const char* topic : {"drive/command", "cmd_vel/manual", "drive/grant"}) {
+TEST(Supervisor, StopsForAForeignWriterOnEveryTopicThatItWatches) {
+  for (const char* topic : {"drive/command", "cmd_vel/manual", "drive/grant", "scan"}) {
     SCOPED_TRACE(topic);
     Robot robot(watching_everything());
     robot.appear();
@@ -412,7 +413,8 @@ TEST(Supervisor, SaysWhoWritesSinceWhenAndWhetherItMay) {
                                    robot.now());
   robot.supervisor.writer_appeared("cmd_vel/manual", {kRogue, "teleop_of_bob", "laptop"},
                                    robot.now());
-  robot.supervisor.writer_appeared("scan", {kRogue, "teleop_of_bob", "laptop"}, robot.now());
+  robot.supervisor.writer_appeared("scan", {kReplacement, "lms100", "nuc"}, robot.now());
+  robot.supervisor.writer_appeared("joy", {kRogue, "teleop_of_bob", "laptop"}, robot.now());
   const std::vector<CommandWriter> before = robot.supervisor.status().writers;
   ASSERT_EQ(before.size(), 3U);
   EXPECT_EQ(before[0].topic, "drive/command");
@@ -425,6 +427,32 @@ TEST(Supervisor, SaysWhoWritesSinceWhenAndWhetherItMay) {
   EXPECT_FALSE(before[2].allowed);
   robot.run(20);
   EXPECT_FALSE(robot.supervisor.status().writers[0].granted) << "the right was withdrawn";
+  robot.supervisor.writer_appeared("scan", {kRogue, "teleop_of_bob", "laptop"}, robot.now());
+  EXPECT_EQ(robot.supervisor.status().writers.back().topic, "scan") << "of a foreign one only";
+}
+
+TEST(Supervisor, ARepeatedRequestIsAnsweredThoughAnotherCameBetween) {
+  Robot robot = ready();
+  robot.supervisor.request({1, "tablet", Command::kStop, ""}, robot.now());
+  robot.supervisor.request({7, "guide", Command::kStop, ""}, robot.now());
+  robot.supervisor.request({1, "tablet", Command::kStop, ""}, robot.now());
+  EXPECT_EQ(robot.supervisor.status().last_request.id, 1U);
+  EXPECT_EQ(robot.supervisor.status().last_client, "tablet");
+}
+
+TEST(Supervisor, AFullDiskIsToldAndBarsNothing) {
+  Robot robot = ready();
+  robot.supervisor.memory_kept(Error{"cannot write /run/x: No space left on device"}, robot.now());
+  robot.run(200);
+  EXPECT_TRUE(robot.granted());
+  EXPECT_EQ(robot.reason(), "");
+  const Fault fault = robot.supervisor.status().faults.back();
+  EXPECT_EQ(fault.cause, Cause::kNotKept);
+  EXPECT_NE(fault.detail.find("No space left"), std::string::npos);
+  EXPECT_TRUE(fault.active);
+  EXPECT_FALSE(fault.latched());
+  robot.supervisor.memory_kept({}, robot.now());
+  EXPECT_FALSE(robot.supervisor.status().faults.back().active);
 }
 
 TEST(Supervisor, OnlyAnOperatorClears) {

@@ -7,6 +7,7 @@ namespace usher::drive {
 std::vector<std::string> allowed_writers(std::string_view types,
                                          const std::vector<NamedComponent>& manifest) {
   constexpr std::string_view kOperator = "operator";
+  constexpr std::string_view kSimulated = "_sim";
   std::vector<std::string> names;
   while (!types.empty()) {
     const std::size_t end = std::min(types.find(' '), types.size());
@@ -14,7 +15,9 @@ std::vector<std::string> allowed_writers(std::string_view types,
     types.remove_prefix(std::min(end + 1, types.size()));
     if (type == kOperator) names.emplace_back(kOperator);
     for (const NamedComponent& component : manifest) {
-      if (component.type == type) names.push_back(component.name);
+      std::string_view role = component.type;
+      if (role.ends_with(kSimulated)) role.remove_suffix(kSimulated.size());
+      if (role == type) names.push_back(component.name);
     }
   }
   return names;

@@ -22,8 +22,9 @@ struct NamedComponent {
   std::string type;
 };
 
-/// Who may write a topic: the names of the components whose type is among `types` (words of the
-/// catalogue, separated by spaces), and the operator where that word is there.
+/// Who may write a topic: the names of the components whose type, or whose simulated variant, is
+/// among `types` (words of the catalogue, separated by spaces), and the operator where that word is
+/// there.
 std::vector<std::string> allowed_writers(std::string_view types,
                                          const std::vector<NamedComponent>& manifest);
 

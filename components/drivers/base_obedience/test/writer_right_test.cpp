@@ -17,6 +17,7 @@ TEST(AllowedWriters, AreTheManifestsNamesOfTheCataloguesTypes) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(allowed_writers("local_planner waypoint_follower", manifest), Names{"planner_one"});
   EXPECT_EQ(allowed_writers("manual_control operator", manifest), (Names{"joy", "operator"}));
+  EXPECT_EQ(allowed_writers("lms100 urg04lx", {{"laser", "lms100_sim"}}), Names{"laser"});
   EXPECT_EQ(allowed_writers("", manifest), Names{});
   EXPECT_EQ(allowed_writers("local", manifest), Names{}) << "no word is a part of another";
 }

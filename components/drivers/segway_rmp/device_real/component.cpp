@@ -9,6 +9,7 @@ namespace {
 constexpr auto kCycle = std::chrono::milliseconds(10);
 constexpr const char* kEmergencyKey = "emergency";
 constexpr auto kKeeping = std::chrono::milliseconds(5);  // in simulation
+constexpr auto kKeepAgain = std::chrono::seconds(1);     // after a failure
 }  // namespace
 
 Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parameters) {
@@ -30,7 +31,8 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
       line_(host, Link(read_parameters(host.parameters()))),
       driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
                      .emergency_stop = [this] { emergency(true); },
-                     .reset = [this] { emergency(false); }}) {
+                     .reset = [this] { emergency(false); }}),
+      keep_again_(host.timer("keep", kKeepAgain, [this](auto) { keep(); })) {
   const double silence =
       host.parameters().number("guard_silence", "s", {0.03, 0.3}, 0.1,
                                "The guard commands zero when the driver is silent for so long.");
@@ -63,7 +65,6 @@ void SegwayRmpComponent::emergency(bool on) {
 void SegwayRmpComponent::keep() {
   const bool emergency = line_.link().emergency();
   if (keeping_ || emergency == kept_) return;
-  kept_ = emergency;
   keeping_ = true;
   const auto outcome = std::make_shared<Status>();
   host_.offload(
@@ -72,9 +73,13 @@ void SegwayRmpComponent::keep() {
         const std::uint8_t remembered = emergency ? 1 : 0;
         *outcome = host.keep(kEmergencyKey, {&remembered, 1});
       },
-      [this, outcome] {
+      [this, emergency, outcome] {
         keeping_ = false;
-        if (!*outcome) host_.health().set(runtime::HealthState::kDegraded, outcome->error());
+        if (!*outcome) {
+          ++host_.health().counter("emergency: not kept");
+          return;
+        }
+        kept_ = emergency;
         keep();
       });
 }

@@ -19,6 +19,7 @@ class SegwayRmpComponent final : public runtime::Component {
   runtime::Host& host_;
   drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
+  runtime::Timer keep_again_;
   bool kept_ = false;     ///< the memory says that its motors were switched off
   bool keeping_ = false;  ///< it is on its way to the disk
 };

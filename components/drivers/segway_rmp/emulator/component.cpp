@@ -39,10 +39,12 @@ void SegwayEmulatorComponent::obey(const EmulatedBase::Order& order) {
   using Wish = EmulatedBase::Wish;
   // A driver that connects sets the balance mode: for a base that stands this is nothing new.
   if (order.wish == Wish::kBalance && !emergency_) return;
+  // The world minds the newest command only; the firmware has heard each.
+  if (order.wish != Wish::kDrive) resetting_ = order.wish == Wish::kBalance;
   usher_sim_msgs::msg::BaseCommand message;
-  message.mode(order.wish == Wish::kShutdown  ? MODE_EMERGENCY_STOP
-               : order.wish == Wish::kBalance ? MODE_RESET
-                                              : MODE_DRIVE);
+  message.mode(order.wish == Wish::kShutdown ? MODE_EMERGENCY_STOP
+               : resetting_                  ? MODE_RESET
+                                             : MODE_DRIVE);
   message.v(order.twist.v);
   message.w(order.twist.w);
   command_.publish(message);
@@ -50,6 +52,7 @@ void SegwayEmulatorComponent::obey(const EmulatedBase::Order& order) {
 
 void SegwayEmulatorComponent::speak(const usher_sim_msgs::msg::BaseFeedback& message) {
   emergency_ = message.emergency();
+  resetting_ = resetting_ && emergency_;
   line_->write(base_.feedback(from_message(message)));
 }
 

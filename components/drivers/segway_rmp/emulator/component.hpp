@@ -19,6 +19,7 @@ class SegwayEmulatorComponent final : public runtime::Component {
   runtime::Host& host_;
   EmulatedBase base_;
   bool emergency_ = false;
+  bool resetting_ = false;  ///< until the world shows it
   std::uint64_t& skipped_;
   runtime::Output<usher_sim_msgs::msg::BaseCommand> command_;
   runtime::Input<usher_sim_msgs::msg::BaseFeedback> feedback_;

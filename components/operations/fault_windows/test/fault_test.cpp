@@ -62,12 +62,21 @@ TEST(ExpectationOfAFault, ForAForeignWriterLastsUntilTheEnd) {
             kWindow);
 }
 
+TEST(ExpectationOfAFault, ForAFloodIsAForeignWritersWhereOnlyComponentsMayWrite) {
+  const Expectation own = expectation({FaultKind::kFlood, "tf", "", 0.2}, kTargets);
+  EXPECT_EQ(own.zero_within, 0.1);
+  EXPECT_EQ(own.lasts, kWindow);
+  EXPECT_EQ(own.words, std::vector<std::string>{kFlooder});
+  EXPECT_EQ(expectation({FaultKind::kFlood, "heartbeat", "", 0.2}, kTargets).zero_within,
+            Expectation::kNever);
+}
+
 TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
   EXPECT_TRUE(expectation({FaultKind::kCrash, "segway_rmp", "", 3.0}, kTargets).deaf);
   WindowPlan plan;
   plan.faults = {{FaultKind::kBaseLink, "", "commands", 3.0},
                  {FaultKind::kHang, "lms100", "", 3.0},
-                 {FaultKind::kFlood, "tf", "", 3.0}};
+                 {FaultKind::kFlood, "joy", "", 3.0}};
   const auto all = expectations(plan, kTargets);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_GT(all[1].zero_within, 0.4) << "zero is said, and nobody hears it";
