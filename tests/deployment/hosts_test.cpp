@@ -5,6 +5,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "deployment/running_robot.hpp"
 #include "deployment/two_hosts.hpp"
@@ -112,6 +116,91 @@ TEST(Hosts, ABadLinkDoesNotReachTheDriveChain) {
       << "10 % loss, 30 to 70 ms, frames out of order: still there\n"
       << robot->story();
   EXPECT_GT(networks->frames(), 1000U) << "the link was used";
+}
+
+/// The simulated MARVIN whose laser, sensor board and scan filter run on the second machine, and a
+/// judge at its wheels on the first.
+class SensingElsewhere {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit SensingElsewhere(TwoNetworks& networks)
+      : hosts_(networks, folder_,
+               {.lines = "components:\n  lms100: {host: tablet}\n  sensor_board: {host: tablet}\n"
+                         "  scan_filter: {host: tablet}\n",
+                .listen = [this](runtime::Observer& observer) {
+                  auto wheels =
+                      observer.reader(topics::kSimBaseCommand, [this](const auto& m, const auto&) {
+                        const std::lock_guard lock(mutex_);
+                        if (m.v() == 0.0 && !zero_) zero_ = Clock::now();
+                        v_ = m.v();
+                      });
+                  ASSERT_TRUE(wheels);
+                  wheels_ = std::move(wheels).value();
+                }}) {}
+  ~SensingElsewhere() { wheels_.reset(); }
+
+  TwoHosts* operator->() { return &hosts_; }
+  bool drives() const {
+    const std::lock_guard lock(mutex_);
+    return v_ > 0.2;
+  }
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    zero_.reset();
+  }
+  std::optional<Clock::time_point> zero() const {
+    const std::lock_guard lock(mutex_);
+    return zero_;
+  }
+
+ private:
+  Folder folder_;
+  mutable std::mutex mutex_;
+  double v_ = 0.0;
+  std::optional<Clock::time_point> zero_;
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::BaseCommand>> wheels_;
+  TwoHosts hosts_;
+};
+
+// What is lost with the line is critical, and lives: it is silent.
+TEST(Hosts, LosingTheHostOfASensorStopsTheRobotInTime) {
+  constexpr double kFirstZero = 0.2;  // [s] the promise
+  const auto networks = two_networks(TwoNetworks::Kind::kOneSubnet);
+  if (!networks) GTEST_SKIP() << kNoNamespaces;
+  SensingElsewhere robot(*networks);
+  ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) << robot->story();
+  const auto errand = robot->command({"goto", "lounge"});
+  std::vector<double> took;
+  const std::pair<Line, Line> cuts[] = {{kCut, kCut}, {kGood, kCut}};
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(robot->wait_for([&] { return robot.drives(); }, Seconds(30))) << robot->story();
+    std::this_thread::sleep_for(milliseconds(500 + 7 * i));  // another phase of the heartbeats
+    ASSERT_TRUE(robot->wait_for([&] { return robot.drives(); }, Seconds(30))) << robot->story();
+    const double slow = slowdown();
+    robot.forget();
+    const auto cut = SensingElsewhere::Clock::now();
+    networks->set(cuts[i % 2].first, cuts[i % 2].second);
+    EXPECT_TRUE(robot->wait_for([&] { return robot.zero().has_value(); }, Seconds(2)))
+        << robot->story();
+    const auto zero = robot.zero().value_or(SensingElsewhere::Clock::time_point::max());
+    took.push_back(Seconds(zero - cut).count());
+    EXPECT_LT(took.back(), kFirstZero * slow);
+    EXPECT_TRUE(robot->wait_for([&] { return !robot->granted(); }, Seconds(2)));
+    EXPECT_NE(robot->status()->reason(), "");
+    std::printf("line cut %s: first zero after %.0f ms (%s; machine %.1fx)\n",
+                i % 2 == 0 ? "both ways" : "one way", took.back() * 1e3,
+                robot->status()->reason().c_str(), slow);
+    networks->set(kGood, kGood);
+    ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20)))
+        << robot->story();
+  }
+  std::ranges::sort(took);
+  std::printf("first zero: p50 %.0f ms, max %.0f ms\n", took[took.size() / 2] * 1e3,
+              took.back() * 1e3);
+  EXPECT_TRUE(robot->wait_for([&] { return robot.drives(); }, Seconds(30)))
+      << "and it drives on\n"
+      << robot->story() << errand->output() << errand->errors();
 }
 
 TEST(Hosts, MeetAcrossARouterByPeers) {

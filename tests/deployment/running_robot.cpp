@@ -160,6 +160,11 @@ std::optional<SupervisorStatus> RunningRobot::status() const {
   return status_;
 }
 
+bool RunningRobot::hears_supervisor() const {
+  const std::lock_guard lock(mutex_);
+  return status_ && Clock::now() - status_at_ < std::chrono::seconds(1);
+}
+
 std::size_t RunningRobot::status_count() const {
   const std::lock_guard lock(mutex_);
   return status_count_;

@@ -75,6 +75,8 @@ class RunningRobot {
   std::unique_ptr<Process> command(std::vector<std::string> words) const;
 
   std::optional<usher_msgs::msg::SupervisorStatus> status() const;
+  /// Within the last second.
+  bool hears_supervisor() const;
   /// How often the supervisor was heard since the start.
   std::size_t status_count() const;
   std::map<std::string, Life> lives() const;

@@ -1,0 +1,212 @@
+// Without keys anybody on the network may write: what the running robot then does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <thread>
+
+#include "deployment/driven_robot.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::test {
+namespace {
+
+using runtime::Bytes;
+using testing::HasSubstr;
+using Clock = DrivenRobot::Clock;
+using namespace usher_msgs::msg;
+
+constexpr const char* kIntruder = "intruder";
+constexpr double kFirstZero = 0.2;     // [s] the promise
+constexpr double kWithoutGrant = 0.2;  // [s] a grant's life, and the way to the judge
+
+template <class Message>
+Bytes bytes_of(const Message& message) {
+  Bytes cdr;
+  runtime::message_type<Message>().serialize(&message, cdr);
+  return cdr;
+}
+
+/// A foreign participant that writes the same bytes some thousand times a second.
+class Intruder {
+ public:
+  Intruder(RunningRobot& robot, std::string topic, std::string type, Bytes bytes)
+      : bytes_(std::move(bytes)) {
+    auto made =
+        runtime::Observer::create({.name = kIntruder, .host = "nuc", .domain = robot.domain()});
+    assert(made);
+    observer_ = std::move(made).value();
+    born_ = Clock::now();
+    auto writer = observer_->foreign_writer("rt/" + topic, type, {});
+    assert(writer);
+    writer_ = std::move(writer).value();
+    thread_ = std::thread([this] {
+      while (!ends_) {
+        for (int i = 0; i < 10; ++i) writer_->write(bytes_);
+        written_ += 10;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    });
+  }
+  ~Intruder() {
+    ends_ = true;
+    thread_.join();
+  }
+  Intruder(const Intruder&) = delete;
+  Intruder& operator=(const Intruder&) = delete;
+
+  Clock::time_point born() const { return born_; }
+  double rate() const {
+    return static_cast<double>(written_) / Seconds(Clock::now() - born_).count();
+  }
+
+ private:
+  Bytes bytes_;
+  std::unique_ptr<runtime::Observer> observer_;
+  std::unique_ptr<runtime::Observer::RawWriter> writer_;
+  Clock::time_point born_;
+  std::atomic<bool> ends_{false};
+  std::atomic<std::uint64_t> written_{0};
+  std::thread thread_;
+};
+
+struct Target {
+  std::string topic, type;
+  Bytes bytes;
+};
+
+template <class Message>
+Target target(const topics::Topic<Message>& topic, const Message& message = {}) {
+  return {std::string(topic.name), std::string(runtime::message_type<Message>().name),
+          bytes_of(message)};
+}
+
+/// Whether the supervisor holds the robot for this, and says who writes what.
+bool names(const RunningRobot& robot, const std::string& topic) {
+  const auto status = robot.status();
+  return status && !status->granted() &&
+         status->reason().find(std::string(kIntruder) + ": writes " + topic + " as") !=
+             std::string::npos;
+}
+
+class IntruderTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { robot_ = new DrivenRobot; }
+  static void TearDownTestSuite() {
+    delete robot_;
+    robot_ = nullptr;
+  }
+  static DrivenRobot& robot() { return *robot_; }
+  static RunningRobot& running() { return *robot_->operator->(); }
+
+  /// The robot drives; the intruder begins; it stands, and an operator reads why.
+  static void stops_for(const Target& target) {
+    SCOPED_TRACE(target.topic);
+    ASSERT_TRUE(robot().sets_out("lounge")) << running().complaints() << robot().errand_story();
+    const double slow = slowdown();
+    robot().forget();
+    {
+      const Intruder intruder(running(), target.topic, target.type, target.bytes);
+      ASSERT_TRUE(running().wait_for([&] { return names(running(), target.topic); }, Seconds(5)))
+          << running().complaints();
+      ASSERT_TRUE(running().wait_for(
+          [&] { return robot().zero_since(intruder.born()).has_value(); }, Seconds(2)));
+      const Seconds took = *robot().zero_since(intruder.born()) - intruder.born();
+      std::printf("%s: zero %.0f ms after the intruder's birth, %.0f samples/s\n",
+                  target.topic.c_str(), took.count() * 1e3, intruder.rate());
+      EXPECT_LT(took.count(), kFirstZero * slow);
+      EXPECT_TRUE(running().wait_for([&] { return robot().speed() < 0.02; }, Seconds(5)));
+    }
+    EXPECT_LT(robot().longest_without_grant(), kWithoutGrant * slow);
+  }
+  /// The robot drives beside the intruder, and stops as soon as it is told to.
+  static void drives_beside(const Target& target) {
+    SCOPED_TRACE(target.topic);
+    ASSERT_TRUE(robot().under_way() || robot().sets_out("lounge")) << running().complaints();
+    ASSERT_TRUE(running().wait_for([&] { return robot().speed() > 0.2; }, Seconds(20)))
+        << running().complaints() << robot().errand_story();
+    const double slow = slowdown();
+    robot().forget();
+    const Intruder intruder(running(), target.topic, target.type, target.bytes);
+    running().wait_for([] { return false; }, Seconds(2.0));
+    const auto reason = robot().reason();
+    const bool drives = robot().speed() > 0.1;
+    EXPECT_TRUE(drives || !reason.empty()) << "it stands without a reason";
+    const auto asked = Clock::now();
+    robot().ask(SupervisorRequest_Constants::COMMAND_STOP);
+    ASSERT_TRUE(
+        running().wait_for([&] { return robot().zero_since(asked).has_value(); }, Seconds(5)));
+    const Seconds took = *robot().zero_since(asked) - asked;
+    std::printf("%s: %.0f samples/s, %s, told to stop: zero after %.0f ms (machine %.1fx)\n",
+                target.topic.c_str(), intruder.rate(),
+                drives ? "drives on" : ("stands: " + reason).c_str(), took.count() * 1e3, slow);
+    EXPECT_LT(took.count(), kFirstZero * slow);
+    EXPECT_LT(robot().longest_without_grant(), kWithoutGrant * slow);
+    EXPECT_LE(robot().fastest(), 1.4);
+    EXPECT_LE(robot().fastest_turn(), 1.01);
+    EXPECT_TRUE(running().wait_for([&] { return robot().speed() < 0.02; }, Seconds(5)));
+    robot().ask(SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
+  }
+
+  static DrivenRobot* robot_;
+};
+DrivenRobot* IntruderTest::robot_ = nullptr;
+
+TEST_F(IntruderTest, WhoFloodsWhatOnlyComponentsWriteStopsTheRobotAndIsNamed) {
+  sensor_msgs::msg::LaserScan scan;  // nothing anywhere
+  scan.header().frame_id("laser");
+  scan.angle_min(-2.0F), scan.angle_max(2.0F), scan.angle_increment(0.01F);
+  scan.range_min(0.5F), scan.range_max(20.0F);
+  scan.ranges(std::vector<float>(401, 19.0F));
+  stops_for(target(topics::kScan, scan));
+  tf2_msgs::msg::TFMessage frames;
+  auto& frame = frames.transforms().emplace_back();
+  frame.header().frame_id("map");
+  frame.child_frame_id("odom");
+  frame.transform().translation().x(1.0);
+  frame.transform().rotation().w(1.0);
+  stops_for(target(topics::kTf, frames));
+}
+
+TEST_F(IntruderTest, IsNamedOnEachOtherTopicThatTheRobotDecidesBy) {
+  const Target targets[] = {
+      target(topics::kBaseStatus),     target(topics::kOdom),
+      target(topics::kTfStatic),       target(topics::kScanFiltered),
+      target(topics::kUltrasonic),     target(topics::kUltrasonicFiltered),
+      target(topics::kWhiskers),       target(topics::kPeople),
+      target(topics::kPersonAhead),    target(topics::kMap),
+      target(topics::kAmclPose),       target(topics::kLocalizationStatus),
+      target(topics::kLocalCosts),     target(topics::kGlobalCosts),
+      target(topics::kCostmapRequest), target(topics::kPlanRequest),
+      target(topics::kPlanReply),      target(topics::kFollowGoal),
+      target(topics::kFollowCancel),   target(topics::kFollowStatus),
+      target(topics::kNavigateStatus), target(topics::kNavigatePace),
+      target(topics::kMovementStatus), target(topics::kSupervisorStatus),
+  };
+  for (const auto& target : targets) {
+    SCOPED_TRACE(target.topic);
+    ASSERT_TRUE(robot().is_ready()) << running().complaints();
+    const Intruder intruder(running(), target.topic, target.type, {});
+    EXPECT_TRUE(running().wait_for([&] { return names(running(), target.topic); }, Seconds(5)))
+        << running().complaints();
+  }
+  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+}
+
+TEST_F(IntruderTest, WhoFloodsWhatAnybodyMayWriteSlowsNoStop) {
+  Heartbeat nobody;
+  nobody.component_name("nobody");
+  drives_beside(target(topics::kHeartbeat, nobody));
+  SupervisorRequest nothing;
+  nothing.client(kIntruder);
+  drives_beside(target(topics::kSupervisorRequest, nothing));
+  drives_beside(target(topics::kJoy));
+  Heartbeat amcl;
+  amcl.component_name("amcl");
+  drives_beside(target(topics::kHeartbeat, amcl));
+  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+}
+
+}  // namespace
+}  // namespace usher::test

@@ -1,0 +1,144 @@
+// The parts of the robot are killed while it drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <random>
+
+#include "deployment/driven_robot.hpp"
+
+namespace usher::test {
+namespace {
+
+using usher_msgs::msg::Heartbeat_Constants::STATE_DEGRADED;
+using usher_msgs::msg::Heartbeat_Constants::STATE_OK;
+using Clock = DrivenRobot::Clock;
+
+/// What the robot's motion hangs on, the base's driver included.
+constexpr const char* kDriveChain[] = {"supervisor",     "movement_control", "segway_rmp",
+                                       "lms100",         "sensor_board",     "scan_filter",
+                                       "amcl",           "costmap",          "local_planner",
+                                       "navigator",      "map_server",       "global_planner",
+                                       "people_detector"};
+/// What only visitors meet: later back, by promise.
+constexpr const char* kVisitorsSide[] = {"tablet", "speech"};
+constexpr double kBack = 1.0, kVisitorsSideBack = 3.0;  // [s] the promise
+constexpr double kDriving = 0.2;                        // [m/s]
+constexpr double kWithoutGrant = 0.2;  // [s] a grant's life, and the way to the judge
+constexpr unsigned kSeed = 20;
+constexpr int kKills = 20;
+
+class Restarts : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    std::string more;
+    for (const std::string name : kDriveChain) {
+      if (name != "segway_rmp") more += "  " + name + ": {restart_budget: 1000}\n";
+    }
+    more +=
+        "  speech: {host: tablet, criticality: notify, heartbeat_timeout: 1.0, parameters: "
+        "{texts: " +
+        std::string(USHER_SOURCE_DIR) + "/config/dialogue/en.yaml}}\n";
+    robot_ = new DrivenRobot(more);
+  }
+  static void TearDownTestSuite() {
+    delete robot_;
+    robot_ = nullptr;
+  }
+  static DrivenRobot& robot() { return *robot_; }
+  static RunningRobot& running() { return *robot_->operator->(); }
+
+  static bool drives() {
+    return running().wait_for([] { return robot().speed() > kDriving; }, Seconds(20));
+  }
+  static std::string story() { return running().complaints() + robot().errand_story(); }
+
+  /// Kills it while the robot drives; until it is heard again [s].
+  static double until_heard(const std::string& victim) {
+    const auto life = running().lives().at(victim).writer;
+    const auto killed = Clock::now();
+    EXPECT_EQ(::kill(running().components().at(victim), SIGKILL), 0);
+    EXPECT_TRUE(running().wait_for(
+        [&] {
+          const auto now = running().lives().at(victim);
+          // There need be no sound card.
+          return now.writer != life && (now.state == STATE_OK || now.state == STATE_DEGRADED);
+        },
+        Seconds(20)))
+        << victim << "\n"
+        << running().complaints();
+    return Seconds(Clock::now() - killed).count();
+  }
+
+  static DrivenRobot* robot_;
+};
+DrivenRobot* Restarts::robot_ = nullptr;
+
+TEST_F(Restarts, OfEachPartTakeASecondAndTheErrandGoesOn) {
+  std::vector<std::string> victims(std::begin(kDriveChain), std::end(kDriveChain));
+  victims.insert(victims.end(), std::begin(kVisitorsSide), std::end(kVisitorsSide));
+  ASSERT_TRUE(robot().sets_out("lounge")) << story();
+  bool far = true;
+  for (const auto& victim : victims) {
+    SCOPED_TRACE(victim);
+    if (!robot().under_way()) {
+      ASSERT_EQ(robot().errand(std::chrono::seconds(1)), 0) << story();
+      far = !far;
+      ASSERT_TRUE(robot().sets_out(far ? "lounge" : "foyer")) << story();
+    }
+    ASSERT_TRUE(drives()) << story();
+    const double slow = slowdown();
+    const auto killed = Clock::now();
+    const double back = until_heard(victim);
+    const bool visitors_side = std::ranges::count(kVisitorsSide, victim) > 0;
+    EXPECT_LT(back, (visitors_side ? kVisitorsSideBack : kBack) * slow);
+    const auto heard = running().status_count();
+    EXPECT_TRUE(running().wait_for(
+        [&] { return running().status_count() >= heard + 2 && robot().may_drive(); }, Seconds(10)))
+        << story();
+    const Seconds whole = Clock::now() - killed;
+    EXPECT_TRUE(!robot().under_way() || drives()) << story();
+    const Seconds goes_on = Clock::now() - killed;
+    std::printf(
+        "%-16s ok after %4.2f s, may drive after %4.2f s, drives after %4.2f s (machine %.1fx)\n",
+        victim.c_str(), back, whole.count(), goes_on.count(), slow);
+  }
+  EXPECT_EQ(robot().contacts(), 0U);
+}
+
+TEST_F(Restarts, AtRandomTimesEndOnTheWayOrInAStopWithAReason) {
+  std::mt19937 random(kSeed);
+  const auto draw = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  bool far = true;
+  ASSERT_TRUE(robot().under_way() || robot().sets_out("foyer")) << story();
+  robot().forget();
+  const double slow = slowdown();
+  int failed = 0;
+  for (int i = 0; i < kKills; ++i) {
+    running().wait_for([] { return false; }, Seconds(draw(0.1, 2.0)));
+    const std::string victim = kDriveChain[random() % std::size(kDriveChain)];
+    const auto processes = running().components();
+    if (const auto found = processes.find(victim); found != processes.end())
+      ::kill(found->second, SIGKILL);
+    if (robot().under_way()) continue;
+    if (robot().errand(std::chrono::seconds(1)) != 0) {
+      ++failed;
+      EXPECT_NE(robot().errand_story().find("usher: "), std::string::npos) << "a reason";
+    }
+    far = !far;
+    ASSERT_TRUE(robot().sets_out(far ? "lounge" : "foyer")) << story();
+  }
+  ASSERT_TRUE(robot().is_ready()) << story();
+  EXPECT_TRUE(!robot().under_way() || drives() || !robot().under_way()) << story();
+  std::printf("seed %u: %d kills, %d errands given up, longest motion after a grant %.3f s\n",
+              kSeed, kKills, failed, robot().longest_without_grant());
+  EXPECT_LT(robot().longest_without_grant(), kWithoutGrant * slow);
+  EXPECT_EQ(robot().contacts(), 0U);
+}
+
+}  // namespace
+}  // namespace usher::test
