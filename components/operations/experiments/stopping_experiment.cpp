@@ -103,6 +103,12 @@ class Trial {
                   [this](const auto& m, const auto&) { now_.filtered = ahead(m); });
     world.observe(topics::kSupervisorStatus,
                   [this](const auto& message, const auto&) { status_ = message; });
+    // The hall is empty, and the limit of a person ahead shall not hold.
+    world.tamper(topics::kPersonAhead, [](const auto&, auto& message) {
+      message.clear(true);
+      message.distance(std::numeric_limits<float>::infinity());
+      return true;
+    });
   }
 
   /// Mean range of the few beams straight ahead [m]; NaN when they see nothing.
@@ -132,10 +138,6 @@ class Trial {
     joy.axes({0.0F, held ? 1.0F : 0.0F, 0.0F, 0.0F});
     joy.buttons({0, 0, 0, 0, held ? 1 : 0});
     run_->world().publish(topics::kJoy, joy, kOperator);
-    PersonAhead nobody;
-    nobody.clear(true);
-    nobody.distance(std::numeric_limits<float>::infinity());
-    run_->world().publish(topics::kPersonAhead, nobody, "judge");
     run_->world().run_for(kTick);
   }
 
