@@ -1,5 +1,4 @@
 // Without keys anybody on the network may write: what the running robot then does.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -13,7 +12,6 @@ namespace usher::test {
 namespace {
 
 using runtime::Bytes;
-using testing::HasSubstr;
 using Clock = DrivenRobot::Clock;
 using namespace usher_msgs::msg;
 
