@@ -29,7 +29,7 @@ Bytes bytes_of(const Message& message) {
 /// A foreign participant that writes the same bytes some thousand times a second.
 class Intruder {
  public:
-  Intruder(RunningRobot& robot, std::string topic, std::string type, Bytes bytes)
+  Intruder(RunningRobot& robot, const std::string& topic, const std::string& type, Bytes bytes)
       : bytes_(std::move(bytes)) {
     auto made =
         runtime::Observer::create({.name = kIntruder, .host = "nuc", .domain = robot.domain()});
