@@ -17,7 +17,7 @@ namespace {
 using std::chrono::seconds;
 
 constexpr int kSeeds = 100;
-constexpr auto kLongest = seconds(300);
+constexpr auto kLongest = seconds(600);
 constexpr double kArrival = 0.4;  // [m]
 constexpr double kVisitor = 3.5;  // [m]
 

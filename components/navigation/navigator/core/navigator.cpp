@@ -14,15 +14,15 @@ constexpr double kRepeat = 0.2 - 1e-6;  // [s] between repetitions of what was n
 constexpr double kProgress = 0.1;       // [m] nearer to the goal than ever restarts the stall clock
 constexpr double kTurned = 0.35;        // [rad] a slow turn is progress too,
 constexpr int kMostTurns = 12;          // but not to turn and turn again
-constexpr double kSlowestKept =
-    0.02;                          // [m/s] slower than this tells nothing about the time of arrival
-constexpr double kStarted = 0.5;   // [m] of the way
-constexpr double kApproach = 1.0;  // [m] before its end
-constexpr double kStands = 0.1;    // [m/s]
-constexpr double kTurns = 0.1;     // [rad/s]
-constexpr double kMoved = 2.0;     // [m] a newer goal so near to the one that runs moves it
-constexpr double kOldPath = 1.0;   // [s] its path is driven on until there is a new one
-constexpr double kBarred = 1.5;    // [s] a recovery that cannot begin ends
+constexpr double kAsLately = 5.0;       // [m] ahead are driven as fast as the last ones,
+constexpr double kSlowestKept = 0.1;    // [m/s] and no slower than this
+constexpr double kStarted = 0.5;        // [m] of the way
+constexpr double kApproach = 1.0;       // [m] before its end
+constexpr double kStands = 0.1;         // [m/s]
+constexpr double kTurns = 0.1;          // [rad/s]
+constexpr double kMoved = 2.0;          // [m] a newer goal so near to the one that runs moves it
+constexpr double kOldPath = 1.0;        // [s] its path is driven on until there is a new one
+constexpr double kBarred = 1.5;         // [s] a recovery that cannot begin ends
 constexpr int kRecoveryKinds = 3;
 constexpr double kPersonAhead = 3.0;   // [m] along the path,
 constexpr double kPersonBeside = 0.8;  // [m] beside it: half a robot, half a person and some room
@@ -253,8 +253,9 @@ void Navigator::start(const Situation& s) {
       geometry::distance(*s.pose, stuck_at_) >= config_.recovery_progress)
     tried_here_ = 0;
   if (old_path_ && s.pose && s.pose->finite()) return ask_plan(s, PlanCause::kNeeded);
-  speed_kept_ =
+  usual_ =
       goal_max_speed_ > 0.0 ? std::min(goal_max_speed_, config_.usual_speed) : config_.usual_speed;
+  speed_kept_ = usual_;
   if (state_ != State::kInitialise) state_ = State::kNewRequest;
   stop_and_plan(s);
 }
@@ -654,13 +655,16 @@ void Navigator::finish(GoalState outcome, Failure failure, const std::string& re
                                             : State::kInactive;
 }
 
-/// The way at the speed kept lately, and what turns, start and approach take besides.
+/// The next metres at the speed kept lately, for a jam ends somewhere, the way beyond them as
+/// usual, and what turns, start and approach take besides.
 double Navigator::time_left(const Situation& s) const {
-  if (speed_kept_ < kSlowestKept) return std::numeric_limits<double>::quiet_NaN();
+  const double remaining = route_.remaining();
+  const double near = std::min(remaining, kAsLately);
+  const double driving = near / std::max(speed_kept_, kSlowestKept) + (remaining - near) / usual_;
   const double turning = s.pose && s.pose->finite() ? route_.turning_left(s.pose->yaw) : 0.0;
   const double start = advanced_ < kStarted ? config_.start_time : 0.0;
-  const double approach = config_.approach_time * std::min(1.0, route_.remaining() / kApproach);
-  return route_.remaining() / speed_kept_ + config_.turn_time * turning + start + approach;
+  const double approach = config_.approach_time * std::min(1.0, remaining / kApproach);
+  return driving + config_.turn_time * turning + start + approach;
 }
 
 void Navigator::update_status(const Situation& s) {

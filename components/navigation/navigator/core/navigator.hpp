@@ -291,8 +291,9 @@ class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is
   // On the way.
   Route route_;
   double last_step_ = -std::numeric_limits<double>::infinity();
-  double advanced_ = 0.0;  // [m] along all paths of this goal
-  double speed_kept_ = 0.0;
+  double advanced_ = 0.0;    // [m] along all paths of this goal
+  double usual_ = 0.5;       // [m/s] of this goal
+  double speed_kept_ = 0.0;  // [m/s] lately
   double last_planned_ = 0.0;
   double nearest_ = 0.0;  // [m] least remaining way on this path, for the stall clock
   double nearest_since_ = 0.0;

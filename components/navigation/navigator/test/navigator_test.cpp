@@ -87,7 +87,21 @@ TEST(Navigator, TurningInPlaceIsNoSlowDriving) {
   EXPECT_NEAR(rig.status().eta, eta, 0.5);
   rig.s.velocity = {0.0, 0.0};
   rig.run(5.0);
-  EXPECT_GT(rig.status().eta, eta + 10.0) << "standing counts";
+  EXPECT_GT(rig.status().eta, eta + 2.0) << "standing counts";
+}
+
+TEST(Navigator, AJamIsExpectedToEndWithinTheNextMetres) {
+  NavigatorConfig config;
+  config.usual_speed = 0.5;
+  Rig rig(config);
+  rig.go(30.0);
+  rig.run(1.0);
+  const double eta = rig.status().eta;
+  rig.s.velocity = {0.0, 0.0};
+  rig.run(14.0);
+  EXPECT_GT(rig.status().eta, eta + 8.0);
+  rig.run(60.0);
+  EXPECT_LT(rig.status().eta, 25.0 / 0.5 + 5.0 / 0.1 + 25.0);
 }
 
 TEST(Navigator, ArrivesOnlyWithinBothTolerancesAndAtRest) {
