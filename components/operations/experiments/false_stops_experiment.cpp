@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
 
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/attacked_robot.hpp"
@@ -40,6 +42,61 @@ class BusyLoops {
   std::vector<std::thread> threads_;
 };
 
+/// The longest pause on a topic, as somebody beside the robot hears it.
+template <class Message>
+class Pauses {
+ public:
+  Pauses(runtime::Observer& observer, const topics::Topic<Message>& topic)
+      : reader_(observer.reader(topic, [this](const auto&, const auto&) {
+          const auto now = Clock::now();
+          const std::lock_guard lock(mutex_);
+          if (last_) longest_ = std::max(longest_, now - *last_);
+          last_ = now;
+        })) {}
+  Status status() const { return reader_ ? Status() : Status(Error{reader_.error()}); }
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    longest_ = {};
+  }
+  double longest_ms() const {
+    const std::lock_guard lock(mutex_);
+    return std::chrono::duration<double, std::milli>(longest_).count();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<Clock::time_point> last_;
+  Clock::duration longest_{};
+  Result<runtime::Observer::Reader<Message>> reader_;  ///< ends first
+};
+
+/// Who walks through the circle, or stands beside it, would stop the robot for a cause.
+class PeopleAway {
+ public:
+  explicit PeopleAway(AttackedRobot& robot)
+      : writer_(robot.observer().writer(topics::kSimPersonGoal)) {}
+  Status status() const { return writer_ ? Status() : Status(Error{writer_.error()}); }
+  /// To be called again and again: who is there would go his own way.
+  void send() {
+    struct Place {
+      const char* name;
+      double x, y;
+    };
+    constexpr Place kPlaces[] = {{"visitor", 2.0, 7.6}, {"dijkstra", 8.5, 10.0}};
+    for (const auto& place : kPlaces) {
+      usher_sim_msgs::msg::PersonGoal goal;
+      goal.name(place.name);
+      goal.x(place.x);
+      goal.y(place.y);
+      goal.speed(1.2);
+      writer_->write(goal);
+    }
+  }
+
+ private:
+  Result<runtime::Observer::Writer<usher_sim_msgs::msg::PersonGoal>> writer_;
+};
+
 /// Keeps the robot on its circle however long it drives.
 void steer(AttackedRobot& robot) {
   double distance = kRadius;
@@ -63,6 +120,24 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
   if (!robot.wait_for([&] { return robot.all_well(); }, seconds(60)) ||
       !robot.ask(SupervisorRequest_Constants::COMMAND_MANUAL_ON, seconds(10)))
     return Error{"the robot is not well: " + robot.complaints()};
+  PeopleAway people(robot);
+  if (!people.status()) return Error{people.status().error()};
+  for (int i = 0; i < 100; ++i) {  // until they are there
+    people.send();
+    std::this_thread::sleep_for(milliseconds(100));
+  }
+  Pauses commands_heard(robot.observer(), topics::kDriveCommand);
+  Pauses grants_heard(robot.observer(), topics::kDriveGrant);
+  if (!commands_heard.status()) return Error{commands_heard.status().error()};
+  if (!grants_heard.status()) return Error{grants_heard.status().error()};
+  std::mutex mutex;
+  std::string limit;
+  const auto movement =
+      robot.observer().reader(topics::kMovementStatus, [&](const auto& message, const auto&) {
+        const std::lock_guard lock(mutex);
+        limit = message.limit_reason();
+      });
+  if (!movement) return Error{movement.error()};
   steer(robot);
   if (!robot.wait_for([&] { return robot.drives(0.8 * kSpeed); }, seconds(15)))
     return Error{"the robot does not drive: " + robot.complaints()};
@@ -70,6 +145,8 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
   const BusyLoops busy(2);
   std::this_thread::sleep_for(seconds(1));
   robot.forget();
+  commands_heard.forget();
+  grants_heard.forget();
   std::uint64_t grants_lost_before = 0;
   {
     const auto lock = robot.locked();
@@ -88,6 +165,7 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
   while (Clock::now() < end) {
     std::this_thread::sleep_for(milliseconds(100));
     steer(robot);
+    people.send();
     {
       const auto lock = robot.locked();
       for (const auto& wheels : robot.wheels()) {
@@ -98,7 +176,9 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
         if (wheels.zero() && !zero) {
           ++stops;
           log += format("%.3f", std::chrono::duration<double>(wheels.at - begin).count()) +
-                 " s: " + (robot.status() ? robot.status()->reason() : "") + "\n";
+                 " s: " + (robot.status() ? robot.status()->reason() : "");
+          const std::lock_guard also(mutex);
+          log += (limit.empty() ? "" : "; movement_control: " + limit) + "\n";
         }
         zero = wheels.zero();
       }
@@ -125,6 +205,8 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
   sheet.metrics["commands"] = static_cast<double>(commands);
   sheet.metrics["false_stops"] = static_cast<double>(stops);
   sheet.metrics["longest_gap_ms"] = longest_gap * 1e3;
+  sheet.metrics["longest_command_pause_ms"] = commands_heard.longest_ms();
+  sheet.metrics["longest_grant_pause_ms"] = grants_heard.longest_ms();
   sheet.metrics["contacts"] = contacts;
   {
     const auto lock = robot.locked();
