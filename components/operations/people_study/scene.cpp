@@ -23,8 +23,8 @@ Body body(double forward, double left, double yaw_degrees, Posture posture = Pos
   return {{forward, left, radians(yaw_degrees)}, height, 1.0, posture, 0.6};
 }
 
-Posture any_posture(Random& random) {
-  const double dice = random.uniform();
+Posture any_posture(Random& random, Crowd crowd) {
+  const double dice = random.uniform(crowd == Crowd::kHard ? 0.55 : 0.0, 1.0);
   if (dice < 0.38) return Posture::kStanding;
   if (dice < 0.66) return Posture::kWalking;
   if (dice < 0.80) return Posture::kSitting;
@@ -38,8 +38,9 @@ bool is_free(const std::vector<Point2>& taken, const Point2& place, double gap) 
                       [&](const Point2& other) { return (other - place).norm() < gap; });
 }
 
-void add_person(Scene& scene, Random& random, const Point2& place, std::vector<Point2>& taken) {
-  Body one = body(place.x(), place.y(), random.uniform(-180.0, 180.0), any_posture(random),
+void add_person(Scene& scene, Random& random, const Point2& place, Crowd crowd,
+                std::vector<Point2>& taken) {
+  Body one = body(place.x(), place.y(), random.uniform(-180.0, 180.0), any_posture(random, crowd),
                   std::clamp(random.gaussian(1.72, 0.12), 1.1, 2.0));
   one.width = random.uniform(0.8, 1.25);
   one.phase = random.uniform(0.0, 6.28);
@@ -161,7 +162,7 @@ void add_things(std::vector<Scene>& scenes) {
 
 }  // namespace
 
-Scene random_scene(std::uint64_t seed) {
+Scene random_scene(std::uint64_t seed, Crowd crowd) {
   Random random(stream_seed(seed, "scene"));
   Scene scene{"random " + std::to_string(seed), random_room(random), {}, {}};
   scene.camera =
@@ -175,9 +176,9 @@ Scene random_scene(std::uint64_t seed) {
   const auto people = random.below(5);
   for (std::uint64_t i = 0; i < people; ++i) {
     const Point2 where = place(0.6);
-    if (is_free(taken, where, 0.75)) add_person(scene, random, where, taken);
+    if (is_free(taken, where, 0.75)) add_person(scene, random, where, crowd, taken);
   }
-  const auto things = random.below(9);
+  const auto things = random.below(crowd == Crowd::kHard ? 17 : 9);
   for (std::uint64_t i = 0; i < things; ++i) {
     const Point2 where = place(1.0);
     if (is_free(taken, where, 0.95)) add_any(scene.model, random, where);

@@ -28,9 +28,12 @@ struct Truth {
 /// may be found.
 inline constexpr double kVisible = 0.2;  // [m^2]
 
+/// How hard a random scene is: as rooms are, or to learn from, with more things and with more
+/// people who sit, squat or bend.
+enum class Crowd { kUsual, kHard };
 /// A room with furniture, walls, poles, boards and other things that are upright, and up to five
 /// people of any posture, some of them side by side; the same for the same seed.
-Scene random_scene(std::uint64_t seed);
+Scene random_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
 /// The cases of thesis figures 8.17 to 8.21 and what the issue of partly visible people adds.
 std::vector<Scene> thesis_scenes();
 

@@ -19,54 +19,86 @@ using people_detector::Candidate;
 using people_detector::Network;
 using people_detector::Windows;
 
-constexpr std::uint64_t kFirstSeed = 1'000'000;  // those of benchmark and experiment are smaller
+// Those of benchmark and experiment are smaller.
+constexpr std::uint64_t kUsualSeeds = 1'000'000, kHardSeeds = 1'500'000, kUnseenSeeds = 2'000'000;
 constexpr int kInputs = Windows::kInputs;
 
 struct Sample {
   std::array<std::int8_t, kInputs> inputs;
   bool person;
+  float forward, left;  // [kOffset] from the window to the person
 };
 
 enum class Label { kPerson, kNobody, kEither };
+struct Answer {
+  Label label = Label::kNobody;
+  float forward = 0.0F, left = 0.0F;  // [kOffset]
+};
 
 /// Beside the middle of a person a window is neither, unless it lies between two.
-Label label_of(const Candidate& place, std::span<const Truth> truths) {
-  constexpr double kMiddle = 0.11, kBeside = 0.3;  // [m]
+Answer answer_to(const Candidate& place, std::span<const Truth> truths) {
+  constexpr double kMiddle = 0.14, kBeside = 0.3;  // [m]
   constexpr double kLearnt = 0.12;                 // [m^2] visible of who is an example
   bool left = false, right = false, hidden = false;
+  double nearest = kMiddle;
+  Answer answer;
   for (const Truth& truth : truths) {
     const double aside = static_cast<double>(place.left) - truth.left;
     const double before = truth.forward - static_cast<double>(place.forward);
     if (truth.area <= 0.0 || before < -0.3 || before > 0.5 || std::abs(aside) > kBeside) continue;
-    if (truth.area >= kLearnt && std::abs(aside) < kMiddle) return Label::kPerson;
+    if (truth.area >= kLearnt && std::abs(aside) < nearest) {
+      nearest = std::abs(aside);
+      answer = {Label::kPerson, static_cast<float>(before) / people_detector::kOffset,
+                static_cast<float>(-aside) / people_detector::kOffset};
+    }
     hidden = hidden || truth.area < kLearnt;
     (aside > 0.0 ? left : right) = true;
   }
-  if (left && right && !hidden) return Label::kNobody;
-  return left || right ? Label::kEither : Label::kNobody;
+  if (answer.label == Label::kPerson || (left && right && !hidden)) return answer;
+  if (left || right) answer.label = Label::kEither;
+  return answer;
 }
+
+/// Scenes, rendered, one after the other.
+class Scenes {
+ public:
+  const imaging::Intrinsics& intrinsics() const { return studio_.intrinsics(); }
+  /// Every third is a hard one.
+  Studio::Shot next_to_learn() {
+    return ++turn_ % 3 == 0 ? take(hard_++, Crowd::kHard) : take(usual_++, Crowd::kUsual);
+  }
+  Studio::Shot next_unseen() { return take(unseen_++, Crowd::kUsual); }
+
+ private:
+  Studio::Shot take(std::uint64_t seed, Crowd crowd) {
+    const auto shot = studio_.take(random_scene(seed, crowd), seed);
+    if (!shot) std::fprintf(stderr, "%s\n", shot.error().c_str()), std::exit(1);
+    return *shot;
+  }
+
+  Studio studio_;
+  std::uint64_t usual_ = kUsualSeeds, hard_ = kHardSeeds, unseen_ = kUnseenSeeds;
+  int turn_ = 0;
+};
 
 /// Windows of scenes: all with people, of the others a share or, with a network, those that it
 /// takes for people or nearly.
-void collect(int first, int count, const Network* network, double share,
+void collect(Scenes& scenes, int count, const Network* network, double share,
              std::vector<Sample>& samples) {
-  Studio studio;
-  Windows windows(studio.intrinsics(), {});
+  Windows windows(scenes.intrinsics(), {});
   auto classifier = network ? std::make_unique<people_detector::Classifier>(*network) : nullptr;
   Windows::Inputs inputs;
-  Random random(static_cast<std::uint64_t>(first));
-  for (int i = first; i < first + count; ++i) {
-    const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(i);
-    const auto shot = studio.take(random_scene(seed), seed);
-    if (!shot) std::fprintf(stderr, "%s\n", shot.error().c_str()), std::exit(1);
-    windows.take(shot->processed, shot->view);
+  Random random(samples.size());
+  for (int i = 0; i < count; ++i) {
+    const auto shot = scenes.next_to_learn();
+    windows.take(shot.processed, shot.view);
     for (const Candidate& place : windows.candidates()) {
-      const Label label = label_of(place, shot->truths);
-      if (label == Label::kEither) continue;
+      const Answer answer = answer_to(place, shot.truths);
+      if (answer.label == Label::kEither) continue;
       windows.describe(place, inputs);
-      const bool hard = classifier && classifier->score(inputs) > -2.5F;
-      if (label == Label::kNobody && !hard && random.uniform() > share) continue;
-      Sample sample{{}, label == Label::kPerson};
+      const bool hard = classifier && classifier->judge(inputs).score > -3.0F;
+      if (answer.label == Label::kNobody && !hard && random.uniform() > share) continue;
+      Sample sample{{}, answer.label == Label::kPerson, answer.forward, answer.left};
       std::transform(inputs.begin(), inputs.end(), sample.inputs.begin(),
                      [](std::int16_t value) { return static_cast<std::int8_t>(value); });
       samples.push_back(sample);
@@ -75,17 +107,78 @@ void collect(int first, int count, const Network* network, double share,
   }
 }
 
-/// The network while it is trained: by Adam [kingma2015adam] on the logistic loss.
-class Trainer {
+using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Weights that move by Adam [kingma2015adam].
+class Moved {
  public:
-  Trainer() {
-    Random random(7);
-    for (int k = 0; k < Network::kHidden; ++k) {
-      for (int i = 0; i < kInputs; ++i)
-        weights_(k, i) = static_cast<float>(random.gaussian(0.0, 0.05));
-      out_(k) = static_cast<float>(random.gaussian(0.0, 0.3));
+  Moved(Eigen::Index rows, Eigen::Index columns, double sigma, Random& random)
+      : value(rows, columns), mean_(Matrix::Zero(rows, columns)), square_(mean_) {
+    for (Eigen::Index i = 0; i < value.size(); ++i)
+      value.data()[i] = static_cast<float>(random.gaussian(0.0, sigma));
+  }
+  void step(const Matrix& slope, float rate, float correction) {
+    mean_ = 0.9F * mean_ + 0.1F * slope;
+    square_ = 0.999F * square_ + 0.001F * slope.cwiseProduct(slope);
+    value.array() -= rate * correction * mean_.array() / (square_.array().sqrt() + 1e-8F);
+  }
+
+  Matrix value;
+
+ private:
+  Matrix mean_, square_;
+};
+
+/// A layer while it is trained.
+struct TrainedLayer {
+  TrainedLayer(Eigen::Index inputs, Eigen::Index neurons, double sigma, Random& random)
+      : weights(neurons, inputs, sigma, random), biases(neurons, 1, 0.0, random) {}
+
+  void forward(const Matrix& inputs, bool rectified) {
+    sums.noalias() = weights.value * inputs;
+    sums.colwise() += biases.value.col(0);
+    if (rectified) sums = sums.cwiseMax(0.0F);
+  }
+  /// `slopes` of the sums; the result is the slopes of the inputs.
+  Matrix backward(const Matrix& inputs, const Matrix& slopes, bool wanted, float rate,
+                  float correction) {
+    Matrix back;
+    if (wanted) back.noalias() = weights.value.transpose() * slopes;
+    weights_slope_.noalias() = slopes * inputs.transpose();
+    weights.value *= 1.0F - rate * kDecay;
+    weights.step(weights_slope_, rate, correction);
+    biases.step(slopes.rowwise().sum(), rate, correction);
+    return back;
+  }
+  template <int kIn, int kNeurons>
+  void write(people_detector::Layer<kIn, kNeurons>& layer, float one) const {
+    for (int k = 0; k < kNeurons; ++k) {
+      auto& neuron = layer.neurons[static_cast<std::size_t>(k)];
+      const float largest = std::max(1e-6F, weights.value.row(k).cwiseAbs().maxCoeff());
+      for (int i = 0; i < kIn; ++i)
+        neuron.weights[static_cast<std::size_t>(i)] =
+            static_cast<std::int8_t>(std::lround(weights.value(k, i) / largest * 127.0F));
+      neuron.scale = largest / 127.0F / one;
+      neuron.bias = biases.value(k, 0);
     }
   }
+
+  static constexpr float kDecay = 5e-3F;
+  Moved weights, biases;
+  Matrix sums;
+
+ private:
+  Matrix weights_slope_;
+};
+
+/// The network while it is trained: the logistic loss of the score and Huber's of the place.
+class Trainer {
+ public:
+  Trainer()
+      : random_(7),
+        first_(kInputs, Network::kFirst, 0.05, random_),
+        second_(Network::kFirst, Network::kSecond, 0.18, random_),
+        outputs_(Network::kSecond, Network::kOutputs, 0.2, random_) {}
 
   void epoch(const std::vector<Sample>& samples, float rate, std::uint64_t seed) {
     std::vector<std::size_t> order(samples.size());
@@ -100,96 +193,87 @@ class Trainer {
 
   Network network() const {
     Network result{};
-    for (int k = 0; k < Network::kHidden; ++k) {
-      auto& neuron = result.neurons[static_cast<std::size_t>(k)];
-      const float largest = std::max(1e-6F, weights_.row(k).cwiseAbs().maxCoeff());
-      for (int i = 0; i < kInputs; ++i)
-        neuron.weights[static_cast<std::size_t>(i)] =
-            static_cast<std::int8_t>(std::lround(weights_(k, i) / largest * 127.0F));
-      neuron.scale = largest / 127.0F / Windows::kOne;
-      neuron.out = out_(k);
-    }
-    result.bias = bias_;
+    first_.write(result.first, Windows::kOne);
+    second_.write(result.second, 1.0F);
+    outputs_.write(result.outputs, 1.0F);
     return result;
   }
 
  private:
   static constexpr std::size_t kBatch = 256;
-  static constexpr float kDecay = 5e-3F;
+  static constexpr float kPlaceShare = 0.5F;  // of the place's loss
 
-  using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  /// A sample as a column, half of them mirrored.
-  static void place(const Sample& sample, bool mirrored, Eigen::Ref<Eigen::VectorXf> column) {
+  /// A sample as a row, half of them mirrored.
+  static void place(const Sample& sample, bool mirrored, float* row) {
     constexpr int kCells = Windows::kAcross * Windows::kUp;
+    constexpr float kUnit = 1.0F / Windows::kOne;
+    const std::int8_t* from = sample.inputs.data();
+    if (!mirrored) {
+      for (int i = 0; i < kInputs; ++i) row[i] = kUnit * from[i];
+      return;
+    }
     for (int cell = 0; cell < kCells; ++cell) {
       const int across = cell % Windows::kAcross;
-      const int from = mirrored ? cell - across + Windows::kAcross - 1 - across : cell;
+      const int other = cell - across + Windows::kAcross - 1 - across;
       for (int c = 0; c < Windows::kChannels; ++c)
-        column(cell * Windows::kChannels + c) =
-            sample.inputs[static_cast<std::size_t>(from * Windows::kChannels + c)] /
-            float{Windows::kOne};
+        row[cell * Windows::kChannels + c] = kUnit * from[other * Windows::kChannels + c];
     }
-    for (int i = kCells * Windows::kChannels; i < kInputs; ++i)
-      column(i) = sample.inputs[static_cast<std::size_t>(i)] / float{Windows::kOne};
+    for (int i = kCells * Windows::kChannels; i < kInputs; ++i) row[i] = kUnit * from[i];
   }
 
   double step(const std::vector<Sample>& samples, std::span<const std::size_t> batch, float rate,
               Random& random) {
-    for (std::size_t i = 0; i < kBatch; ++i)
-      place(samples[batch[i]], random.uniform() < 0.5, inputs_.col(static_cast<Eigen::Index>(i)));
-    hidden_.noalias() = weights_ * inputs_;
-    hidden_ = hidden_.cwiseMax(0.0F);
-    Eigen::RowVectorXf odds = out_.transpose() * hidden_;
-    odds.array() += bias_;
-    double loss = 0.0;
-    for (Eigen::Index i = 0; i < odds.size(); ++i) {
-      const bool person = samples[batch[static_cast<std::size_t>(i)]].person;
-      const float probability = 1.0F / (1.0F + std::exp(-odds(i)));
-      loss -= std::log(std::max(1e-7F, person ? probability : 1.0F - probability));
-      odds(i) = (probability - (person ? 1.0F : 0.0F)) / kBatch;
+    std::array<bool, kBatch> mirrored;
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      mirrored[i] = random.uniform() < 0.5;
+      place(samples[batch[i]], mirrored[i], inputs_.data() + i * kInputs);
     }
-    const Eigen::VectorXf out_slope = hidden_ * odds.transpose();
-    Matrix back = out_ * odds;
-    back.array() *= (hidden_.array() > 0.0F).cast<float>();
-    Matrix slope = back * inputs_.transpose();
+    first_.forward(inputs_.transpose(), true);
+    second_.forward(first_.sums, true);
+    outputs_.forward(second_.sums, false);
+    double loss = 0.0;
+    slopes_.setZero(Network::kOutputs, kBatch);
+    for (std::size_t k = 0; k < kBatch; ++k) {
+      const Sample& sample = samples[batch[k]];
+      const auto i = static_cast<Eigen::Index>(k);
+      const float probability = 1.0F / (1.0F + std::exp(-outputs_.sums(0, i)));
+      loss -= std::log(std::max(1e-7F, sample.person ? probability : 1.0F - probability));
+      slopes_(0, i) = (probability - (sample.person ? 1.0F : 0.0F)) / kBatch;
+      if (!sample.person) continue;
+      const float wanted[2] = {sample.forward, mirrored[k] ? -sample.left : sample.left};
+      for (int axis = 0; axis < 2; ++axis)
+        slopes_(axis + 1, i) = kPlaceShare *
+                               std::clamp(outputs_.sums(axis + 1, i) - wanted[axis], -1.0F, 1.0F) /
+                               kBatch;
+    }
     ++steps_;
     const float correction =
         std::sqrt(1.0F - std::pow(0.999F, float(steps_))) / (1.0F - std::pow(0.9F, float(steps_)));
-    const auto move = [&](auto& value, const auto& gradient, auto& mean, auto& square) {
-      mean = 0.9F * mean + 0.1F * gradient;
-      square = 0.999F * square + 0.001F * gradient.cwiseProduct(gradient);
-      value.array() -= rate * correction * mean.array() / (square.array().sqrt() + 1e-8F);
-    };
-    weights_ *= 1.0F - rate * kDecay;
-    move(weights_, slope, mean_, square_);
-    move(out_, out_slope, out_mean_, out_square_);
-    bias_ -= rate * odds.sum() * 4.0F;
+    Matrix back = outputs_.backward(second_.sums, slopes_, true, rate, correction);
+    back.array() *= (second_.sums.array() > 0.0F).cast<float>();
+    back = second_.backward(first_.sums, back, true, rate, correction);
+    back.array() *= (first_.sums.array() > 0.0F).cast<float>();
+    first_.backward(inputs_.transpose(), back, false, rate, correction);
     return loss;
   }
 
-  Matrix weights_ = Matrix::Zero(Network::kHidden, kInputs), mean_ = weights_, square_ = weights_;
-  Eigen::VectorXf out_ = Eigen::VectorXf::Zero(Network::kHidden), out_mean_ = out_,
-                  out_square_ = out_;
-  float bias_ = -1.0F;
+  Random random_;
+  TrainedLayer first_, second_, outputs_;
   long steps_ = 0;
-  Eigen::MatrixXf inputs_ = Eigen::MatrixXf::Zero(kInputs, kBatch);
-  Matrix hidden_;
+  Matrix inputs_ = Matrix::Zero(kBatch, kInputs), slopes_;
 };
 
 constexpr std::array kThresholds{-2.0, -1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0};
 
 /// The scores of unseen scenes at several thresholds.
-std::array<Score, kThresholds.size()> test(const Network& network, int scenes) {
-  Studio studio;
+std::array<Score, kThresholds.size()> test(const Network& network, Scenes& scenes, int count) {
   people_detector::DetectorConfig config;
   config.threshold = kThresholds.front();
   auto detector =
-      people_detector::DepthDetector::make(studio.intrinsics(), config, network).value();
+      people_detector::DepthDetector::make(scenes.intrinsics(), config, network).value();
   std::array<Score, kThresholds.size()> scores;
-  for (int i = 0; i < scenes; ++i) {
-    const std::uint64_t seed = 2 * kFirstSeed + static_cast<std::uint64_t>(i);
-    const auto shot = studio.take(random_scene(seed), seed).value();
+  for (int i = 0; i < count; ++i) {
+    const auto shot = scenes.next_unseen();
     const auto found = detector.find(shot.processed, shot.view).value();
     std::vector<people_detector::Sighting> sightings(found.begin(), found.end());
     for (std::size_t k = 0; k < scores.size(); ++k) {
@@ -200,29 +284,36 @@ std::array<Score, kThresholds.size()> test(const Network& network, int scenes) {
   return scores;
 }
 
-/// Weights as two hexadecimal digits each, 46 to a line.
+template <int kIn, int kNeurons>
+void write(const people_detector::Layer<kIn, kNeurons>& layer, std::ofstream& file) {
+  char text[64];
+  for (const auto& neuron : layer.neurons) {
+    file << "      {";
+    for (std::size_t i = 0; i < neuron.weights.size(); ++i) {
+      if (i % 44 == 0) file << (i > 0 ? "\"\n       \"" : "\"");
+      std::snprintf(text, sizeof text, "%02x",
+                    static_cast<unsigned>(static_cast<std::uint8_t>(neuron.weights[i])));
+      file << text;
+    }
+    std::snprintf(text, sizeof text, "\",\n       %.9eF, %.9eF},\n",
+                  static_cast<double>(neuron.scale), static_cast<double>(neuron.bias));
+    file << text;
+  }
+}
+
+/// Weights as two hexadecimal digits each, 44 to a line.
 void write(const Network& network, const std::string& path) {
   std::ofstream file(path);
   file << "// Written by usher-train-people; see the component's README.\n"
           "#include \"perception/people_detector/core/network.hpp\"\n\n"
           "namespace usher::people_detector {\n\n"
           "const Network& trained_network() {\n"
-          "  static const Network network = decode(\n      {{\n";
-  char text[64];
-  for (const auto& neuron : network.neurons) {
-    file << "          {";
-    for (std::size_t i = 0; i < neuron.weights.size(); ++i) {
-      if (i % 40 == 0) file << (i > 0 ? "\"\n           \"" : "\"");
-      std::snprintf(text, sizeof text, "%02x",
-                    static_cast<unsigned>(static_cast<std::uint8_t>(neuron.weights[i])));
-      file << text;
-    }
-    std::snprintf(text, sizeof text, "\",\n           %.9eF, %.9eF},\n",
-                  static_cast<double>(neuron.scale), static_cast<double>(neuron.out));
-    file << text;
-  }
-  std::snprintf(text, sizeof text, "      }},\n      %.9eF);\n", static_cast<double>(network.bias));
-  file << text << "  return network;\n}\n\n}  // namespace usher::people_detector\n";
+          "  static constexpr WrittenNeuron kNeurons[] = {\n";
+  write(network.first, file);
+  write(network.second, file);
+  write(network.outputs, file);
+  file << "  };\n  static const Network network = decode(kNeurons);\n  return network;\n}\n\n"
+          "}  // namespace usher::people_detector\n";
 }
 
 }  // namespace
@@ -230,26 +321,27 @@ void write(const Network& network, const std::string& path) {
 int main(int argc, char** argv) {
   CLI::App app("Trains the network of the people detector on random scenes");
   std::string out = "network_weights.cpp";
-  int scenes = 1800, epochs = 14;
+  int count = 5400, epochs = 12, rounds = 2;
   app.add_option("--out", out, "Where the network is written");
-  app.add_option("--scenes", scenes, "Of each of the two rounds")->check(CLI::Range(10, 100000));
-  app.add_option("--epochs", epochs, "Of each of the two rounds")->check(CLI::Range(1, 1000));
+  app.add_option("--scenes", count, "New ones in each round")->check(CLI::Range(10, 100000));
+  app.add_option("--epochs", epochs, "Of each round")->check(CLI::Range(1, 1000));
+  app.add_option("--rounds", rounds, "Each takes what the one before it took wrongly for people")
+      ->check(CLI::Range(1, 10));
   CLI11_PARSE(app, argc, argv);
   std::vector<Sample> samples;
   Trainer trainer;
-  const auto train = [&] {
+  Scenes scenes;
+  auto network = std::make_unique<Network>();
+  for (int round = 0; round < rounds; ++round) {
+    std::fprintf(stderr, "round %d of %d\n", round + 1, rounds);
+    collect(scenes, count, round > 0 ? network.get() : nullptr, round > 0 ? 0.02 : 0.12, samples);
     for (int i = 0; i < epochs; ++i)
       trainer.epoch(samples, 2e-3F * std::pow(0.02F, float(i) / float(epochs)),
                     static_cast<std::uint64_t>(i));
-  };
-  collect(0, scenes, nullptr, 0.15, samples);
-  train();
-  const Network first = trainer.network();
-  collect(scenes, scenes, &first, 0.03, samples);
-  train();
-  const Network network = trainer.network();
-  write(network, out);
-  const auto scores = test(network, 200);
+    *network = trainer.network();
+    write(*network, out);
+  }
+  const auto scores = test(*network, scenes, 300);
   for (std::size_t k = 0; k < scores.size(); ++k) {
     const Score& score = scores[k];
     std::printf("threshold %4.1f: recall %.4f precision %.4f error %.3f m (%d people)\n",

@@ -10,7 +10,12 @@ namespace usher::people_detector {
 
 namespace {
 
-constexpr double kSteepest = 1.2;  // [rad]
+constexpr double kSteepest = 1.2;   // [rad]
+constexpr double kBodyDepth = 0.1;  // [m] from the visible surface to the body's middle
+constexpr double kSamePlace = 0.2;  // [m] nearer votes are for the same place
+constexpr float kSilence = -3.0F;   // log odds of a window that has no vote, or of none
+constexpr float kHopeless = -6.0F;  // log odds
+constexpr int kFew = 4;             // votes
 
 }  // namespace
 
@@ -20,9 +25,7 @@ Status check(const DetectorConfig& c) {
                  {"least_extent", c.windows.least_extent, 0.1, 1.0},
                  {"step", c.windows.step, 0.02, 0.2},
                  {"threshold", c.threshold, -10.0, 10.0},
-                 {"same_left", c.same_left, 0.1, 1.0},
-                 {"same_forward", c.same_forward, 0.1, 2.0},
-                 {"body_depth", c.body_depth, 0.0, 0.3}});
+                 {"same", c.same, 0.1, 1.0}});
 }
 
 Result<DepthDetector> DepthDetector::make(const imaging::Intrinsics& intrinsics,
@@ -39,30 +42,55 @@ DepthDetector::DepthDetector(const imaging::Intrinsics& intrinsics, const Detect
       windows_(intrinsics, config.windows),
       classifier_(network) {}
 
-bool DepthDetector::is_taken(const Candidate& place) const {
-  return std::any_of(taken_.begin(), taken_.end(), [&](const Candidate& other) {
-    return std::abs(static_cast<double>(place.left - other.left)) < config_.same_left &&
-           std::abs(static_cast<double>(place.forward - other.forward)) < config_.same_forward;
-  });
+/// People look the same in a mirror: what may show one is judged both ways.
+Verdict DepthDetector::look(const Candidate& candidate) {
+  windows_.describe(candidate, inputs_);
+  const Verdict one = classifier_.judge(inputs_);
+  if (one.score < kHopeless) return one;
+  Windows::mirror(inputs_, mirrored_);
+  const Verdict other = classifier_.judge(mirrored_);
+  return {0.5F * (one.score + other.score), 0.5F * (one.forward + other.forward),
+          0.5F * (one.left - other.left)};
 }
 
-/// The middle of the windows around the best one that show the same person.
-Sighting DepthDetector::refine(const Scored& best) const {
-  double weights = 0.0, left = 0.0, forward = 0.0;
-  for (const Scored& one : scored_) {
-    const auto aside = static_cast<double>(one.place.left - best.place.left);
-    const auto behind = static_cast<double>(one.place.forward - best.place.forward);
-    if (std::abs(aside) > 0.5 * config_.same_left || std::abs(behind) > 0.25) continue;
-    const double weight = static_cast<double>(one.score) - config_.threshold + 1e-3;
-    weights += weight;
-    left += weight * static_cast<double>(one.place.left);
-    forward += weight * static_cast<double>(one.place.forward);
+bool DepthDetector::are_near(const Vote& a, const Vote& b, double reach) {
+  const auto forward = static_cast<double>(a.forward - b.forward);
+  const auto left = static_cast<double>(a.left - b.left);
+  return forward * forward + left * left < reach * reach;
+}
+
+bool DepthDetector::is_taken(const Vote& vote) const {
+  return std::any_of(taken_.begin(), taken_.end(),
+                     [&](const Vote& other) { return are_near(vote, other, config_.same); });
+}
+
+/// How sure it is that somebody is there: the best vote, and the best few for the same place; one
+/// that stands alone counts less.
+float DepthDetector::score_of(const Vote& best) const {
+  float sum = 0.0F;
+  int count = 0;
+  for (const Vote& one : votes_) {
+    if (count == kFew) break;
+    if (are_near(one, best, kSamePlace)) sum += one.score, ++count;
   }
-  Candidate middle = best.place;
-  middle.left = static_cast<float>(left / weights);
-  middle.forward = static_cast<float>(forward / weights);
-  return {static_cast<double>(middle.forward) + config_.body_depth,
-          static_cast<double>(middle.left), windows_.top(middle), static_cast<double>(best.score)};
+  sum += kSilence * static_cast<float>(kFew - count);
+  return 0.5F * (best.score + sum / float{kFew});
+}
+
+/// The mean of the votes for the same place as the best one.
+Sighting DepthDetector::settle(const Vote& best, float score) const {
+  double weights = 0.0, left = 0.0, forward = 0.0;
+  for (const Vote& one : votes_) {
+    if (!are_near(one, best, kSamePlace)) continue;
+    const double weight = static_cast<double>(one.score - kSilence) + 1e-3;
+    weights += weight;
+    left += weight * static_cast<double>(one.left);
+    forward += weight * static_cast<double>(one.forward);
+  }
+  left /= weights, forward /= weights;
+  return {forward, left,
+          windows_.top({static_cast<float>(forward - kBodyDepth), static_cast<float>(left), 0.0F}),
+          static_cast<double>(score)};
 }
 
 Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage& image,
@@ -82,24 +110,25 @@ Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage&
                  std::to_string(view.height) + " m, " + std::to_string(view.down) + " rad"};
   }
   windows_.take(image, view);
-  scored_.clear();
+  votes_.clear();
   int order = 0;
   for (const Candidate& candidate : windows_.candidates()) {
     ++order;
-    windows_.describe(candidate, inputs_);
-    const float score = classifier_.score(inputs_);
-    if (static_cast<double>(score) > config_.threshold)
-      scored_.push_back({candidate, score, order});
+    const Verdict verdict = look(candidate);
+    if (verdict.score <= kSilence) continue;
+    votes_.push_back(
+        {candidate.forward + verdict.forward, candidate.left + verdict.left, verdict.score, order});
   }
-  std::sort(scored_.begin(), scored_.end(), [](const Scored& a, const Scored& b) {
+  std::sort(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) {
     return a.score != b.score ? a.score > b.score : a.order < b.order;
   });
   taken_.clear();
   sightings_.clear();
-  for (const Scored& one : scored_) {
-    if (is_taken(one.place)) continue;
-    taken_.push_back(one.place);
-    sightings_.push_back(refine(one));
+  for (const Vote& vote : votes_) {
+    if (is_taken(vote)) continue;
+    taken_.push_back(vote);
+    const float score = score_of(vote);
+    if (static_cast<double>(score) > config_.threshold) sightings_.push_back(settle(vote, score));
   }
   std::sort(sightings_.begin(), sightings_.end(), [](const Sighting& a, const Sighting& b) {
     return std::hypot(a.forward, a.left) < std::hypot(b.forward, b.left);

@@ -19,10 +19,8 @@ struct Sighting {
 
 struct DetectorConfig {
   Windows::Config windows;
-  double threshold = 1.5;      ///< [-] {-10..10} least log odds
-  double same_left = 0.36;     ///< [m] {0.1..1} nearer windows show the same person
-  double same_forward = 0.65;  ///< [m] {0.1..2} the same along the camera's direction
-  double body_depth = 0.1;     ///< [m] {0..0.3} from the visible surface to the body's middle
+  double threshold = 1.75;  ///< [-] {-10..10} least log odds
+  double same = 0.36;       ///< [m] {0.1..1} nearer bodies are the same
 };
 
 /// The error names the first value that cannot be.
@@ -30,7 +28,7 @@ Status check(const DetectorConfig& config);
 
 /// Finds people in the images of a depth camera from which floor and ceiling are removed: a window
 /// wherever a surface stands upright, a small trained network that says which windows show somebody
-/// in their middle, the best of each cluster of windows.
+/// in their middle and where exactly that body is, the best of each cluster of such votes.
 class DepthDetector {
  public:
   /// The error says what of intrinsics or configuration cannot be.
@@ -45,23 +43,25 @@ class DepthDetector {
   Result<std::span<const Sighting>> find(const imaging::DepthImage& image, const View& view);
 
  private:
-  struct Scored {
-    Candidate place;
+  struct Vote {
+    float forward, left;  ///< [m] of a body's middle
     float score;
     int order;  ///< among the candidates; of equal scores the first counts
   };
   DepthDetector(const imaging::Intrinsics& intrinsics, const DetectorConfig& config,
                 const Network& network);
-  bool is_taken(const Candidate& place) const;
-  Sighting refine(const Scored& best) const;
+  Verdict look(const Candidate& candidate);
+  static bool are_near(const Vote& a, const Vote& b, double reach);
+  bool is_taken(const Vote& vote) const;
+  float score_of(const Vote& best) const;
+  Sighting settle(const Vote& best, float score) const;
 
   imaging::Intrinsics intrinsics_;
   DetectorConfig config_;
   Windows windows_;
   Classifier classifier_;
-  Windows::Inputs inputs_{};
-  std::vector<Scored> scored_;
-  std::vector<Candidate> taken_;
+  Windows::Inputs inputs_{}, mirrored_{};
+  std::vector<Vote> votes_, taken_;
   std::vector<Sighting> sightings_;
 };
 

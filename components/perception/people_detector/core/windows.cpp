@@ -7,12 +7,13 @@ namespace usher::people_detector {
 
 namespace {
 
-constexpr int kThinned = 256;     // columns of the thinned image, about
-constexpr int kStrip = 2;         // of its columns share a histogram
-constexpr float kBin = 0.1F;      // [m] of a histogram
-constexpr int kTogether = 4;      // bins that a body fills
-constexpr int kMostOfStrip = 3;   // surfaces behind each other
-constexpr double kAtLeast = 0.1;  // [m] nothing is nearer to a camera
+constexpr int kThinned = 256;      // columns of the thinned image, about
+constexpr int kStrip = 2;          // of its columns share a histogram
+constexpr float kBin = 0.1F;       // [m] of a histogram
+constexpr int kTogether = 4;       // bins that a body fills
+constexpr int kMostOfStrip = 3;    // surfaces behind each other
+constexpr double kAtLeast = 0.1;   // [m] nothing is nearer to a camera
+constexpr double kTopDepth = 0.4;  // [m]
 
 }  // namespace
 
@@ -112,18 +113,23 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
     const double depth = forward * cos_down_ + below * sin_down_;
     if (depth < kAtLeast) continue;
     const double y = (below * cos_down_ - forward * sin_down_) / depth;
-    for (int across = 0; across < kAcross; ++across) {
-      const double x = -(left + (across - 0.5 * (kAcross - 1)) * kCellWidth) / depth;
-      const double column = intrinsics_.cx / step_ + scale_x * (x * cos_roll_ + y * sin_roll_);
-      const double row = intrinsics_.cy / step_ + scale_y * (y * cos_roll_ - x * sin_roll_);
-      if (column < 0.0 || row < 0.0 || column >= width_ || row >= height_) continue;
+    // One row of cells is a line in the image.
+    const double first = -(left - 0.5 * (kAcross - 1) * kCellWidth) / depth;
+    const double column = intrinsics_.cx / step_ + scale_x * (first * cos_roll_ + y * sin_roll_);
+    const double row = intrinsics_.cy / step_ + scale_y * (y * cos_roll_ - first * sin_roll_);
+    const double aside = -kCellWidth / depth;
+    const double column_step = scale_x * aside * cos_roll_, row_step = -scale_y * aside * sin_roll_;
+    std::int16_t* cell = inputs.data() + kChannels * kAcross * up;
+    for (int across = 0; across < kAcross; ++across, cell += kChannels) {
+      const double c = column + across * column_step, r = row + across * row_step;
+      if (c < 0.0 || r < 0.0 || c >= width_ || r >= height_) continue;
       const std::uint16_t seen =
-          thinned_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                   static_cast<std::size_t>(column)];
+          thinned_[static_cast<std::size_t>(r) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(c)];
       const double behind = seen == 0 ? kDepth : 1e-3 * seen - depth;
-      if (behind <= -kDepth) continue;
-      std::int16_t* cell = inputs.data() + kChannels * (up * kAcross + across);
-      if (behind >= kDepth) {
+      if (behind <= -kDepth) {
+        cell[1] = -kOne;
+      } else if (behind >= kDepth) {
         cell[2] = kOne;
       } else {
         cell[0] = kOne;
@@ -135,6 +141,17 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
   others[0] = kOne;
   others[1] = static_cast<std::int16_t>(std::lround(std::min(8.0, forward) / 8.0 * kOne));
   others[2] = static_cast<std::int16_t>(std::lround(0.5 / std::max(0.5, forward) * kOne));
+}
+
+void Windows::mirror(const Inputs& inputs, Inputs& mirrored) {
+  mirrored = inputs;
+  constexpr int kRow = kAcross * kChannels;
+  for (int up = 0; up < kUp; ++up) {
+    const std::int16_t* from = inputs.data() + up * kRow + kRow - kChannels;
+    std::int16_t* to = mirrored.data() + up * kRow;
+    for (int across = 0; across < kAcross; ++across, from -= kChannels, to += kChannels)
+      std::copy_n(from, kChannels, to);
+  }
 }
 
 double Windows::top(const Candidate& candidate) const {
@@ -156,7 +173,7 @@ double Windows::top(const Candidate& candidate) const {
       const std::uint16_t pixel =
           thinned_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                    static_cast<std::size_t>(column)];
-      seen += pixel != 0 && std::abs(1e-3 * pixel - depth) < kDepth;
+      seen += pixel != 0 && std::abs(1e-3 * pixel - depth) < kTopDepth;
     }
     if (seen >= 2) return height;
   }

@@ -23,16 +23,16 @@ struct Candidate {
   float extent = 0.0F;   ///< [m] of surface above each other, as far as it is visible
 };
 
-/// Cuts windows of the size of a person, 0.96 m wide and 2 m high, out of a depth image, wherever a
+/// Cuts windows of the size of a person, 1.12 m wide and 2 m high, out of a depth image, wherever a
 /// surface stands. What a window holds does not depend on how far away it is: it is sampled on a
-/// grid of 8 x 10 cm in space, and says for each cell whether a surface is there, how much nearer
-/// or farther than the window, or whether one looks past it. Cells out of the image and behind
-/// nearer things say nothing.
+/// grid of 7 x 8.5 cm in space, and says for each cell whether a surface is there, how much nearer
+/// or farther than the window, whether one looks past it, or whether something nearer hides it.
+/// Cells out of the image say nothing.
 class Windows {
  public:
-  static constexpr int kAcross = 12, kUp = 20;                                   ///< cells
-  static constexpr double kCellWidth = 0.08, kCellHeight = 0.1, kLowest = 0.05;  ///< [m]
-  static constexpr double kDepth = 0.4;                                          ///< [m]
+  static constexpr int kAcross = 16, kUp = 24;                                      ///< cells
+  static constexpr double kCellWidth = 0.07, kCellHeight = 0.085, kLowest = 0.045;  ///< [m]
+  static constexpr double kDepth = 0.5;                                             ///< [m]
   static constexpr int kChannels = 3;
   static constexpr int kOthers = 8;  ///< inputs that are no cells
   static constexpr int kInputs = kAcross * kUp * kChannels + kOthers;
@@ -54,6 +54,8 @@ class Windows {
 
   /// What the window around a candidate holds.
   void describe(const Candidate& candidate, Inputs& inputs) const;
+  /// The same window with left and right exchanged.
+  static void mirror(const Inputs& inputs, Inputs& mirrored);
   /// [m] the highest surface of a window; 0 when there is none.
   double top(const Candidate& candidate) const;
 
