@@ -19,12 +19,12 @@ struct PeopleModelConfig {
   double nearest = 0.4;   ///< [m] along the optical axis
   double farthest = 6.3;  ///< [m]
   double likely_area = 0.075;  ///< [m^2] visible of a body that is found every second time
-  double area_slope = 0.02;   ///< [m^2] by which that rises to 73 %
-  double missed = 0.01;       ///< share of images in which who is plainly visible is missed
-  double filled = 0.62;       ///< share of the upright cylinder that a body fills
-  double along = 0.04;        ///< [m] standard deviation along the line of sight
-  double across = 0.05;       ///< [m] and beside it
-  double height = 0.05;       ///< [m] and of the highest point
+  double area_slope = 0.02;    ///< [m^2] by which that rises to 73 %
+  double missed = 0.01;        ///< share of images in which who is plainly visible is missed
+  double filled = 0.62;        ///< share of the upright cylinder that a body fills
+  double along = 0.04;         ///< [m] standard deviation along the line of sight
+  double across = 0.05;        ///< [m] and beside it
+  double height = 0.05;        ///< [m] and of the highest point
 };
 
 /// Somebody as the detector sees them, from the camera's place on the floor.
