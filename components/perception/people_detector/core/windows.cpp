@@ -26,7 +26,7 @@ Windows::Windows(const imaging::Intrinsics& intrinsics, const Config& config)
   bins_ = static_cast<int>((config.farthest + Windows::kDepth) / static_cast<double>(kBin)) + 1;
   thinned_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   histograms_.resize(static_cast<std::size_t>(strips_) * static_cast<std::size_t>(bins_));
-  candidates_.reserve(static_cast<std::size_t>(strips_ * kMostOfStrip));
+  candidates_.reserve(static_cast<std::size_t>(strips_) * kMostOfStrip);
 }
 
 /// One pixel of each block, the first that measured something.
@@ -58,7 +58,8 @@ void Windows::fill_histograms() {
       const auto depth = static_cast<float>(line[column]);
       const int bin = static_cast<int>(depth * bins);
       if (bin <= 0 || bin >= bins_) continue;
-      histograms_[static_cast<std::size_t>(column / kStrip * bins_ + bin)] += depth * extent;
+      histograms_[static_cast<std::size_t>(column / kStrip) * static_cast<std::size_t>(bins_) +
+                  static_cast<std::size_t>(bin)] += depth * extent;
     }
   }
 }
@@ -119,7 +120,7 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
     const double row = intrinsics_.cy / step_ + scale_y * (y * cos_roll_ - first * sin_roll_);
     const double aside = -kCellWidth / depth;
     const double column_step = scale_x * aside * cos_roll_, row_step = -scale_y * aside * sin_roll_;
-    std::int16_t* cell = inputs.data() + kChannels * kAcross * up;
+    std::int16_t* cell = inputs.data() + std::ptrdiff_t{kChannels * kAcross} * up;
     for (int across = 0; across < kAcross; ++across, cell += kChannels) {
       const double c = column + across * column_step, r = row + across * row_step;
       if (c < 0.0 || r < 0.0 || c >= width_ || r >= height_) continue;
@@ -137,7 +138,7 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
       }
     }
   }
-  std::int16_t* others = inputs.data() + kAcross * kUp * kChannels;
+  std::int16_t* others = inputs.data() + std::ptrdiff_t{kAcross * kUp * kChannels};
   others[0] = kOne;
   others[1] = static_cast<std::int16_t>(std::lround(std::min(8.0, forward) / 8.0 * kOne));
   others[2] = static_cast<std::int16_t>(std::lround(0.5 / std::max(0.5, forward) * kOne));
@@ -147,8 +148,8 @@ void Windows::mirror(const Inputs& inputs, Inputs& mirrored) {
   mirrored = inputs;
   constexpr int kRow = kAcross * kChannels;
   for (int up = 0; up < kUp; ++up) {
-    const std::int16_t* from = inputs.data() + up * kRow + kRow - kChannels;
-    std::int16_t* to = mirrored.data() + up * kRow;
+    const std::int16_t* from = inputs.data() + std::ptrdiff_t{up} * kRow + kRow - kChannels;
+    std::int16_t* to = mirrored.data() + std::ptrdiff_t{up} * kRow;
     for (int across = 0; across < kAcross; ++across, from -= kChannels, to += kChannels)
       std::copy_n(from, kChannels, to);
   }
