@@ -120,7 +120,7 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
     const double row = intrinsics_.cy / step_ + scale_y * (y * cos_roll_ - first * sin_roll_);
     const double aside = -kCellWidth / depth;
     const double column_step = scale_x * aside * cos_roll_, row_step = -scale_y * aside * sin_roll_;
-    std::int16_t* cell = inputs.data() + std::ptrdiff_t{kChannels * kAcross} * up;
+    std::int16_t* cell = inputs.data() + std::ptrdiff_t{kChannels} * kAcross * up;
     for (int across = 0; across < kAcross; ++across, cell += kChannels) {
       const double c = column + across * column_step, r = row + across * row_step;
       if (c < 0.0 || r < 0.0 || c >= width_ || r >= height_) continue;
@@ -138,7 +138,7 @@ void Windows::describe(const Candidate& candidate, Inputs& inputs) const {
       }
     }
   }
-  std::int16_t* others = inputs.data() + std::ptrdiff_t{kAcross * kUp * kChannels};
+  std::int16_t* others = inputs.data() + std::ptrdiff_t{kAcross} * kUp * kChannels;
   others[0] = kOne;
   others[1] = static_cast<std::int16_t>(std::lround(std::min(8.0, forward) / 8.0 * kOne));
   others[2] = static_cast<std::int16_t>(std::lround(0.5 / std::max(0.5, forward) * kOne));
@@ -158,13 +158,17 @@ void Windows::mirror(const Inputs& inputs, Inputs& mirrored) {
 double Windows::top(const Candidate& candidate) const {
   const auto forward = static_cast<double>(candidate.forward);
   const auto left = static_cast<double>(candidate.left);
-  for (double height = kLowest + kCellHeight * kUp; height > 0.0; height -= 0.02) {
+  constexpr double kHighest = kLowest + kCellHeight * kUp, kRowStep = 0.02;  // [m]
+  constexpr double kBeside = 0.24, kColumnStep = 0.04;                       // [m]
+  for (int row_number = 0; row_number * kRowStep < kHighest; ++row_number) {
+    const double height = kHighest - row_number * kRowStep;
     const double below = view_.height - height;
     const double depth = forward * cos_down_ + below * sin_down_;
     if (depth < kAtLeast) continue;
     const double y = (below * cos_down_ - forward * sin_down_) / depth;
     int seen = 0;
-    for (double aside = -0.24; aside < 0.25; aside += 0.04) {
+    for (int column_number = 0; column_number <= 12; ++column_number) {
+      const double aside = column_number * kColumnStep - kBeside;
       const double x = -(left + aside) / depth;
       const double column =
           (intrinsics_.cx + intrinsics_.fx * (x * cos_roll_ + y * sin_roll_)) / step_;
