@@ -216,12 +216,19 @@ TEST(Hosts, MeetAcrossARouterWithSecurity) {
   if (signing_robot_starves()) GTEST_SKIP() << kSigningRobotStarves;
   const auto networks = two_networks(TwoNetworks::Kind::kRouted);
   if (!networks) GTEST_SKIP() << kNoNamespaces;
-  GuideElsewhere robot(*networks,
-                       "hosts:\n  nuc: {peers: [" + networks->address_of_b() +
-                           "]}\n  tablet: {peers: [" + networks->address_of_a() + "]}\n",
-                       true);
-  EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(240)))
-      << robot->story();
+  std::string story;
+  // The library's authentication of two participants gets stuck now and then (docs/security.md),
+  // once for four minutes.
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    GuideElsewhere robot(*networks,
+                         "hosts:\n  nuc: {peers: [" + networks->address_of_b() +
+                             "]}\n  tablet: {peers: [" + networks->address_of_a() + "]}\n",
+                         true);
+    if (robot->wait_for([&] { return robot->all_is_well(); }, Seconds(130))) return;
+    story = robot->story();
+    std::printf("AUTHENTICATION STUCK: %s\n", story.c_str());
+  }
+  FAIL() << story;
 }
 
 }  // namespace
