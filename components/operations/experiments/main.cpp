@@ -57,8 +57,8 @@ const std::vector<Experiment>& experiments() {
       {"stopping", "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step",
        run_stopping_experiment},
       {"reaction",
-       "Kills and hangs every critical component of a driving robot (real processes): time to zero "
-       "at the base, standstill, return; --only COMPONENT",
+       "Kills and hangs every critical component of a driving robot (real processes), touches Stop "
+       "on its tablet: time to zero at the base, standstill, return; --only COMPONENT or tablet",
        run_reaction_experiment},
       {"false-stops",
        "Drives beside two busy loops (real processes) and counts stops without a cause; --minutes "

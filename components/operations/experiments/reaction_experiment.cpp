@@ -281,19 +281,21 @@ void judge(const std::vector<Trial>& trials, ResultSheet& sheet) {
   });
   const auto contacts = select(trials, [](const Trial& t) { return t.contact ? 1.0 : kNone; });
   sheet.metrics["trials"] = static_cast<double>(trials.size());
-  sheet.metrics["zero_ms_p50"] = percentile(zero, 0.5);
-  sheet.metrics["zero_ms_max"] = percentile(zero, 1.0);
-  sheet.metrics["touch_zero_ms_max"] = percentile(touched, 1.0);
-  sheet.metrics["standstill_share_max"] = percentile(way, 1.0);
-  sheet.metrics["drive_chain_back_s_max"] = percentile(chain_back, 1.0);
-  sheet.metrics["all_back_s_max"] = percentile(back, 1.0);
   sheet.metrics["contacts"] = static_cast<double>(contacts.size());
-  sheet.targets = {{"zero_ms_p50", {Bound::kAtMost, kMedian}},
-                   {"zero_ms_max", {Bound::kAtMost, kMost}},
-                   {"touch_zero_ms_max", {Bound::kAtMost, kMostTouched}},
-                   {"standstill_share_max", {Bound::kAtMost, kStandstill}},
-                   {"drive_chain_back_s_max", {Bound::kAtMost, kReturn}},
-                   {"contacts", {Bound::kAtMost, 0.0}}};
+  sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
+  // What was not tried has no figure.
+  const auto judged = [&](const char* key, const std::vector<double>& values, double share,
+                          std::optional<double> most) {
+    if (values.empty()) return;
+    sheet.metrics[key] = percentile(values, share);
+    if (most) sheet.targets[key] = {Bound::kAtMost, *most};
+  };
+  judged("zero_ms_p50", zero, 0.5, kMedian);
+  judged("zero_ms_max", zero, 1.0, kMost);
+  judged("touch_zero_ms_max", touched, 1.0, kMostTouched);
+  judged("standstill_share_max", way, 1.0, kStandstill);
+  judged("drive_chain_back_s_max", chain_back, 1.0, kReturn);
+  judged("all_back_s_max", back, 1.0, {});
 }
 
 }  // namespace
