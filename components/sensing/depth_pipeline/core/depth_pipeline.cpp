@@ -19,6 +19,7 @@ constexpr double kWidest = 0.85;          // least forward distance per depth th
 constexpr int kColumnArrays = 11;
 constexpr int kBuffers = 8;
 constexpr int kLeastValid = 10;    // a column with fewer than one in so many pixels is unknown
+constexpr int kLeastFloor = 50;    // one in so many is enough where the floor began and ends
 constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
 constexpr double kGrazing = 2.14;  // tan 65 deg: distance over height from which vinyl may mirror
 
@@ -127,6 +128,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   mark_obstacles(floor);
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
+  forget_blind_falls(floor);
   view.drops = mark_drops(kGrazing * view.pose.height);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
@@ -239,6 +241,21 @@ void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
     place(scan_.ranges, low[column], low_row[column]);
     const bool alone = !is_high || kHalfMillimeter * (high[column] - low[column]) > config_.low_gap;
     if (alone) place(low_.ranges, low[column], low_row[column]);
+  }
+}
+
+/// Floor is missing only where the camera sees: a column that measured nearly nothing is not known,
+/// unless it saw floor up to where it ends.
+void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
+  const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
+  std::uint16_t* fall = columns_.data() + kFall * column_stride_;
+  for (int strip = 0; strip < floor.strips(); ++strip) {
+    const std::uint16_t nearest = floor.rows(strip)[intrinsics_.height - 1].floor;
+    const int end = std::min(floor.first_column(strip + 1), intrinsics_.width);
+    for (int column = floor.first_column(strip); column < end; ++column) {
+      const int enough = fall[column] > nearest ? kLeastFloor : kLeastValid;
+      if (valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
+    }
   }
 }
 

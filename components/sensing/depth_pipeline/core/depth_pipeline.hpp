@@ -25,9 +25,10 @@ struct PipelineConfig {
   int support = 3;           ///< {1..8} neighbouring bearings that must agree on an obstacle
   double support_gap = 0.3;  ///< [m] {0..} within which they agree
   double low_gap = 0.4;      ///< [m] {0..} what stands so near before something high is part of it
-  bool missing_is_drop = true;  ///< floor that gives no measurement counts as missing
-  double drop_length = 0.3;     ///< [m] {0.05..2} of floor that must be missing along a column
-  double drop_width = 0.15;     ///< [m] {0..2} and across
+  /// Floor that gives no measurement counts as missing, in a column that measures something.
+  bool missing_is_drop = true;
+  double drop_length = 0.3;  ///< [m] {0.05..2} of floor that must be missing along a column
+  double drop_width = 0.15;  ///< [m] {0..2} and across
   /// [m] {0..2} across where the floor is looked at flatter than 65 deg: vinyl mirrors in patches
   /// there, which look like holes.
   double grazing_drop_width = 0.4;
@@ -70,8 +71,8 @@ struct DepthView {
 ///
 /// Differences from the thesis, each for a reason in the README: pinhole rays instead of equal
 /// angles per row and column, horizontal ranges that heed the pitch, two pixels to an obstacle,
-/// regular bearings, missing floor as an obstacle, 16 bits. One frame of 512 x 424 takes about 0.15
-/// ms (usher bench depth); no allocation after construction.
+/// regular bearings, missing floor as an obstacle, 16 bits. No allocation after construction;
+/// usher bench depth measures a frame's time.
 class DepthPipeline {
  public:
   static Result<DepthPipeline> make(const Intrinsics& intrinsics, const PipelineConfig& config);
@@ -90,6 +91,7 @@ class DepthPipeline {
 
   void sort_pixels(const DepthImage& image, const FloorPrediction& floor);
   void clear_bearings();
+  void forget_blind_falls(const FloorPrediction& floor);
   int mark_drops(double grazing_from);
   void mark_free(const CameraPose& pose);
   void mark_obstacles(const FloorPrediction& floor);

@@ -29,7 +29,8 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
       p.number("max_range", "m", {0.5, 16}, c.max_range, "Farther obstacles are not in the scan.");
   c.opening = p.flag("opening", c.opening, "Erodes and dilates by 3 x 3 first: fills holes.");
   c.missing_is_drop = p.flag("missing_is_drop", c.missing_is_drop,
-                             "Floor that measures nothing counts as missing.");
+                             "Floor that measures nothing counts as missing, in columns that "
+                             "measure something.");
   c.drop_length = p.number("drop_length", "m", {0.05, 2}, c.drop_length,
                            "So much floor must be missing along a column.");
   c.drop_width =

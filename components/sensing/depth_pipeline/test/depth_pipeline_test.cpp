@@ -275,13 +275,61 @@ TEST(DepthPipeline, AnyImageGivesPositiveRangesOrNone) {
 
 TEST(DepthPipeline, NothingMeasuredIsNothingKnown) {
   SyntheticScene scene;
-  PipelineConfig config = trusting();
-  config.missing_is_drop = false;
-  DepthPipeline pipeline = make(scene, config);
-  const std::vector<std::uint16_t> image(512 * 424, 0);
+  for (const bool missing_is_drop : {true, false}) {
+    PipelineConfig config;
+    config.missing_is_drop = missing_is_drop;
+    DepthPipeline pipeline = make(scene, config);
+    for (const double roll : {0.0, 0.03}) {
+      CameraPose pose = kPose;
+      pose.roll = roll;
+      for (const int covered : {0, 300}) {  // black, or nearer than is measured
+        const std::vector<std::uint16_t> image(512 * 424, static_cast<std::uint16_t>(covered));
+        for (int frame = 0; frame < 4; ++frame) {
+          const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
+          EXPECT_EQ(view.drops, 0);
+          for (const float range : view.scan->ranges) EXPECT_TRUE(std::isnan(range));
+          for (const float range : view.low->ranges) EXPECT_TRUE(std::isnan(range));
+          for (const std::uint16_t v : view.processed) EXPECT_EQ(v, 0);
+        }
+      }
+    }
+  }
+}
+
+TEST(DepthPipeline, WhoCoversHalfTheImageIsNoDropAndTheOtherHalfIsSeen) {
+  SyntheticScene scene;
+  scene.boxes = {{-2.0, -0.3, 1.0, 1.8, 2.0}};
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  Random random(3);
+  for (int row = 0; row < 424; ++row) {
+    for (int column = 256; column < 512; ++column) {
+      // One pixel in a hundred still measures something.
+      if (random.uniform() > 0.01) image[static_cast<std::size_t>(row * 512 + column)] = 0;
+    }
+  }
   const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
-  for (const float range : view.scan->ranges) EXPECT_TRUE(std::isnan(range));
-  for (const std::uint16_t v : view.processed) EXPECT_EQ(v, 0);
+  EXPECT_EQ(view.drops, 0);
+  EXPECT_TRUE(std::isnan(at(pipeline, view.low->ranges, -0.3)));
+  EXPECT_NEAR(at(pipeline, view.scan->ranges, 0.3), 1.8 / std::cos(0.3), 0.03);
+}
+
+TEST(DepthPipeline, FloorThatIsMissingRightBeforeTheRobotIsAnObstacle) {
+  for (const double edge : {0.0, 1.35, 1.45}) {  // nearer than the image begins, and just beyond
+    for (const double pit : {1.0, 20.0}) {       // a stairway, and one that measures nothing
+      SyntheticScene scene;
+      scene.half_width = scene.end = edge > 0.0 ? 30.0 : 5.0;  // a wall behind it, or nothing
+      scene.edge = edge;
+      scene.pit = pit;
+      DepthPipeline pipeline = make(scene);
+      const auto image = scene.draw(kPose);
+      const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+      EXPECT_GT(view.drops, 450) << edge << " " << pit;
+      for (const double bearing : {-0.3, 0.0, 0.3}) {
+        EXPECT_LT(at(pipeline, view.low->ranges, bearing), 1.7) << edge << " " << pit;
+      }
+    }
+  }
 }
 
 TEST(DepthPipeline, RefusesOtherImagesAndImpossiblePoses) {
