@@ -6,11 +6,15 @@
 #include "foundation/estimation/pitch_history.hpp"
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/installation.hpp"
+#include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/line_plot.hpp"
-#include "operations/results/result_sheet.hpp"
+#include "operations/manifest/robot_file.hpp"
 #include "runtime/dds/observer.hpp"
+#include "runtime/parameters/parameter_set.hpp"
 #include "sensing/depth_pipeline/core/calibration.hpp"
+#include "sensing/depth_pipeline/shell/parameters.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
 
@@ -32,13 +36,26 @@ constexpr double kDegree = geometry::kPi / 180.0;
 
 struct Settings {
   std::uint32_t domain = 0;
-  double mount_x = 0.2, axle = 0.235;
-  std::string out = "kinect_calibration.yaml";
+  std::string robot = Installation::of_this_program().share + "/config/robots/marvin.yaml";
+  bool write = false;
+  std::string plot = "kinect_calibration.png";
 };
 
 int fail(const std::string& message) {
   std::cerr << "usher calibrate: " << message << "\n";
   return 1;
+}
+
+/// Where the robot's file has the camera and the axle; equations 4.26 and 4.27 need both.
+Result<depth_pipeline::Mount> read_mount(const std::string& path) {
+  auto values = runtime::flatten_file(path);
+  if (!values) return Error{values.error()};
+  for (auto& value : *values) value.name = "robot." + value.name;
+  runtime::ParameterSet parameters(std::move(values).value(), path);
+  const auto mount =
+      depth_pipeline::read_kinect_mount(parameters, depth_pipeline::read_axle(parameters));
+  if (const auto status = parameters.finish(false); !status) return Error{status.error()};
+  return mount;
 }
 
 /// Everything that the sweep reads and writes of a running robot.
@@ -52,7 +69,7 @@ struct Robot {
 
   static Result<Robot> find(std::uint32_t domain) {
     Robot robot;
-    auto observer = Observer::create({.name = "operator", .domain = domain});
+    auto observer = Observer::create(reach_robot("operator", domain));
     if (!observer) return Error{observer.error()};
     robot.observer = std::move(observer).value();
     Status status;
@@ -73,14 +90,14 @@ struct Robot {
   }
 };
 
-Result<std::vector<TiltSample>> sweep_servo(Robot& robot, const Settings& settings) {
+Result<std::vector<TiltSample>> sweep_servo(Robot& robot, const depth_pipeline::Mount& mount) {
   const auto info = robot.info->take(std::chrono::seconds(5));
   if (!info) return Error{"no Kinect: nothing on kinect/depth/camera_info in this domain"};
   const auto intrinsics = wire::from_message(*info);
   if (!intrinsics) return Error{intrinsics.error()};
   TiltSweep::Config config;
-  config.mount_x = settings.mount_x;
-  config.axle = settings.axle;
+  config.mount_x = mount.x;
+  config.axle = mount.axle;
   TiltSweep sweep(*intrinsics, config);
 
   estimation::PitchHistory pitch(milliseconds(50));
@@ -124,13 +141,11 @@ Result<std::vector<TiltSample>> sweep_servo(Robot& robot, const Settings& settin
   return sweep.samples();
 }
 
-std::string as_yaml(const KinectCalibration& found) {
-  return "# Found by `usher calibrate kinect`; belongs into the robot's file, below `kinect:`.\n"
-         "kinect:\n  mount_z: " +
-         format("%.4f", found.mount_z) +
-         " m\n  mount_z_per_angle: " + format("%.4f", found.mount_z_slope) +
-         "\n  servo_gain: " + format("%.5f", found.servo.gain) +
-         "\n  servo_offset: " + format("%.5f", found.servo.offset) + " rad\n";
+FileValues values_of(const KinectCalibration& found) {
+  return {{"mount_z", format("%.4f m", found.mount_z)},
+          {"mount_z_per_angle", format("%.4f", found.mount_z_slope)},
+          {"servo_gain", format("%.5f", found.servo.gain)},
+          {"servo_offset", format("%.5f rad", found.servo.offset)}};
 }
 
 Status plot_residuals(const std::vector<TiltSample>& samples, const KinectCalibration& found,
@@ -147,9 +162,15 @@ Status plot_residuals(const std::vector<TiltSample>& samples, const KinectCalibr
 }
 
 int calibrate(const Settings& settings) {
+  const auto mount = read_mount(settings.robot);
+  if (!mount) return fail(mount.error());
+  std::cout << settings.robot << ": Kinect " << format("%.4f", mount->x)
+            << " m ahead of the axle, axle " << format("%.4f", mount->axle)
+            << " m above the floor; so far the Kinect " << format("%.4f", mount->z)
+            << " m above the axle\n";
   auto robot = Robot::find(settings.domain);
   if (!robot) return fail(robot.error());
-  const auto samples = sweep_servo(*robot, settings);
+  const auto samples = sweep_servo(*robot, *mount);
   if (!samples) return fail(samples.error());
   const auto found = depth_pipeline::fit_calibration(*samples);
   if (!found) return fail("refused: " + found.error());
@@ -161,14 +182,19 @@ int calibrate(const Settings& settings) {
               << (found->used[i] ? "" : "  left out") << "\n";
   }
   std::cout << "residuals " << format("%.3f", found->angle_residual / kDegree) << " deg, "
-            << format("%.1f", 1e3 * found->mount_residual) << " mm\n"
-            << as_yaml(*found);
-  if (const auto status = write_file(settings.out, as_yaml(*found)); !status)
+            << format("%.1f", 1e3 * found->mount_residual) << " mm, plotted in " << settings.plot
+            << "\nkinect:\n";
+  for (const auto& [key, value] : values_of(*found))
+    std::cout << "  " << key << ": " << value << "\n";
+  if (const auto status = plot_residuals(*samples, *found, settings.plot); !status)
     return fail(status.error());
-  const std::string picture = settings.out + ".png";
-  if (const auto status = plot_residuals(*samples, *found, picture); !status)
+  if (!settings.write) {
+    std::cout << "nothing written: --write puts these into " << settings.robot << "\n";
+    return 0;
+  }
+  if (const auto status = set_values(settings.robot, "kinect", values_of(*found)); !status)
     return fail(status.error());
-  std::cout << "in " << settings.out << ", residuals in " << picture << "\n";
+  std::cout << "written to " << settings.robot << "\n";
   return 0;
 }
 
@@ -184,9 +210,13 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
   add_calibrate_faces(*command, exit_code);
   command->require_subcommand(1);
   kinect->add_option("--domain", settings->domain, "DDS domain of the robot");
-  kinect->add_option("--mount-x", settings->mount_x, "Kinect ahead of the axle [m], by ruler");
-  kinect->add_option("--axle", settings->axle, "Height of the axle [m]");
-  kinect->add_option("--out", settings->out, "File for the robot's values; FILE.png for the plot");
+  kinect
+      ->add_option("--robot", settings->robot,
+                   "The robot's file: kinect.mount_x and wheel_radius are taken from it")
+      ->capture_default_str();
+  kinect->add_flag("--write", settings->write,
+                   "Puts the result into the robot's file; its comments and other keys stay");
+  kinect->add_option("--plot", settings->plot, "Picture of the residuals")->capture_default_str();
   kinect->callback([=, &exit_code] { exit_code = calibrate(*settings); });
 }
 
