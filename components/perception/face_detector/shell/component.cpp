@@ -57,7 +57,7 @@ geometry::Pose3 read_mount(runtime::Parameters& p) {
   const double x =
       p.number("robot.kinect.mount_x", "m", {-1, 1}, "Kinect ahead of the axle's middle.");
   const double z = p.number("robot.kinect.mount_z", "m", {0, 3}, "Kinect above the axle's middle.");
-  const double axle = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
+  const double axle = p.number("robot.wheel_radius", "m", {0.05, 0.5},
                                "Of the driven wheels; also the axle's height.");
   const double gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
                                "Equation 4.1: servo = gain times angle + offset.");

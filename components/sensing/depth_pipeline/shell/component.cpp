@@ -15,7 +15,9 @@ using std::chrono::milliseconds;
 
 constexpr auto kImageAge = milliseconds(300);
 constexpr auto kTiltAge = milliseconds(500);
-constexpr double kStill = 0.01;  // [rad] between two readings of the servo
+constexpr auto kPitchGap = milliseconds(100);
+constexpr auto kTurn = milliseconds(2000);  // no turn of the servo takes longer
+constexpr double kStill = 0.01;             // [rad] between two readings of the servo
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
 
 /// base_footprint_T_camera of the optical frame (x right, y down, z forward).
@@ -37,6 +39,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       pitch_(host, kNoScans, [this] { process_waiting(); }),
       rejected_(host.health().counter("images: rejected")),
       without_pitch_(host.health().counter("images: without pitch")),
+      without_tilt_(host.health().counter("images: without tilt")),
       while_turning_(host.health().counter("images: camera turning")),
       refitted_(host.health().counter("images: floor fitted")),
       drops_(host.health().counter("images: with missing floor")) {
@@ -62,29 +65,35 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
   rear_.output = host.output(topics::kRearProcessed);
   frames_ = host.output(topics::kTf);
 
-  servo_reading_ = host.input(topics::kKinectTilt,
-                              {.max_age = kTiltAge, .on_loss = "trusts the tilt that it asked for"},
-                              [this](const auto& tilt, const auto&) { take_tilt(tilt); });
+  servo_reading_ = host.input(
+      topics::kKinectTilt,
+      {.max_age = kTiltAge,
+       .on_loss = "trusts the last reading; leaves the Kinect's images out, degraded, when there "
+                  "is none or the camera was turning"},
+      [this](const auto& tilt, const auto&) { take_tilt(tilt); });
   kinect_.info = host.input(topics::kKinectInfo, {},
                             [this](const auto& info, const auto&) { take_info(kinect_, info); });
   kinect_.images = host.input(
       topics::kKinectDepth, {.max_age = kImageAge, .on_loss = kNoScans},
       [this](const auto&, const auto&) { take_image(kinect_); },
-      [this] { host_.health().set(HealthState::kDegraded, "no depth image"); });
+      [this] {
+        if (!kinect_.due) kinect_.due = host_.now();
+        report();
+      });
   rear_.info = host.input(topics::kRearInfo, {.optional = true},
                           [this](const auto& info, const auto&) { take_info(rear_, info); });
   rear_.images = host.input(
       topics::kRearDepth,
-      {.max_age = kImageAge, .on_loss = "goes on with the Kinect alone", .optional = true},
-      [this](const auto&, const auto&) { take_image(rear_); });
+      {.max_age = kImageAge,
+       .on_loss = "goes on with the Kinect alone; degraded when there was one",
+       .optional = true},
+      [this](const auto&, const auto&) { take_image(rear_); }, [this] { report(); });
 }
 
 void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::CameraInfo& info) {
   const auto intrinsics = wire::from_message(info);
   if (!intrinsics) {
-    ++rejected_;
-    host_.health().set(HealthState::kDegraded,
-                       std::string(camera.name) + ": " + intrinsics.error());
+    refuse(camera, intrinsics.error());
     return;
   }
   if (camera.pipeline && camera.pipeline->intrinsics() == *intrinsics) return;
@@ -96,9 +105,12 @@ void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::C
 }
 
 void DepthPipelineComponent::process_waiting() {
+  const bool back = host_.now() - pitch_came_ > kPitchGap;
+  pitch_came_ = host_.now();
   for (Camera* camera : {&kinect_, &rear_}) {
     if (camera->waiting && process(*camera, *camera->waiting)) camera->waiting.reset();
   }
+  if (back) report();
 }
 
 void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) {
@@ -107,18 +119,60 @@ void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) 
   servo_ = tilt.servo();
 }
 
-/// While the servo moves nobody knows the angle of an image well enough.
-bool DepthPipelineComponent::turning() const { return std::abs(servo_ - servo_before_) > kStill; }
+/// While the servo moves nobody knows the angle of an image well enough. When its readings end in
+/// the move it is not known where it came to rest: no image is better than a whole floor of
+/// obstacles, which the costmap would keep.
+bool DepthPipelineComponent::moving() const { return std::abs(*servo_ - *servo_before_) > kStill; }
 
 double DepthPipelineComponent::angle_of(const Camera& camera) const {
-  return camera.mount.backward ? rear_angle_ : tilt_.servo().angle_of(servo_);
+  return camera.mount.backward ? rear_angle_ : tilt_.servo().angle_of(*servo_);
 }
 
 void DepthPipelineComponent::take_image(Camera& camera) {
-  if (camera.waiting) ++without_pitch_;  // its pitch never came
+  if (!camera.due) camera.due = host_.now();
+  if (camera.waiting) {  // its pitch never came
+    const auto pitch = pitch_.at(wire::from_message(camera.waiting->header().stamp()));
+    withhold(camera, without_pitch_, "image without pitch: " + (pitch ? "" : pitch.error()));
+  }
   camera.waiting.reset();
   auto image = camera.images.share();
   if (!process(camera, *image)) camera.waiting = std::move(image);
+}
+
+void DepthPipelineComponent::refuse(Camera& camera, const std::string& reason) {
+  ++rejected_;
+  camera.refused = reason;
+  report();
+}
+
+void DepthPipelineComponent::withhold(Camera& camera, std::uint64_t& counter,
+                                      const std::string& reason) {
+  ++counter;
+  camera.withheld = reason;
+  report();
+}
+
+/// Why this camera gives no scans; empty when it does, and for a camera that was never there.
+std::string DepthPipelineComponent::trouble(const Camera& camera) const {
+  if (!camera.due) return {};
+  const std::string name = std::string(camera.name) + ": ";
+  if (camera.images.fresh() == nullptr) return name + "no depth image";
+  if (!camera.refused.empty()) return name + camera.refused;
+  const bool turns = !camera.mount.backward && servo_before_ && moving() && servo_reading_.fresh();
+  if (host_.now() - *camera.due <= (turns ? kTurn : kImageAge)) return {};
+  return name + camera.withheld;
+}
+
+/// The one place that says how the component is, but for the pitch: that its input says.
+void DepthPipelineComponent::report() {
+  if (!pitch_.current()) return;
+  std::string reason = trouble(kinect_);
+  if (reason.empty()) reason = trouble(rear_);
+  if (!reason.empty()) {
+    host_.health().set(HealthState::kDegraded, std::move(reason));
+  } else if (kinect_.delivered) {
+    host_.health().set(HealthState::kOk);
+  }
 }
 
 /// False while the pitch of the image's time is not known yet.
@@ -126,15 +180,18 @@ bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
   const runtime::Time stamp = wire::from_message(image.header().stamp());
   const auto pitch = pitch_.at(stamp);
   if (!pitch) return false;
-  if (!camera.mount.backward && turning()) {
-    ++while_turning_;
+  if (!camera.mount.backward && !servo_before_) {
+    withhold(camera, without_tilt_, "no kinect/tilt says where it looks");
+    return true;
+  }
+  if (!camera.mount.backward && moving()) {
+    withhold(camera, while_turning_,
+             servo_reading_.fresh() ? "it turns" : "kinect/tilt ended while it turned");
     return true;
   }
   const auto depth = wire::depth_image(image, far_, camera.depth);
   if (!depth || !camera.pipeline) {
-    ++rejected_;
-    host_.health().set(HealthState::kDegraded, std::string(camera.name) + ": " +
-                                                   (depth ? "no camera_info" : depth.error()));
+    refuse(camera, depth ? "no camera_info" : depth.error());
     return true;
   }
   Mount mount = camera.mount;
@@ -142,12 +199,14 @@ bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
   if (!mount.backward) mount.z += mount_slope_ * angle;
   const auto view = camera.pipeline->process(*depth, camera_pose(mount, angle, pitch->angle));
   if (!view) {
-    ++rejected_;
-    host_.health().set(HealthState::kDegraded, std::string(camera.name) + ": " + view.error());
+    refuse(camera, view.error());
     return true;
   }
   publish(camera, *view, stamp);
-  if (&camera == &kinect_) host_.health().set(HealthState::kOk);
+  camera.refused.clear();
+  camera.due = host_.now();
+  camera.delivered = true;
+  report();
   return true;
 }
 

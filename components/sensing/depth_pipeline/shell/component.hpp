@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sensing/depth_pipeline/shell/parameters.hpp"
@@ -29,6 +30,10 @@ class DepthPipelineComponent final : public runtime::Component {
     std::shared_ptr<const Image> waiting;  ///< for the pitch of its time
     std::vector<std::uint16_t> depth;
     Image processed;
+    std::string refused;               ///< why the newest image was; empty: it was not
+    std::string withheld;              ///< why the newest image that gave no scan gave none
+    std::optional<runtime::Time> due;  ///< since then a scan is: the last one, or the first image
+    bool delivered = false;            ///< a scan, ever
     runtime::Input<Image> images;
     runtime::Input<sensor_msgs::msg::CameraInfo> info;
     runtime::Output<Image> output;
@@ -40,9 +45,13 @@ class DepthPipelineComponent final : public runtime::Component {
   void process_waiting();
   void take_tilt(const usher_msgs::msg::CameraTilt& tilt);
   bool process(Camera& camera, const Image& image);
+  void refuse(Camera& camera, const std::string& reason);
+  void withhold(Camera& camera, std::uint64_t& counter, const std::string& reason);
   void publish(Camera& camera, const DepthView& view, runtime::Time stamp);
   double angle_of(const Camera& camera) const;
-  bool turning() const;
+  bool moving() const;
+  std::string trouble(const Camera& camera) const;
+  void report();
 
   runtime::Host& host_;
   PipelineConfig config_;
@@ -51,9 +60,11 @@ class DepthPipelineComponent final : public runtime::Component {
   double mount_slope_ = 0.0;
   double rear_angle_ = 0.0;
   double far_ = 12.0;
-  double servo_ = 0.0, servo_before_ = 0.0;
+  std::optional<double> servo_, servo_before_;  // [rad] the two newest readings
+  runtime::Time pitch_came_{};
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
+  std::uint64_t& without_tilt_;
   std::uint64_t& while_turning_;
   std::uint64_t& refitted_;
   std::uint64_t& drops_;

@@ -49,7 +49,7 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
 }
 
 double read_axle(runtime::Parameters& p) {
-  return p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
+  return p.number("robot.wheel_radius", "m", {0.05, 0.5},
                   "Of the driven wheels; also the axle's height.");
 }
 

@@ -7,13 +7,12 @@ namespace usher::depth_pipeline {
 
 namespace {
 constexpr float kRangeMin = 0.05F;
-constexpr float kPeriod = 1.0F / 30.0F;  // [s]
 }  // namespace
 
 ScanOutput::ScanOutput(runtime::Host& host, const topics::Topic<sensor_msgs::msg::LaserScan>& topic,
                        const Frame& frame, double max_range)
     : frame_(frame), output_(host.output(topic)) {
-  message_.scan_time(kPeriod);
+  message_.scan_time(static_cast<float>(1.0 / topic.rate_hz));
   message_.range_min(kRangeMin);
   message_.range_max(static_cast<float>(max_range));
 }

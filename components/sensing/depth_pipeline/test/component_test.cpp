@@ -49,7 +49,8 @@ class DepthPipelineComponentTest : public testing::Test {
         status.pitch(pitch);
         host_.publish(topics::kBaseStatus, status);
       }
-      if (elapsed_ % 50 == 0) {
+      if (with_tilt_ && elapsed_ % 50 == 0) {
+        if (swinging_) servo_ = -servo_;
         usher_msgs::msg::CameraTilt tilt;
         tilt.header(wire::header(host_.now(), "base_link"));
         tilt.servo(servo_);
@@ -68,11 +69,30 @@ class DepthPipelineComponentTest : public testing::Test {
     wire::to_message(host_.now(), "kinect_depth_optical", view_of(scene_.camera, depth), image);
     host_.publish(topics::kKinectDepth, image);
   }
+  /// Both cameras at their rates, each with one image again and again.
+  void stream(int milliseconds_count, bool rear = false) {
+    sensor_msgs::msg::Image image;
+    const auto depth = scene_.draw(camera_pose({}, -0.0873, 0.0));
+    for (int i = 0; i < milliseconds_count; i += 30) {
+      wire::to_message(host_.now() + images_ahead_, "kinect_depth_optical",
+                       view_of(scene_.camera, depth), image);
+      host_.publish(topics::kKinectDepth, image);
+      if (rear && i % 60 == 0) {
+        image.encoding(rear_encoding_);
+        host_.publish(topics::kRearDepth, image);
+      }
+      live(30);
+    }
+  }
+  std::string reason() { return host_.heartbeat().reason(); }
+  std::size_t left() { return host_.written(topics::kKinectScan).size(); }
 
   TestHost host_;
   SyntheticScene scene_;
   double servo_ = -0.0873;
-  bool with_pitch_ = true;
+  bool with_pitch_ = true, with_tilt_ = true, swinging_ = false;
+  milliseconds images_ahead_{};
+  std::string rear_encoding_ = "16UC1";
   int elapsed_ = 0;  // [ms]
 };
 
@@ -131,7 +151,120 @@ TEST_F(DepthPipelineComponentTest, SaysWhenTheCameraIsSilent) {
   live(120);
   EXPECT_EQ(host_.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
   live(600);
-  EXPECT_EQ(host_.heartbeat().reason(), "no depth image");
+  EXPECT_EQ(reason(), "Kinect: no depth image");
+}
+
+TEST_F(DepthPipelineComponentTest, KnowsNoTiltBeforeTheServoWasHeard) {
+  with_tilt_ = false;  // a restart, and the servo stands at -5 deg
+  tell_camera();
+  live(100);
+  stream(600);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_GE(host_.counter("images: without tilt"), 15U);
+  EXPECT_EQ(reason(), "Kinect: no kinect/tilt says where it looks");
+  with_tilt_ = true;
+  stream(300);
+  EXPECT_GE(left(), 5U);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, TrustsTheLastTiltOfACameraThatStood) {
+  tell_camera();
+  live(100);
+  with_tilt_ = false;
+  stream(1200);
+  EXPECT_GE(left(), 38U);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatTheTiltEndedWhileItTurned) {
+  tell_camera();
+  live(100);
+  stream(300);
+  servo_ = 0.1;
+  live(10);
+  with_tilt_ = false;
+  host_.clear();
+  stream(420);
+  EXPECT_EQ(reason(), "") << "turns take so long";
+  stream(600);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_EQ(reason(), "Kinect: kinect/tilt ended while it turned");
+  servo_ = -0.0873;
+  with_tilt_ = true;
+  stream(300);
+  EXPECT_GE(left(), 3U);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatTheCameraTurnsOnAndOn) {
+  tell_camera();
+  live(100);
+  stream(300);
+  swinging_ = true;
+  stream(1500);
+  EXPECT_EQ(reason(), "");
+  stream(1500);
+  EXPECT_EQ(reason(), "Kinect: it turns");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatImagesAndPitchDoNotMeet) {
+  tell_camera();
+  live(100);
+  stream(300);
+  images_ahead_ = milliseconds(2000);  // the camera's host has another time
+  host_.clear();
+  stream(600);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_GE(host_.counter("images: without pitch"), 15U);
+  EXPECT_THAT(reason(), HasSubstr("Kinect: image without pitch: the "));
+  images_ahead_ = {};
+  stream(300);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, HealthIsThatOfBothCameras) {
+  tell_camera();
+  host_.publish(topics::kRearInfo,
+                wire::to_message(host_.now(), "rear_camera_depth_optical", scene_.camera));
+  live(100);
+  stream(300, true);
+  EXPECT_EQ(reason(), "");
+  rear_encoding_ = "32FC1";
+  for (int i = 0; i < 10; ++i) {
+    stream(120, true);
+    EXPECT_THAT(reason(), HasSubstr("rear camera: ")) << "the Kinect's images are good";
+  }
+  rear_encoding_ = "16UC1";
+  stream(240, true);
+  EXPECT_EQ(reason(), "");
+  stream(600);
+  EXPECT_EQ(reason(), "rear camera: no depth image");
+  stream(240, true);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, TakesImagesOf8Bits) {
+  tell_camera();
+  live(100);
+  const auto depth = scene_.draw(camera_pose({}, servo_, 0.0));
+  sensor_msgs::msg::Image image;
+  image.header(wire::header(host_.now(), "kinect_depth_optical"));
+  image.encoding("8UC1");
+  image.width(512);
+  image.height(424);
+  image.step(512);
+  for (const std::uint16_t value : depth)
+    image.data().push_back(static_cast<std::uint8_t>(std::lround(value * 255.0 / 12000.0)));
+  host_.publish(topics::kKinectDepth, image);
+  live(120);
+  const auto scan = host_.last(topics::kKinectScan);
+  ASSERT_TRUE(scan.has_value()) << reason();
+  EXPECT_NEAR(ahead(*scan), 2.0 + camera_pose({}, servo_, 0.0).forward - 0.2, 0.047);
+  const auto& ranges = scan->ranges();
+  const auto near = std::count_if(ranges.begin(), ranges.end(), [](float r) { return r < 1.9F; });
+  EXPECT_EQ(near, 0) << "the floor in steps of 47 mm is floor";
+  EXPECT_EQ(reason(), "");
 }
 
 TEST_F(DepthPipelineComponentTest, LeavesOutImagesWhileTheCameraTurns) {
@@ -186,9 +319,18 @@ TEST_F(DepthPipelineComponentTest, TiltFollowsTheRobotsStateAndAnOperatorMayHold
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
 }
 
+TEST(DepthPipelineParameters, HaveNoAxleOfTheirOwn) {
+  constexpr const char* kMount = "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m}";
+  const auto made = TestHost::try_make(
+      runtime::component_factory<DepthPipelineComponent>("depth_pipeline"), kMount);
+  ASSERT_FALSE(made.ok());
+  EXPECT_THAT(made.error(), HasSubstr("robot.wheel_radius"));
+}
+
 TEST(DepthPipelineSim, RatesAndPassesTheModelsScans) {
   TestHost host(runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim"),
-                "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m}");
+                "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, "
+                "robot.wheel_radius: 0.235 m}");
   sensor_msgs::msg::LaserScan scan;
   scan.angle_min(-0.5F);
   scan.angle_max(0.5F);

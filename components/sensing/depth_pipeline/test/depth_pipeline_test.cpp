@@ -302,10 +302,10 @@ TEST(DepthPipeline, WhoCoversHalfTheImageIsNoDropAndTheOtherHalfIsSeen) {
   DepthPipeline pipeline = make(scene);
   auto image = scene.draw(kPose);
   Random random(3);
-  for (int row = 0; row < 424; ++row) {
-    for (int column = 256; column < 512; ++column) {
+  for (std::size_t row = 0; row < 424; ++row) {
+    for (std::size_t column = 256; column < 512; ++column) {
       // One pixel in a hundred still measures something.
-      if (random.uniform() > 0.01) image[static_cast<std::size_t>(row * 512 + column)] = 0;
+      if (random.uniform() > 0.01) image[512 * row + column] = 0;
     }
   }
   const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();

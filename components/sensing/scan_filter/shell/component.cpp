@@ -19,7 +19,7 @@ ScanFilterConfig laser_config(runtime::Parameters& p) {
   c.mount_z = p.number("robot.laser.mount_z", "m", {-1, 3}, "Laser above the axle's middle.");
   c.bearing_limit = p.number("robot.laser.self_filter", "rad", {0.1, 3.1},
                              "Beams beyond, to either side, see the robot itself.");
-  c.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
+  c.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5},
                            "Of the driven wheels; also the axle's height.");
   c.floor_margin = p.number("floor_margin", "m", {0, 0.5}, c.floor_margin,
                             "What is lower than this counts as floor.");

@@ -160,8 +160,8 @@ void DepthOutput::publish_info() {
 void DepthOutput::publish_kinect() {
   if (kind_ == Kind::kModel) {
     kinect_model_->scan(*world_, kinect_, result_);
-    publish_scan(result_.ranges, kinect_scan_);
-    publish_scan(result_.low, kinect_low_);
+    publish_scan(result_.ranges, "kinect_level", kinect_scan_);
+    publish_scan(result_.low, "kinect_level", kinect_low_);
     publish_people(*kinect_people_model_, kinect_, "kinect_level", kinect_people_);
     publish_faces();
     return;
@@ -181,7 +181,7 @@ void DepthOutput::publish_kinect() {
 void DepthOutput::publish_rear() {
   if (kind_ == Kind::kModel) {
     rear_model_->scan(*world_, rear_, result_);
-    publish_scan(result_.ranges, rear_scan_);
+    publish_scan(result_.ranges, "rear_camera_level", rear_scan_);
     publish_people(*rear_people_model_, rear_, "rear_camera_level", rear_people_);
     return;
   }
@@ -193,9 +193,9 @@ void DepthOutput::publish_rear() {
   rear_depth_.publish(image_);
 }
 
-void DepthOutput::publish_scan(const std::vector<float>& ranges,
+void DepthOutput::publish_scan(const std::vector<float>& ranges, const char* frame,
                                runtime::Output<sensor_msgs::msg::LaserScan>& output) {
-  scan_.header(wire::header(stepped_, "kinect_level"));
+  scan_.header(wire::header(stepped_, frame));
   scan_.angle_min(static_cast<float>(result_.angle_min));
   scan_.angle_increment(static_cast<float>(result_.increment));
   scan_.angle_max(static_cast<float>(

@@ -14,9 +14,8 @@
 namespace usher::world {
 
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
-/// that the fitted models make without them, at 30 Hz (people 15, faces 10), the two cameras in
-/// turn. Stamps
-/// are those of the world's steps.
+/// that the fitted models make without them, at 30 Hz (rear camera and people 15, faces 10), the
+/// two cameras in turn. Stamps are those of the world's steps.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
@@ -36,7 +35,7 @@ class DepthOutput {
   void publish_info();
   void publish_kinect();
   void publish_rear();
-  void publish_scan(const std::vector<float>& ranges,
+  void publish_scan(const std::vector<float>& ranges, const char* frame,
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
   void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
                       runtime::Output<geometry_msgs::msg::PoseArray>& output);
