@@ -106,16 +106,19 @@ Result<imaging::Intrinsics> from_message(const sensor_msgs::msg::CameraInfo& mes
   if (message.width() > kMostPixels || message.height() > kMostPixels)
     return Error{"a camera of " + std::to_string(message.width()) + " x " +
                  std::to_string(message.height()) + " pixels"};
-  const auto& distortion = message.d();
-  if (std::any_of(distortion.begin(), distortion.end(), [](double d) { return d != 0.0; }))
-    return Error{"the depth image must be rectified, its distortion is not zero"};
+  const int width = static_cast<int>(message.width()), height = static_cast<int>(message.height());
   const auto& k = message.k();
-  const imaging::Intrinsics intrinsics{static_cast<int>(message.width()),
-                                       static_cast<int>(message.height()),
-                                       k[0],
-                                       k[4],
-                                       k[2],
-                                       k[5]};
+  imaging::Intrinsics intrinsics{width, height, k[0], k[4], k[2], k[5]};
+  const auto& distortion = message.d();
+  if (std::any_of(distortion.begin(), distortion.end(), [](double d) { return d != 0.0; })) {
+    const auto& p = message.p();
+    const imaging::Intrinsics rectified{width, height, p[0], p[5], p[2], p[6]};
+    if (!(p[0] > 0.0) || rectified == intrinsics)
+      return Error{
+          "the depth image must be rectified: its camera_info has a distortion that is not zero "
+          "and no P of a rectified image"};
+    intrinsics = rectified;
+  }
   if (const auto status = imaging::check(intrinsics); !status) return Error{status.error()};
   return intrinsics;
 }

@@ -34,7 +34,8 @@ Result<imaging::DepthImage> depth_image(const sensor_msgs::msg::Image& message, 
 
 sensor_msgs::msg::CameraInfo to_message(runtime::Time stamp, std::string_view frame,
                                         const imaging::Intrinsics& intrinsics);
-/// Of a rectified image: the distortion must be zero.
+/// Of a rectified image: K where the distortion is zero, else P, which a driver that rectifies has
+/// beside the lens' own K and distortion (ROS image_rect). Refused: a distortion without such a P.
 Result<imaging::Intrinsics> from_message(const sensor_msgs::msg::CameraInfo& message);
 
 }  // namespace usher::wire

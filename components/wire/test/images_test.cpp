@@ -108,5 +108,30 @@ TEST(CameraInfoMessage, ComesBackAndIsRefusedWhenItCannotBe) {
   EXPECT_FALSE(from_message(message).ok());
 }
 
+/// As ROS drivers write it beside image_rect: D and K of the lens, P of the image.
+TEST(CameraInfoMessage, OfARectifiedImageIsReadFromP) {
+  const imaging::Intrinsics lens{512, 424, 365.0, 366.0, 255.5, 211.5};
+  const imaging::Intrinsics rectified{512, 424, 351.0, 352.0, 257.0, 209.0};
+  auto message = to_message({}, "camera", lens);
+  message.d({0.09, -0.27, 0.0, 0.0, 0.09});
+  message.p(to_message({}, "camera", rectified).p());
+  ASSERT_TRUE(from_message(message).ok()) << from_message(message).error();
+  EXPECT_EQ(*from_message(message), rectified);
+}
+
+TEST(CameraInfoMessage, OfADistortedImageIsRefused) {
+  const imaging::Intrinsics lens{512, 424, 365.0, 366.0, 255.5, 211.5};
+  auto message = to_message({}, "camera", lens);
+  message.d({0.09, -0.27, 0.0, 0.0, 0.09});
+  const auto* const reason =
+      "the depth image must be rectified: its camera_info has a distortion that is not zero and no "
+      "P of a rectified image";
+  EXPECT_EQ(from_message(message).error(), reason) << "P is K";
+  message.p({});
+  EXPECT_EQ(from_message(message).error(), reason) << "no P";
+  message.p()[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(from_message(message).error(), reason) << "no P";
+}
+
 }  // namespace
 }  // namespace usher::wire
