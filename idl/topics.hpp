@@ -54,8 +54,8 @@ inline constexpr Topic<tf2_msgs::msg::TFMessage> kTf{
     Kind::kStream,
     32,
     100,
-    "segway_rmp p3dx amcl depth_pipeline",
-    "Moving frames: map -> odom -> base_footprint -> base_link."};
+    "segway_rmp p3dx amcl depth_pipeline people_detector",
+    "Moving frames: map -> odom -> base_footprint -> base_link; for rviz odom -> person_<id>."};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
     "tf_static",
     Kind::kLatched,

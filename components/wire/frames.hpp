@@ -9,5 +9,7 @@ inline constexpr const char* kMap = "map";
 inline constexpr const char* kOdom = "odom";
 inline constexpr const char* kBaseFootprint = "base_footprint";
 inline constexpr const char* kBaseLink = "base_link";
+/// With an id behind it: somebody, below odom. For people who look; components read `people`.
+inline constexpr const char* kPerson = "person_";
 
 }  // namespace usher::frames

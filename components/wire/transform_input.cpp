@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "wire/frames.hpp"
+
 namespace usher::wire {
 
 namespace {
@@ -39,6 +41,8 @@ std::optional<geometry::Pose2> TransformInput::newest_planar(const std::string& 
 
 void TransformInput::take(const tf2_msgs::msg::TFMessage& message, bool fixed) {
   for (const auto& transform : message.transforms()) {
+    // Their number grows for ever, and the buffer's is limited.
+    if (transform.child_frame_id().starts_with(frames::kPerson)) continue;
     const auto pose = from_message(transform.transform());
     if (!pose) {
       ++refused_;

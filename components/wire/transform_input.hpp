@@ -13,8 +13,9 @@
 
 namespace usher::wire {
 
-/// A component's view of the frames: reads tf and tf_static into a TransformBuffer, and holds back
-/// work that needs a transform which is not known yet.
+/// A component's view of the frames: reads tf and tf_static into a TransformBuffer, leaves out
+/// those of people (each has a new name, and the buffer takes 64), and holds back work that needs a
+/// transform which is not known yet.
 class TransformInput {
  public:
   explicit TransformInput(runtime::Host& host);

@@ -76,6 +76,21 @@ TEST_F(TransformInputTest, WorkRunsAtOnceWhereTheTransformIsKnown) {
   EXPECT_THAT(placed, ElementsAre("laser10"));
 }
 
+TEST_F(TransformInputTest, PeopleDoNotFillTheBuffer) {
+  for (int id = 0; id < 100; ++id) {
+    tf2_msgs::msg::TFMessage moving;
+    moving.transforms().push_back(
+        transform(at(0), frames::kOdom, frames::kPerson + std::to_string(id), geometry::Pose3{}));
+    host.publish(topics::kTf, moving);
+    host.run_for(milliseconds(1));
+  }
+  odometry(110);
+  scan("laser", 110);
+  EXPECT_THAT(placed, ElementsAre("laser110"));
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(host.counter("tf: refused"), 0U);
+}
+
 TEST_F(TransformInputTest, WorkRunsInTheHandlerThatMakesTheTransformKnown) {
   odometry(10);
   scan("laser", 40);

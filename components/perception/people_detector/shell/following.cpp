@@ -16,14 +16,18 @@ using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(250);
 constexpr auto kFacesAge = milliseconds(1000);
-constexpr auto kLooks = milliseconds(300);  // a camera that looked so long ago looks
-constexpr auto kPeriod = milliseconds(60);  // every third scan of a laser of 50 Hz
-constexpr double kShortest = 0.04;          // [s] in which a motion is measured
-constexpr double kLongest = 0.5;            // [s] after which nobody knows it
-constexpr double kRecently = 1.0;           // [s]
-constexpr double kNape = 0.10;              // [m] from a face to the body's middle
-constexpr double kFaceHeight = 0.93;        // of the person's
-constexpr double kFarthestFace = 20.0;      // [m]
+constexpr auto kLooks = milliseconds(300);             // a camera that looked so long ago looks
+constexpr auto kPeriod = milliseconds(60);             // every third scan of a laser of 50 Hz
+constexpr auto kLocalizationAge = milliseconds(1000);  // of map -> odom
+constexpr auto kFramesPeriod = milliseconds(200);
+constexpr std::size_t kMostFrames = 16;  // transforms in one message
+constexpr double kBeside = 0.5;          // [m] from somebody who is followed, it is them
+constexpr double kShortest = 0.04;       // [s] in which a motion is measured
+constexpr double kLongest = 0.5;         // [s] after which nobody knows it
+constexpr double kRecently = 1.0;        // [s]
+constexpr double kNape = 0.10;           // [m] from a face to the body's middle
+constexpr double kFaceHeight = 0.93;     // of the person's
+constexpr double kFarthestFace = 20.0;   // [m]
 
 double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
 
@@ -51,6 +55,11 @@ double wall_parameter(runtime::Parameters& p) {
                   "Whose middle is nearer to something on the map is a part of that.");
 }
 
+bool frames_parameter(runtime::Parameters& p) {
+  return p.flag("people_transforms", true,
+                "Tells of people on tf, too, for rviz: odom -> person_<id>, 5 times a second.");
+}
+
 SightingErrors error_parameters(runtime::Parameters& p) {
   SightingErrors e;
   e.along = p.number("camera.along", "m", {0.01, 0.5}, e.along,
@@ -72,6 +81,8 @@ AheadConfig ahead_parameters(runtime::Parameters& p) {
   c.soon = p.number("ahead.soon", "s", {0, 3}, c.soon, "Who will be there by then is there.");
   return c;
 }
+
+bool seen_lately(const Track& track, double now) { return now - track.last_seen() < kRecently; }
 
 usher_msgs::msg::Person to_message(const Track& track, double now) {
   usher_msgs::msg::Person person;
@@ -102,6 +113,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       trouble_(std::move(trouble)),
       errors_(error_parameters(host.parameters())),
       in_wall_(wall_parameter(host.parameters())),
+      show_frames_(frames_parameter(host.parameters())),
       ahead_(ahead_parameters(host.parameters())),
       rejected_(host.health().counter("scans: rejected")),
       late_(host.health().counter("images: late")),
@@ -124,6 +136,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       [this](const auto& message, const auto&) { take_faces(message); });
   people_ = host.output(topics::kPeople);
   person_ahead_ = host.output(topics::kPersonAhead);
+  frames_ = host.output(topics::kTf);
 }
 
 void Following::take_map(const nav_msgs::msg::OccupancyGrid& message) {
@@ -210,9 +223,11 @@ void Following::see(Source source, runtime::Time stamp, std::span<const Sighting
                     const geometry::Pose2& odom_T_base, const geometry::Pose2& base_T_foot) {
   looked_[static_cast<std::size_t>(source)] = host_.now();
   place_sightings(sightings, odom_T_base * base_T_foot, errors_, observations_);
-  if (const auto map_T_odom = localization()) {
+  // By an old one the walls are elsewhere; and who is followed may lean on a wall.
+  if (const auto map_T_odom =
+          transforms_.newest_planar(frames::kMap, frames::kOdom, kLocalizationAge)) {
     std::erase_if(observations_, [&](const Observation& one) {
-      return legs_->on_the_map(*map_T_odom * one.position, in_wall_);
+      return legs_->on_the_map(*map_T_odom * one.position, in_wall_) && !followed(one.position);
     });
   }
   if (!tracker_->update(in_seconds(stamp), source, observations_)) {
@@ -221,6 +236,14 @@ void Following::see(Source source, runtime::Time stamp, std::span<const Sighting
   }
   note(stamp, odom_T_base);
   publish();
+}
+
+/// Whether somebody who was just seen is there.
+bool Following::followed(const geometry::Point2& in_odom) const {
+  const auto people = tracker_->people();
+  return std::any_of(people.begin(), people.end(), [&](const Track& track) {
+    return seen_lately(track, tracker_->now()) && (track.position() - in_odom).norm() < kBeside;
+  });
 }
 
 /// How the robot moves, from where it was.
@@ -249,8 +272,25 @@ void Following::publish() {
   message_.people().clear();
   for (const Track& track : tracker_->people()) message_.people().push_back(to_message(track, now));
   people_.publish(message_);
+  publish_frames();
   publish_ahead();
   report();
+}
+
+void Following::publish_frames() {
+  if (!show_frames_ || published_ - framed_ < kFramesPeriod) return;
+  frames_message_.transforms().clear();
+  for (const Track& track : tracker_->people()) {
+    if (frames_message_.transforms().size() == kMostFrames) break;
+    if (!seen_lately(track, tracker_->now())) continue;
+    const geometry::Pose2 place{track.state[0], track.state[1], 0.0};
+    frames_message_.transforms().push_back(
+        wire::transform(published_, frames::kOdom, frames::kPerson + std::to_string(track.id),
+                        geometry::to_space(place)));
+  }
+  if (frames_message_.transforms().empty()) return;
+  framed_ = published_;
+  frames_.publish(frames_message_);
 }
 
 void Following::publish_ahead() {

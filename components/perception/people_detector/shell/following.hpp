@@ -41,9 +41,11 @@ class Following {
   void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
               const geometry::Pose2& odom_T_base);
   std::optional<geometry::Pose2> localization() const;
+  bool followed(const geometry::Point2& in_odom) const;
   void note(runtime::Time stamp, const geometry::Pose2& odom_T_base);
   bool looks(Source camera) const;
   void publish();
+  void publish_frames();
   void publish_ahead();
 
   /// Where the base was at the newest sample, and how it moved since the one before.
@@ -57,6 +59,7 @@ class Following {
   std::function<std::string()> trouble_;
   SightingErrors errors_;
   double in_wall_;
+  bool show_frames_;
   AheadConfig ahead_;
   std::optional<LegFinder> legs_;
   std::optional<Tracker> tracker_;
@@ -64,10 +67,11 @@ class Following {
   std::vector<Observation> observations_;
   std::vector<Sighting> faced_;
   const char* legs_trouble_ = "";
-  runtime::Time last_scan_{}, newest_{}, published_{};
+  runtime::Time last_scan_{}, newest_{}, published_{}, framed_{};
   std::array<std::optional<runtime::Time>, kSources>
       looked_{};  ///< when people were last looked for
   usher_msgs::msg::People message_;
+  tf2_msgs::msg::TFMessage frames_message_;
   std::uint64_t& rejected_;
   std::uint64_t& late_;
   std::uint64_t& rejected_faces_;
@@ -78,6 +82,7 @@ class Following {
   runtime::Input<usher_msgs::msg::Faces> faces_;
   runtime::Output<usher_msgs::msg::People> people_;
   runtime::Output<usher_msgs::msg::PersonAhead> person_ahead_;
+  runtime::Output<tf2_msgs::msg::TFMessage> frames_;
 };
 
 }  // namespace usher::people_detector

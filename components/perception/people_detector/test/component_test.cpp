@@ -166,9 +166,45 @@ TEST_F(Component, TellsMovementControlWhoIsInTheRobotsWay) {
   EXPECT_NEAR(person->closing_speed(), 0.7, 0.2);
 }
 
+std::vector<geometry_msgs::msg::TransformStamped> told_frames(runtime::TestHost& host) {
+  std::vector<geometry_msgs::msg::TransformStamped> frames;
+  for (const auto& message : host.written(topics::kTf))
+    for (const auto& transform : message.transforms()) frames.push_back(transform);
+  return frames;
+}
+
+TEST_F(Component, TellsWhoIsSeenAsATransformUntilTheyAreNot) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(3.0, crossing);
+  const auto frames = told_frames(host);
+  ASSERT_GT(frames.size(), 5U);
+  EXPECT_LT(frames.size(), 16U) << "5 a second";
+  const auto person = host.last(topics::kPeople)->people().at(0);
+  const auto& frame = frames.back();
+  EXPECT_EQ(frame.header().frame_id(), frames::kOdom);
+  EXPECT_EQ(frame.child_frame_id(), "person_" + std::to_string(person.id()));
+  EXPECT_NEAR(frame.transform().translation().x(), person.x(), 0.2);
+  EXPECT_NEAR(frame.transform().translation().y(), person.y(), 0.2);
+  bool of_that_time = false;
+  for (const auto& message : host.written(topics::kPeople))
+    of_that_time = of_that_time || message.header().stamp() == frame.header().stamp();
+  EXPECT_TRUE(of_that_time);
+  run(1.5, [](double) { return Point2(40.0, 40.0); });
+  host.clear();
+  run(1.0, [](double) { return Point2(40.0, 40.0); });
+  EXPECT_EQ(host.last(topics::kPeople)->people().size(), 1U) << "remembered";
+  EXPECT_TRUE(told_frames(host).empty());
+}
+
 /// The stand-in without pixels: whom the world's model finds.
 class SimComponent : public testing::Test {
  protected:
+  void localize() {
+    tf2_msgs::msg::TFMessage message;
+    message.transforms({wire::transform(host.now(), frames::kMap, frames::kOdom, {})});
+    host.publish(topics::kTf, message);
+  }
   void run(int ms, bool people, const char* frame = "kinect_level") {
     for (int at = 0; at < ms; at += 33) {
       tf2_msgs::msg::TFMessage places;
@@ -202,6 +238,37 @@ TEST_F(SimComponent, FollowsWhomTheModelFinds) {
   const Point2 place = Pose2{1.0, 2.0, 0.5} * Point2(2.7, 0.0);
   EXPECT_LT((place - Point2(person.x(), person.y())).norm(), 0.01);
   EXPECT_EQ(host.heartbeat().reason(), "no scan");
+}
+
+/// A wall on the map where the person of run() is, in odom.
+grid::OccupancyGrid wall_there() {
+  grid::OccupancyGrid map({100, 100, 0.1, -5.0, -5.0}, grid::kFree);
+  const Point2 place = Pose2{1.0, 2.0, 0.5} * Point2(2.7, 0.0);
+  map.at(map.geometry().cell_at(place)) = grid::kOccupied;
+  return map;
+}
+
+TEST_F(SimComponent, WhomItSeesInAWallIsAPartOfItWhileThePoseIsNew) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, wall_there()));
+  localize();
+  run(800, true);
+  ASSERT_TRUE(host.last(topics::kPeople));
+  EXPECT_TRUE(host.last(topics::kPeople)->people().empty());
+  run(1500, true);
+  EXPECT_EQ(host.last(topics::kPeople)->people().size(), 1U) << "nobody knows where the wall is";
+}
+
+TEST_F(SimComponent, WhoIsFollowedMayLeanOnAWall) {
+  run(1000, true);
+  ASSERT_EQ(host.last(topics::kPeople)->people().size(), 1U);
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, wall_there()));
+  for (int i = 0; i < 10; ++i) {
+    localize();
+    run(800, true);
+  }
+  ASSERT_EQ(host.last(topics::kPeople)->people().size(), 1U);
+  EXPECT_TRUE(host.last(topics::kPeople)->people()[0].by_kinect());
+  EXPECT_EQ(host.last(topics::kPeople)->people()[0].id(), 1U);
 }
 
 TEST_F(SimComponent, SightingsOfAnUnknownFrameAreDroppedAndCounted) {
