@@ -54,9 +54,12 @@ Status verify(const std::string& text, const std::string& where, const std::stri
   const Tree* block = tree->find(section);
   for (const auto& [key, value] : values) {
     const Tree* found = block != nullptr ? block->find(key) : nullptr;
-    if (found == nullptr || found->scalar != value)
-      return Error{"'" + key + "' cannot be set in '" + section + "' of " + where +
-                   ": write a key a line"};
+    if (found == nullptr || found->scalar != value) {
+      std::string reason = "'" + key;
+      reason += "' cannot be set in '" + section;
+      reason += "' of " + where + ": write a key a line";
+      return Error{reason};
+    }
   }
   return {};
 }
@@ -92,7 +95,10 @@ Result<std::string> with_values(const std::string& text, const std::string& wher
     if (line != last) {
       replace_value(*line, key, value);
     } else {
-      lines.insert(last, std::string(indent, ' ') + key + ": " + value);
+      std::string added(indent, ' ');
+      added += key;
+      added += ": ";
+      lines.insert(last, added += value);
       ++end;
     }
   }
