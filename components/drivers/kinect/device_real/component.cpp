@@ -10,8 +10,8 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kTick = milliseconds(5);
-constexpr auto kReading = milliseconds(10);  // of a frame, for simulation
-constexpr auto kAgain = milliseconds(1000);  // a Kinect that is not there is looked for
+constexpr auto kSilence = milliseconds(300);  // a read that takes longer hangs
+constexpr auto kAgain = milliseconds(1000);   // a Kinect that is not there is looked for
 
 }  // namespace
 
@@ -35,8 +35,11 @@ Status KinectComponent::Job::fetch() {
   return {};
 }
 
-KinectComponent::KinectComponent(runtime::Host& host)
-    : host_(host), publisher_(host), rejected_(host.health().counter("frames: rejected")) {
+KinectComponent::KinectComponent(runtime::Host& host, runtime::Duration reading)
+    : host_(host),
+      reading_time_(reading),
+      publisher_(host),
+      rejected_(host.health().counter("frames: rejected")) {
   auto& p = host.parameters();
   const bool v1 = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
                            "Kinect v2 (512 x 424) or v1 (640 x 480).") == "v1";
@@ -70,6 +73,8 @@ KinectComponent::KinectComponent(runtime::Host& host)
     if (!job_->recording && !job_->live) open();
     start_reading();
     take_frame();
+    if (live_ && reading_ && host_.now() - read_at_ > kSilence)
+      host_.health().set(HealthState::kDegraded, "the Kinect is silent: a read takes over 0.3 s");
   });
 }
 
@@ -101,8 +106,9 @@ void KinectComponent::start_reading() {
     started_ = host_.now();
   }
   reading_ = true;
+  read_at_ = host_.now();
   host_.offload(
-      kReading, [job = job_] { job->run(); },
+      reading_time_, [job = job_] { job->run(); },
       [this] {
         reading_ = false;
         ready_ = true;
@@ -124,8 +130,10 @@ void KinectComponent::take_frame() {
     if (live_) again_ = host_.now() + kAgain;
     return;
   }
-  publisher_.publish(host_.now(), job_->rectified);
-  if (!job_->color.rgb.empty()) publisher_.publish(host_.now(), job_->color);
+  // A read waits for two images; what it delivers was measured when it began rather than now.
+  const runtime::Time stamp = live_ ? read_at_ : host_.now();
+  publisher_.publish(stamp, job_->rectified);
+  if (!job_->color.rgb.empty()) publisher_.publish(stamp, job_->color);
   host_.health().set(HealthState::kOk);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -14,7 +15,9 @@ namespace usher::kinect {
 /// and round. Reading and decoding happen beside the handlers.
 class KinectComponent final : public runtime::Component {
  public:
-  explicit KinectComponent(runtime::Host& host);
+  /// `reading`: how long a frame is read in simulation.
+  explicit KinectComponent(runtime::Host& host,
+                           runtime::Duration reading = std::chrono::milliseconds(10));
 
  private:
   /// What the job beside the handlers works on.
@@ -34,6 +37,7 @@ class KinectComponent final : public runtime::Component {
   void take_frame();
 
   runtime::Host& host_;
+  runtime::Duration reading_time_;
   CameraPublisher publisher_;
   imaging::Intrinsics intrinsics_;
   bool live_ = false;
@@ -42,7 +46,8 @@ class KinectComponent final : public runtime::Component {
   bool repeat_ = true;
   std::shared_ptr<Job> job_ = std::make_shared<Job>();
   runtime::Time started_{};
-  runtime::Time again_{};  ///< not before, after an error of a live one
+  runtime::Time read_at_{};  ///< when the newest read began
+  runtime::Time again_{};    ///< not before, after an error of a live one
   bool reading_ = false, ready_ = false;
   std::uint64_t& rejected_;
   runtime::Timer timer_;

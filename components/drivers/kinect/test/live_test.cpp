@@ -10,6 +10,7 @@
 #include "drivers/kinect/device_real/component.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "support/folder.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::kinect {
 namespace {
@@ -49,18 +50,28 @@ bool is_fake() {
   return libraries != nullptr && std::string(libraries).find("fakenect") != std::string::npos;
 }
 
-TEST(LiveKinectTest, DeliversDepthAndColorOfOneMoment) {
+// One test: fakenect plays only once in a process.
+TEST(LiveKinectTest, DeliversDepthAndColorOfTheTimeWhenAReadBeganAndSaysThatItHangs) {
   if (!is_fake()) GTEST_SKIP() << "ctest puts libfreenect's fakenect in LD_LIBRARY_PATH";
   const test::Folder folder;
   record(folder);
   setenv("FAKENECT_PATH", folder.path().c_str(), 1);
-  runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
-                         "robot.kinect.model: v1\nsource: live\nvalues: raw_11_bit");
-  host.run_for(milliseconds(100));
+  const runtime::ComponentFactory slow{"kinect", [](runtime::Host& host) {
+                                         return std::make_unique<KinectComponent>(
+                                             host, milliseconds(500));
+                                       }};
+  runtime::TestHost host(slow, "robot.kinect.model: v1\nsource: live\nvalues: raw_11_bit");
+  const runtime::Time start = host.now();
+  host.run_for(milliseconds(250));
+  EXPECT_EQ(host.heartbeat().reason(), "");
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(host.heartbeat().reason(), "the Kinect is silent: a read takes over 0.3 s");
+  host.run_for(milliseconds(200));
   const auto depth = host.last(topics::kKinectDepth);
   const auto color = host.last(topics::kKinectColor);
   ASSERT_TRUE(depth && color) << host.heartbeat().reason();
   EXPECT_EQ(depth->header().stamp().nanosec(), color->header().stamp().nanosec());
+  EXPECT_LE(wire::from_message(depth->header().stamp()) - start, milliseconds(20));
   EXPECT_EQ(depth->width(), 640U);
   EXPECT_EQ(depth->data()[0] + 256 * depth->data()[1], millimeters_of_raw(kRaw));
   EXPECT_EQ(color->encoding(), "rgb8");
