@@ -263,7 +263,7 @@ class Trainer {
   Matrix inputs_ = Matrix::Zero(kBatch, kInputs), slopes_;
 };
 
-constexpr std::array kThresholds{-2.0, -1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0};
+constexpr std::array kThresholds{-1.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};
 
 /// The scores of unseen scenes at several thresholds.
 std::array<Score, kThresholds.size()> test(const Network& network, Scenes& scenes, int count) {
@@ -321,18 +321,22 @@ void write(const Network& network, const std::string& path) {
 int main(int argc, char** argv) {
   CLI::App app("Trains the network of the people detector on random scenes");
   std::string out = "network_weights.cpp";
-  int count = 5400, epochs = 12, rounds = 2;
+  int count = 12000, epochs = 12, rounds = 3, tests = 1000;
+  bool trains = true;
   app.add_option("--out", out, "Where the network is written");
   app.add_option("--scenes", count, "New ones in each round")->check(CLI::Range(10, 100000));
   app.add_option("--epochs", epochs, "Of each round")->check(CLI::Range(1, 1000));
   app.add_option("--rounds", rounds, "Each takes what the one before it took wrongly for people")
       ->check(CLI::Range(1, 10));
+  app.add_option("--tests", tests, "Scenes that it is tested on")->check(CLI::Range(1, 100000));
+  app.add_flag("!--test-only", trains, "Tests the network that is built in");
   CLI11_PARSE(app, argc, argv);
   std::vector<Sample> samples;
   Trainer trainer;
   Scenes scenes;
   auto network = std::make_unique<Network>();
-  for (int round = 0; round < rounds; ++round) {
+  if (!trains) *network = people_detector::trained_network();
+  for (int round = 0; trains && round < rounds; ++round) {
     std::fprintf(stderr, "round %d of %d\n", round + 1, rounds);
     collect(scenes, count, round > 0 ? network.get() : nullptr, round > 0 ? 0.02 : 0.12, samples);
     for (int i = 0; i < epochs; ++i)
@@ -341,10 +345,10 @@ int main(int argc, char** argv) {
     *network = trainer.network();
     write(*network, out);
   }
-  const auto scores = test(*network, scenes, 300);
+  const auto scores = test(*network, scenes, tests);
   for (std::size_t k = 0; k < scores.size(); ++k) {
     const Score& score = scores[k];
-    std::printf("threshold %4.1f: recall %.4f precision %.4f error %.3f m (%d people)\n",
+    std::printf("threshold %5.2f: recall %.4f precision %.4f error %.3f m (%d people)\n",
                 kThresholds[k], score.recall(), score.precision(),
                 score.error / std::max(1, score.found), score.found + score.missed);
   }

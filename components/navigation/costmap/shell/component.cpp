@@ -24,8 +24,8 @@ constexpr double kSeenLately = 0.5;         // [s] who was not seen for longer g
 constexpr double kWalks = 0.3;              // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;       // [m]
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
-constexpr int kGlobalShare =
-    5;  // every fifth scan goes into the global costs, which planning reads once a second
+// Every fifth scan of a sensor goes into the global costs, which planning reads once a second.
+constexpr int kGlobalShare = 5;
 
 double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
 
@@ -275,7 +275,8 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
     beams = {first, increment, count,
              layer == &Map::ultrasonic
                  ? cone_directions(first, increment, count, ultrasonic_cone_, kConeBeams)
-                 : beam_directions(first, increment, count)};
+                 : beam_directions(first, increment, count),
+             beams.turn};
   }
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   const std::string frame = scan->header().frame_id();
@@ -290,7 +291,7 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
                          });
 }
 
-void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
+void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
                                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                                   const geometry::Pose2& odom_T_sensor) {
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
@@ -306,7 +307,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, const
 
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
   if (map_T_odom && global_.costs &&
-      (layer == &Map::ultrasonic || ++global_share_ % kGlobalShare == 0)) {
+      (layer == &Map::ultrasonic || beams.turn++ % kGlobalShare == 0)) {
     if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
     observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
   }

@@ -32,6 +32,7 @@ class CostmapComponent final : public runtime::Component {
     float angle_min = 0.0F, increment = 0.0F;
     std::size_t count = 0;
     std::vector<geometry::Point2> directions;
+    int turn = 0;  ///< of the scans, those that go into the global costs
   };
 
   CostmapConfig config(bool rolling, const grid::GridGeometry& window) const;
@@ -42,7 +43,7 @@ class CostmapComponent final : public runtime::Component {
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
                  const runtime::SampleInfo& info, Beams& beams, Costmap::LayerId Map::*layer);
-  void place_scan(const sensor_msgs::msg::LaserScan& scan, const Beams& beams,
+  void place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                   const geometry::Pose2& odom_T_sensor);
   std::span<const float> heard(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
@@ -86,7 +87,6 @@ class CostmapComponent final : public runtime::Component {
   Beams laser_beams_, ultrasonic_beams_, depth_beams_, low_beams_, rear_beams_;
   runtime::Time local_published_{};
   std::uint64_t last_request_ = 0;
-  int global_share_ = 0;
 
   wire::TransformInput transforms_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;

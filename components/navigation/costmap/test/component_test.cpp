@@ -72,6 +72,11 @@ class Component : public testing::Test {
     return highest;
   }
 
+  int global_cost(double x, double y) const {
+    const auto costs = wire::from_message(host.last(topics::kGlobalCosts).value());
+    return costs->at(costs->geometry().cell_at(x, y));
+  }
+
   grid::OccupancyGrid map{{160, 160, 0.05, -4.0, -4.0}, grid::kFree};
   runtime::TestHost host{runtime::component_factory<CostmapComponent>("costmap"), kFootprint};
   runtime::Time map_stamp{}, last_scan{};
@@ -137,6 +142,19 @@ TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   EXPECT_EQ(reason(), "") << "neither was ever heard";
 }
 
+TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
+  give_map();
+  run(200);
+  for (int i = 0; i < 100; ++i) {
+    if (i % 5 == 0)
+      host.publish(topics::kRearScan, scan("laser", 1.0F));
+    else
+      host.publish(topics::kScanFiltered, scan());
+    run(20, false);
+  }
+  EXPECT_EQ(global_cost(1.02, 0.02), 252) << "the highest that a planner crosses";
+}
+
 TEST_F(Component, GivesPeopleRoomUntilNobodyTellsOfThem) {
   give_map();
   const auto tell = [&](double x, double vx, float unseen = 0.0F) {
@@ -147,26 +165,22 @@ TEST_F(Component, GivesPeopleRoomUntilNobodyTellsOfThem) {
     people.people()[1].x(std::numeric_limits<double>::quiet_NaN());
     host.publish(topics::kPeople, people);
   };
-  const auto global_cost = [&](double x) {
-    const auto costs = wire::from_message(host.last(topics::kGlobalCosts).value());
-    return int{costs->at(costs->geometry().cell_at(x, 0.0))};
-  };
   run(500);
   const auto keep_telling = [&](double x, double vx, float unseen = 0.0F) {
     for (int i = 0; i < 20; ++i) tell(x, vx, unseen), run(60);
   };
   keep_telling(1.0, 0.0);
   EXPECT_NEAR(local_cost(1.0, 0.0), 80, 4);
-  EXPECT_NEAR(global_cost(1.0), 80, 4) << "who stands is on the map too";
+  EXPECT_NEAR(global_cost(1.0, 0.0), 80, 4) << "who stands is on the map too";
   EXPECT_GT(local_cost(1.0, 1.0), 5);
   EXPECT_EQ(local_cost(1.0, 1.3), kFreeCost);
   run(1500);
   EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "nobody tells of them";
-  EXPECT_EQ(global_cost(1.0), kFreeCost);
+  EXPECT_EQ(global_cost(1.0, 0.0), kFreeCost);
   EXPECT_EQ(reason(), "");
   keep_telling(1.0, 1.0);
   EXPECT_NEAR(local_cost(1.0, 0.0), 80, 4);
-  EXPECT_EQ(global_cost(1.0), kFreeCost) << "who walks is elsewhere by then";
+  EXPECT_EQ(global_cost(1.0, 0.0), kFreeCost) << "who walks is elsewhere by then";
   keep_telling(1.0, 0.0, 0.8F);
   EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "not seen lately";
   keep_telling(-1.0, 0.0);

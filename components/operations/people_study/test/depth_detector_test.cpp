@@ -100,6 +100,21 @@ Score score_of(const std::vector<people_study::Scene>& scenes) {
   return total;
 }
 
+TEST(DepthDetector, HeightOfWhoseHeadLeavesTheImageIsNotKnown) {
+  Studio studio;
+  DepthDetector detector = detector_for(studio.intrinsics());
+  const auto height_at = [&](const char* name) {
+    const auto scenes = people_study::thesis_scenes();
+    const auto scene = std::find_if(scenes.begin(), scenes.end(),
+                                    [&](const auto& each) { return each.name == name; });
+    const auto shot = studio.take(*scene, 3).value();
+    const auto found = detector.find(shot.processed, shot.view).value();
+    return found.empty() ? -1.0 : found.front().height;
+  };
+  EXPECT_NEAR(height_at("at 300 cm, camera 5 deg down"), 1.7, 0.1);
+  EXPECT_EQ(height_at("at 100 cm, camera 5 deg down"), 0.0);
+}
+
 TEST(DepthDetector, FindsThePeopleOfTheThesisAndNoneOfItsThings) {
   const Score score = score_of(people_study::thesis_scenes());
   EXPECT_GE(score.recall(), 0.98);
@@ -111,7 +126,7 @@ TEST(DepthDetector, FindsPeopleInAnyRoom) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed)
     scenes.push_back(people_study::random_scene(seed));
   const Score score = score_of(scenes);
-  EXPECT_GE(score.recall(), 0.95);
+  EXPECT_GE(score.recall(), 0.96);
   EXPECT_GE(score.precision(), 0.96);
   EXPECT_LE(score.error / score.found, 0.08);
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kSteepest = 1.2;   // [rad]
 constexpr double kBodyDepth = 0.1;  // [m] from the visible surface to the body's middle
+constexpr double kBeside = 0.55;    // [m] nearer to somebody surer by far ...
+constexpr float kEcho = 0.35F;      // ... than by this is no other one
 constexpr double kSamePlace = 0.2;  // [m] nearer votes are for the same place
 constexpr float kSilence = -3.0F;   // log odds of a window that has no vote, or of none
 constexpr float kHopeless = -6.0F;  // log odds
@@ -60,8 +62,10 @@ bool DepthDetector::are_near(const Vote& a, const Vote& b, double reach) {
 }
 
 bool DepthDetector::is_taken(const Vote& vote) const {
-  return std::any_of(taken_.begin(), taken_.end(),
-                     [&](const Vote& other) { return are_near(vote, other, config_.same); });
+  return std::any_of(taken_.begin(), taken_.end(), [&](const Vote& other) {
+    return are_near(vote, other, config_.same) ||
+           (vote.score < kEcho * other.score && are_near(vote, other, kBeside));
+  });
 }
 
 /// How sure it is that somebody is there: the best vote, and the best few for the same place; one

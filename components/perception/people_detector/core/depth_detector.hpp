@@ -13,13 +13,13 @@ namespace usher::people_detector {
 struct Sighting {
   double forward = 0.0;  ///< [m] the middle of the body, in the camera's direction
   double left = 0.0;     ///< [m]
-  double height = 0.0;   ///< [m] of the highest visible point
+  double height = 0.0;   ///< [m] of the highest visible point; 0: it leaves the image
   double score = 0.0;    ///< log odds, over the threshold
 };
 
 struct DetectorConfig {
   Windows::Config windows;
-  double threshold = 1.75;  ///< [-] {-10..10} least log odds
+  double threshold = 0.5;  ///< [-] {-10..10} least log odds
   double same = 0.36;       ///< [m] {0.1..1} nearer bodies are the same
 };
 

@@ -14,12 +14,19 @@ namespace {
 using geometry::Point2;
 
 constexpr double kForbidden = 1e6;
-constexpr double kSitsDown = 9.0;  // most that another height costs: who sits down is the same
+constexpr double kSitsDown = 9.0;  // most that another height costs: who sits down is the same ...
+constexpr double kWatched = 0.3;   // [s] ... if he was seen so lately
 constexpr double kNewcomer = 4.0;  // what a track costs that is not confirmed
 constexpr double kNever = -std::numeric_limits<double>::infinity();
-constexpr double kFirstSpeed = 0.8;   // [m/s] standard deviation of somebody new
-constexpr double kLongest = 1.0;      // [s] of one prediction; a gap of the sensors is no time
-constexpr double kHeightShare = 0.1;  // of a new height in the mean
+constexpr double kFirstSpeed = 0.8;  // [m/s] standard deviation of somebody new
+constexpr double kLongest = 1.0;     // [s] of one prediction; a gap of the sensors is no time
+constexpr int kHeights = 10;         // sightings that a mean height is of
+constexpr double kPosture = 0.03;    // [m] by which it changes while somebody is hidden
+constexpr double kReach = 6.0;       // what the farthest place costs where he can be ...
+constexpr double kAnother = 9.0;     // ... and all together if he is another one
+constexpr double kDoubt = 1.5;       // by so little more he is the second one
+constexpr double kStrays = 0.3;      // [m/s] how far from where he is expected
+constexpr double kSure = 0.5;        // [s] after which that is settled all the same
 
 bool usable(const Observation& one) {
   const Eigen::Matrix2d& c = one.covariance;
@@ -82,7 +89,8 @@ double Tracker::cost(const Track& track, const Observation& observation, const G
   double distance = away.dot(spread.inverse() * away);
   if (observation.height > 0.0 && track.height > 0.0) {
     const double higher = (observation.height - track.height) / config_.height_sigma;
-    distance += std::min(kSitsDown, higher * higher);
+    const bool watched = now_ - track.last_seen() <= kWatched;
+    distance += watched ? std::min(kSitsDown, higher * higher) : higher * higher;
   }
   if (distance > config_.gate) return kForbidden;
   return distance + std::log(spread.determinant()) + (track.confirmed ? 0.0 : kNewcomer);
@@ -97,14 +105,13 @@ void Tracker::correct(Track& track, const Observation& observation, const Gain& 
   const Eigen::Matrix4d updated = track.covariance - gain * (look * track.covariance);
   track.covariance = 0.5 * (updated + updated.transpose());
   if (observation.height > 0.0) {
-    track.height = track.height > 0.0
-                       ? track.height + kHeightShare * (observation.height - track.height)
-                       : observation.height;
+    track.heights = std::min(track.heights + 1, kHeights);
+    track.height += (observation.height - track.height) / track.heights;
   }
   if (source != Source::kLaser) ++track.sightings;
   if (track.confirmed) return;
-  track.confirmed = track.fresh = track.sightings >= config_.confirmations ||
-                                  (track.position() - track.birthplace).norm() > config_.travel;
+  track.fresh = track.sightings >= config_.confirmations ||
+                (track.position() - track.birthplace).norm() > config_.travel;
 }
 
 void Tracker::add(const Observation& observation, Source source, double time) {
@@ -113,37 +120,74 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   track.id = next_id_++;
   track.state.head<2>() = track.birthplace = observation.position;
   track.covariance.topLeftCorner<2, 2>() = observation.covariance;
+  const double strayed = kFirstSpeed * (now_ - time);
+  track.covariance.topLeftCorner<2, 2>() += strayed * strayed * Eigen::Matrix2d::Identity();
   track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
   track.height = observation.height;
+  track.heights = observation.height > 0.0;
   track.born = time;
   track.seen.fill(kNever);
   track.seen[static_cast<std::size_t>(source)] = time;
   track.sightings = source == Source::kLaser ? 0 : 1;
-  track.confirmed = track.sightings >= config_.confirmations;
+  track.fresh = track.sightings >= config_.confirmations;
   tracks_.push_back(track);
 }
 
+/// How little somebody new is like somebody hidden {0..}, who may be: near enough to have walked
+/// here since, and of the same height. Of whom no height is known only the place speaks.
+double Tracker::unlikeness(const Track& hidden, const Track& track) const {
+  if (hidden.last_seen() >= track.born) return kForbidden;
+  const bool measured = hidden.heights > 0 && track.heights > 0;
+  const double range = (measured ? config_.walk : kStrays) * (now_ - hidden.last_seen());
+  const double away = (hidden.position() - track.position()).norm() / (config_.reach + range);
+  if (away > 1.0) return kForbidden;
+  if (!measured) return kReach * away * away;
+  const double noise = config_.height_sigma * config_.height_sigma;
+  const double spread = 2.0 * kPosture * kPosture + noise / track.heights + noise / hidden.heights;
+  const double higher = hidden.height - track.height;
+  const double unlike = kReach * away * away + higher * higher / spread;
+  return unlike < kAnother ? unlike : kForbidden;
+}
+
+/// He may be either of two.
+bool Tracker::is_doubtful(std::size_t newcomer) const {
+  double least = kForbidden, second = kForbidden;
+  for (std::size_t i = 0; i < hidden_.size(); ++i) {
+    const double unlike = costs_[newcomer * hidden_.size() + i];
+    second = std::min(second, std::max(unlike, least));
+    least = std::min(least, unlike);
+  }
+  return least < kForbidden && second - least < kDoubt;
+}
+
 /// Who has just been confirmed may be somebody who was hidden for a while and came out elsewhere
-/// than expected: near enough to have walked there, and of the same height.
+/// than expected.
 void Tracker::recognize() {
-  for (Track& track : tracks_) {
-    if (!track.fresh) continue;
+  newcomers_.clear(), hidden_.clear(), costs_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (tracks_[i].fresh)
+      newcomers_.push_back(i);
+    else if (tracks_[i].confirmed)
+      hidden_.push_back(i);
+  }
+  for (const std::size_t one : newcomers_) {
+    for (const std::size_t other : hidden_)
+      costs_.push_back(unlikeness(tracks_[other], tracks_[one]));
+  }
+  const auto pairs = assignment_.solve(costs_, static_cast<int>(newcomers_.size()),
+                                       static_cast<int>(hidden_.size()), kForbidden);
+  for (std::size_t i = 0; i < newcomers_.size(); ++i) {
+    Track& track = tracks_[newcomers_[i]];
+    if (now_ - track.born < kSure && is_doubtful(i)) continue;
     track.fresh = false;
-    Track* best = nullptr;
-    double least = 1.0;
-    for (Track& hidden : tracks_) {
-      const double unseen = now_ - hidden.last_seen();
-      if (!hidden.confirmed || &hidden == &track || hidden.last_seen() >= track.born) continue;
-      const double away = (hidden.position() - track.position()).norm();
-      double distance = away / (config_.reach + config_.walk * unseen);
-      if (hidden.height > 0.0 && track.height > 0.0)
-        distance += std::abs(hidden.height - track.height) / (4.0 * config_.height_sigma);
-      if (distance < least) least = distance, best = &hidden;
-    }
-    if (best == nullptr) continue;
-    track.id = best->id;
-    track.born = best->born;
-    best->seen.fill(kNever);  // is forgotten
+    track.confirmed = true;
+    if (pairs[i] < 0) continue;
+    Track& hidden = tracks_[hidden_[static_cast<std::size_t>(pairs[i])]];
+    track.id = hidden.id;
+    track.born = hidden.born;
+    if (hidden.heights > track.heights)
+      track.height = hidden.height, track.heights = hidden.heights;
+    hidden.seen.fill(kNever);  // is forgotten
   }
 }
 

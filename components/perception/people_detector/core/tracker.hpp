@@ -33,12 +33,13 @@ struct Track {
   Eigen::Vector4d state = Eigen::Vector4d::Zero();  ///< x, y [m], vx, vy [m/s] in odom
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
   double height = 0.0;                  ///< [m] 0: not known
+  int heights = 0;                      ///< {0..10} sightings behind it
   double born = 0.0;                    ///< [s]
   std::array<double, kSources> seen{};  ///< [s] last time by each source; -infinity: never
   geometry::Point2 birthplace = geometry::Point2::Zero();
   int sightings = 0;
   bool confirmed = false;
-  bool fresh = false;  ///< confirmed by the last update
+  bool fresh = false;  ///< not confirmed yet: may be somebody who was hidden
 
   geometry::Point2 position() const { return state.head<2>(); }
   geometry::Point2 velocity() const { return state.tail<2>(); }
@@ -49,7 +50,7 @@ struct TrackerConfig {
   double acceleration = 0.9;   ///< [m/s^1.5] {0.1..5} density of the random acceleration
   double gate = 13.8;          ///< [-] {1..50} largest squared Mahalanobis distance (99.9 %)
   double reach = 0.7;          ///< [m] {0.2..3} and largest distance
-  double height_sigma = 0.08;  ///< [m] {0.02..1} by which heights of one person differ
+  double height_sigma = 0.05;  ///< [m] {0.02..1} by which heights of one person differ
   int confirmations = 4;       ///< {1..30} sightings by a camera until somebody is believed
   double travel = 0.5;         ///< [m] {0..3} that legs must go, seen by the laser alone
   double patience = 0.4;       ///< [s] {0.1..2} until who is not confirmed is forgotten
@@ -89,6 +90,8 @@ class Tracker {
   double cost(const Track& track, const Observation& observation, const Gain& look) const;
   void correct(Track& track, const Observation& observation, const Gain& look, Source source);
   void add(const Observation& observation, Source source, double time);
+  double unlikeness(const Track& hidden, const Track& track) const;
+  bool is_doubtful(std::size_t newcomer) const;
   void recognize();
   void forget();
 
@@ -99,6 +102,7 @@ class Tracker {
   std::vector<Observation> observations_;
   std::vector<double> costs_;
   std::vector<char> used_;
+  std::vector<std::size_t> newcomers_, hidden_;
   Assignment assignment_;
 };
 

@@ -160,13 +160,14 @@ double Windows::top(const Candidate& candidate) const {
   const auto left = static_cast<double>(candidate.left);
   constexpr double kHighest = kLowest + kCellHeight * kUp, kRowStep = 0.02;  // [m]
   constexpr double kBeside = 0.24, kColumnStep = 0.04;                       // [m]
+  bool above = false;  // nothing, as the image shows
   for (int row_number = 0; row_number * kRowStep < kHighest; ++row_number) {
     const double height = kHighest - row_number * kRowStep;
     const double below = view_.height - height;
     const double depth = forward * cos_down_ + below * sin_down_;
     if (depth < kAtLeast) continue;
     const double y = (below * cos_down_ - forward * sin_down_) / depth;
-    int seen = 0;
+    int seen = 0, looked = 0;
     for (int column_number = 0; column_number <= 12; ++column_number) {
       const double aside = column_number * kColumnStep - kBeside;
       const double x = -(left + aside) / depth;
@@ -178,9 +179,11 @@ double Windows::top(const Candidate& candidate) const {
       const std::uint16_t pixel =
           thinned_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                    static_cast<std::size_t>(column)];
+      ++looked;
       seen += pixel != 0 && std::abs(1e-3 * pixel - depth) < kTopDepth;
     }
-    if (seen >= 2) return height;
+    if (seen >= 2) return above ? height : 0.0;
+    above = above || looked >= 2;
   }
   return 0.0;
 }

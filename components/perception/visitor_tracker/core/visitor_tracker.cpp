@@ -45,6 +45,8 @@ constexpr double kWalk = 1.5;           // [m/s] by which that grows
 constexpr double kMistaken = 1.7;       // times as long must follow who is to take somebody's place
 constexpr double kSamePlace = 0.7;      // [m]
 constexpr double kSameVelocity = 0.7;   // [m/s]
+constexpr double kSameHeight = 0.12;    // [m]
+constexpr double kMayHaveBent = 8.0;    // [s]
 constexpr double kSameFor = 1.5;        // [s]
 constexpr double kForesees = 0.8;       // [s] of walking on
 constexpr double kAgeError = 0.5;       // [s]
@@ -77,11 +79,11 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
     way_.clear();
   }
   // A visitor of another time would have walked any distance since then.
-  if (broke && passed < 0.0) last_time_ = moment.time;
+  if (broke && passed < 0.0) last_.time = moment.time;
   time_ = moment.time;
   const bool other = moment.service != service_;
   service_ = moment.service;
-  if (other && on_the_way()) first_ = held_;
+  if (other && on_the_way()) first_ = held_, last_of_first_ = last_;
   remember_way(moment);
   forget_other_people(moment);
   observe(moment, broke ? 0.0 : passed);
@@ -110,7 +112,7 @@ void VisitorTracker::forget_other_people(const Moment& moment) {
     return person.id == held_ && person.age + kAgeError < moment.time - held_since_;
   });
   if (held_ == 0 || !given_again) return;
-  held_ = first_ = 0;
+  held_ = first_ = measured_ = 0;
   habits_.clear();
 }
 
@@ -201,6 +203,15 @@ bool VisitorTracker::seen(const Look* look) const {
           blind_at(look->place, config_.blind_from, 0.0));
 }
 
+/// The visitor can be so tall. Who was seen bent only may be taller, but for a while nobody else is
+/// believed to be he.
+bool VisitorTracker::as_tall(const Look& look) const {
+  const double height = look.person->height;
+  if (!(height > 0.0) || height_ <= 0.0) return true;
+  if (height < height_ - kSameHeight) return false;
+  return height < height_ + kSameHeight || time_ - last_.time > kMayHaveBent;
+}
+
 bool VisitorTracker::before(const Look& look) const {
   return look.range <= config_.within &&
          std::abs(std::atan2(look.place.y(), look.place.x())) <= config_.bearing &&
@@ -270,8 +281,8 @@ void VisitorTracker::distrust(const Pose2& odom_T_base) {
   for (const Look& look : looks_) {
     const auto id = look.person->id;
     if (!hidden || (id != first_ && id != held_) || look.person->unseen > kSighted) continue;
-    const double gone = time_ - look.person->unseen - last_time_;
-    if (gone < kHidden || (look.person->position - last_place_).norm() <= kElsewhere) continue;
+    const double gone = time_ - look.person->unseen - last_.time;
+    if (gone < kHidden || (look.person->position - last_.place).norm() <= kElsewhere) continue;
     habits_[id].beside = look.person->position;
     held_ = first_ = kLost;
   }
@@ -288,6 +299,7 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
     if (held->place.x() > kGoneAhead && held_ != first_) {
       habits_[held_].beside = held->person->position;
       held_ = first_;
+      last_ = last_of_first_;
     }
     return;
   }
@@ -298,7 +310,7 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
   }
   const Look* found = same_place(odom_T_base);
   if (!found && !out_of_view(odom_T_base)) {
-    const double reach = kReach + kWalk * (time_ - last_time_);
+    const double reach = kReach + kWalk * (time_ - last_.time);
     found = follower(config_.follows, held_ == 0 ? kFollowWithin : reach, false);
   }
   if (!found) found = waits(odom_T_base);
@@ -307,12 +319,12 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
 
 /// Who has stayed behind or beside the robot that stands, the nearest.
 const VisitorTracker::Look* VisitorTracker::waits(const Pose2& odom_T_base) const {
-  const bool near = (last_place_ - odom_T_base.position()).norm() <= kBlindWithin;
+  const bool near = (last_.place - odom_T_base.position()).norm() <= kBlindWithin;
   const double least = near ? kWaits : kWaitsLong;
   const Look* best = nullptr;
   for (const Look& look : looks_) {
     const bool stranger = look.habit.beside || look.habit.from_ahead;
-    if (look.habit.stays < (stranger ? kStrangerWaits : least)) continue;
+    if (look.habit.stays < (stranger ? kStrangerWaits : least) || !as_tall(look)) continue;
     if (!best || look.range < best->range) best = &look;
   }
   return best;
@@ -346,7 +358,7 @@ void VisitorTracker::note_others(double passed) {
 /// Where the visitor was going to be, so long after the last sighting.
 Point2 VisitorTracker::expected(double gone) const {
   const double foresees = service_ == Service::kFollows ? kLeaderForesees : kForesees;
-  return last_place_ + std::min(gone, foresees) * last_velocity_;
+  return last_.place + std::min(gone, foresees) * last_.velocity;
 }
 
 /// Who first turned up where the visitor was going to be then, and walks on or has stopped.
@@ -354,11 +366,11 @@ const VisitorTracker::Look* VisitorTracker::come_from_there() const {
   const Look* best = nullptr;
   double least = 1.0;
   for (const Look& look : looks_) {
-    const bool new_here = look.habit.since > last_time_;
-    const double gone = (new_here ? look.habit.since : time_) - last_time_;
-    if (!seen(&look) || look.habit.beside || gone > kLeaderHidden) continue;
+    const bool new_here = look.habit.since > last_.time;
+    const double gone = (new_here ? look.habit.since : time_) - last_.time;
+    if (!seen(&look) || look.habit.beside || gone > kLeaderHidden || !as_tall(look)) continue;
     const bool likewise =
-        look.speed < kStops || (look.person->velocity - last_velocity_).norm() <= kSameVelocity;
+        look.speed < kStops || (look.person->velocity - last_.velocity).norm() <= kSameVelocity;
     const Point2 place = new_here ? look.habit.from : look.person->position;
     const double off = (place - expected(gone)).norm() / (kSamePlace + kStrays * gone);
     if (!likewise || off > least) continue;
@@ -374,7 +386,7 @@ const VisitorTracker::Look* VisitorTracker::come_back() const {
   for (const Look& look : looks_) {
     const bool stood_there =
         look.habit.beside && (look.person->position - *look.habit.beside).norm() < kComes;
-    if (look.habit.stands < config_.returns || stood_there) continue;
+    if (look.habit.stands < config_.returns || stood_there || !as_tall(look)) continue;
     if (!best || look.range < best->range) best = &look;
   }
   return best;
@@ -382,16 +394,16 @@ const VisitorTracker::Look* VisitorTracker::come_back() const {
 
 /// Somebody who turned up where the visitor was going to be, walking likewise.
 const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base) const {
-  const double gone = time_ - last_time_;
+  const double gone = time_ - last_.time;
   const bool hidden = out_of_view(odom_T_base);
   if (held_ == 0 || (gone > kSameFor && !hidden)) return nullptr;
-  const Point2 there = hidden ? last_place_ : expected(gone);
+  const Point2 there = hidden ? last_.place : expected(gone);
   const Look* best = nullptr;
   double least = hidden ? kFarAside : kSamePlace;
   for (const Look& look : looks_) {
     const double off = (look.person->position - there).norm();
-    if (!seen(&look) || look.habit.beside || off > least) continue;
-    if ((look.person->velocity - last_velocity_).norm() > kSameVelocity) continue;
+    if (!seen(&look) || look.habit.beside || off > least || !as_tall(look)) continue;
+    if ((look.person->velocity - last_.velocity).norm() > kSameVelocity) continue;
     best = &look;
     least = off;
   }
@@ -401,11 +413,14 @@ const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base)
 /// Who has followed for so long [s], nearest to where the visitor was last seen and no farther from
 /// there than `nearest` [m]. Who was seen beside the visitor only if `any`.
 const VisitorTracker::Look* VisitorTracker::follower(double least, double nearest, bool any) const {
+  const bool drives = moves(time_);
   const Look* best = nullptr;
   for (const Look& look : looks_) {
-    const double off = held_ == 0 ? look.range : (look.person->position - last_place_).norm();
-    const bool new_one = look.person->id != held_ && seen(&look) && (any || !look.habit.beside);
-    if (!new_one || look.habit.follows < least || off > nearest) continue;
+    const double off = held_ == 0 ? look.range : (look.person->position - last_.place).norm();
+    const bool passes = !drives && look.place.x() > 0.0;
+    const bool new_one =
+        look.person->id != held_ && seen(&look) && !passes && (any || !look.habit.beside);
+    if (!new_one || look.habit.follows < least || off > nearest || !as_tall(look)) continue;
     best = &look;
     nearest = off;
   }
@@ -415,12 +430,12 @@ const VisitorTracker::Look* VisitorTracker::follower(double least, double neares
 /// The visitor was last seen, not walking off, where nothing looks now, or nearly so. While the
 /// robot stands he may have stepped aside, and only a camera notices somebody who stands.
 bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
-  const double gone = time_ - last_time_;
+  const double gone = time_ - last_.time;
   if (!on_the_way() || held_ == 0 || gone > config_.blind_for) return false;
-  const Point2 place = inverse(odom_T_base) * last_place_;
-  const Point2 away = last_place_ - odom_T_base.position();
+  const Point2 place = inverse(odom_T_base) * last_.place;
+  const Point2 away = last_.place - odom_T_base.position();
   const bool stays = service_ == Service::kGuides && !moves(time_) &&
-                     last_velocity_.dot(away) <= kWalksOff * away.norm();
+                     last_.velocity.dot(away) <= kWalksOff * away.norm();
   const double aside = service_ == Service::kGuides ? kAside : 0.0;
   if (!stays) return blind_at(place, config_.blind_from, aside);
   return blind_at(place, kCameraEnds, std::min(kAside + kStepsAside * gone, kFarAside));
@@ -429,7 +444,7 @@ bool VisitorTracker::out_of_view(const Pose2& odom_T_base) const {
 /// A camera looks to where the visitor was last seen, if the robot follows; else ahead.
 bool VisitorTracker::looks_there(const Moment& moment) const {
   const bool behind = service_ == Service::kFollows && held_ != 0 &&
-                      (inverse(moment.odom_T_base) * last_place_).x() < 0.0;
+                      (inverse(moment.odom_T_base) * last_.place).x() < 0.0;
   return behind ? moment.looks_behind : moment.looks_ahead;
 }
 
@@ -439,9 +454,11 @@ void VisitorTracker::report(const Moment& moment) {
   const Look* held = find(held_);
   const bool guides = service_ == Service::kGuides;
   if (held && held->person->unseen <= kSighted) {
-    last_time_ = moment.time - held->person->unseen;
-    last_place_ = held->person->position;
-    last_velocity_ = held->person->velocity;
+    last_ = {moment.time - held->person->unseen, held->person->position, held->person->velocity};
+    if (held_ == first_) last_of_first_ = last_;
+    if (!on_the_way() && held_ != measured_) measured_ = held_, height_ = 0.0;
+    if (held_ == measured_ && held->person->height > 0.0)
+      height_ = std::max(height_, held->person->height);
   }
   // Ahead, the laser shows who follows only now and then: without eyes behind nothing is known.
   if (guides && !moment.looks_behind) return;
@@ -449,7 +466,7 @@ void VisitorTracker::report(const Moment& moment) {
     estimate_ = {Presence::kSeen, held_, held->place, held->speed};
   } else if (out_of_view(moment.odom_T_base)) {
     estimate_.presence = Presence::kSeen;
-    estimate_.place = inverse(moment.odom_T_base) * last_place_;
+    estimate_.place = inverse(moment.odom_T_base) * last_.place;
   } else if (guides || looks_there(moment)) {
     estimate_.presence = Presence::kNobody;
   }

@@ -25,9 +25,10 @@ enum class Service : std::uint8_t {
 struct Person {
   std::uint64_t id = 0;  ///< {1..}
   geometry::Point2 position = geometry::Point2::Zero();
-  geometry::Point2 velocity = geometry::Point2::Zero();  ///< [m/s]
-  double age = std::numeric_limits<double>::infinity();  ///< [s] since the first sighting
-  double unseen = 0.0;                                   ///< [s] since the last one
+  geometry::Point2 velocity = geometry::Point2::Zero();      ///< [m/s]
+  double age = std::numeric_limits<double>::infinity();      ///< [s] since the first sighting
+  double unseen = 0.0;                                       ///< [s] since the last one
+  double height = std::numeric_limits<double>::quiet_NaN();  ///< [m] NaN: not known
 };
 
 struct Moment {
@@ -87,6 +88,12 @@ class VisitorTracker {
  private:
   static constexpr double kMostTrail = 12.0;  ///< [m]
 
+  /// When and where a sensor showed somebody.
+  struct Sighting {
+    double time = 0.0;  ///< [s]
+    geometry::Point2 place = geometry::Point2::Zero();
+    geometry::Point2 velocity = geometry::Point2::Zero();  ///< [m/s]
+  };
   struct Habit {
     double before = 0.0;   ///< [s] in front without a break
     double follows = 0.0;  ///< [s] behind, less the time that they did not
@@ -131,6 +138,7 @@ class VisitorTracker {
   bool on_the_way() const { return service_ == Service::kGuides || service_ == Service::kFollows; }
   bool looks_there(const Moment& moment) const;
   bool seen(const Look* look) const;
+  bool as_tall(const Look& look) const;
   bool blind_at(const geometry::Point2& place, double from, double around) const;
   void hold(const Look& look, double time);
   bool out_of_view(const geometry::Pose2& odom_T_base) const;
@@ -147,9 +155,10 @@ class VisitorTracker {
   std::uint64_t held_ = 0;   ///< the visitor; 0: none
   std::uint64_t first_ = 0;  ///< who was the visitor when the way began
   double held_since_ = 0.0;  ///< [s]
-  double last_time_ = 0.0;   ///< [s] and where a sensor last showed the visitor
-  geometry::Point2 last_place_ = geometry::Point2::Zero();
-  geometry::Point2 last_velocity_ = geometry::Point2::Zero();
+  Sighting last_;            ///< of the held one
+  Sighting last_of_first_;
+  std::uint64_t measured_ = 0;  ///< whose height it is; 0: nobody's yet
+  double height_ = 0.0;         ///< [m] his greatest; 0: not known
   Estimate estimate_;
 };
 

@@ -93,7 +93,8 @@ void VisitorTrackerComponent::take(const usher_msgs::msg::People& message) {
                        {person.x(), person.y()},
                        {person.vx(), person.vy()},
                        person.age(),
-                       person.unseen()});
+                       person.unseen(),
+                       static_cast<double>(person.height())});
   }
   const runtime::Time stamp = wire::from_message(message.header().stamp());
   const auto* odometry = odom_.fresh();

@@ -18,7 +18,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class Scene : public testing::Test {
  protected:
   Person& add(std::uint64_t id, const Point2& at, const Point2& velocity = {0, 0}) {
-    return people.emplace_back(Person{id, at, velocity});
+    return people.emplace_back(
+        Person{.id = id, .position = at, .velocity = velocity, .height = height});
   }
   Person& person(std::uint64_t id) {
     for (Person& each : people) {
@@ -93,6 +94,7 @@ class Scene : public testing::Test {
   Service service = Service::kNobody;
   bool ahead = true, behind = true;
   double time = 100.0, drives = 0.0;
+  double height = kNan;  ///< of whoever is added
   Estimate estimate;
 };
 
@@ -416,6 +418,29 @@ TEST_F(OnTheWay, AVisitorWithABrokenIdentityIsFoundByFollowing) {
   EXPECT_TRUE(sees(6));
 }
 
+TEST_F(OnTheWay, WhoIsClearlyShorterIsNotAndWhoIsTallerOnlyAfterAWhile) {
+  const auto found = [this](double tall, double after) {
+    tracker = VisitorTracker({});
+    people.clear();
+    robot = {};
+    service = Service::kNobody;
+    height = 1.75;
+    guide();
+    hide(1);
+    run(after);
+    height = tall;
+    add(6, robot.position() + Point2(2.0, 0.4), {-1.1, 0.0});
+    run(1.0);
+    return sees(6);
+  };
+  EXPECT_TRUE(found(1.80, 2.5));
+  EXPECT_TRUE(found(kNan, 2.5));
+  EXPECT_FALSE(found(1.55, 2.5));
+  EXPECT_FALSE(found(1.55, 9.0));
+  EXPECT_FALSE(found(1.95, 2.5));
+  EXPECT_TRUE(found(1.95, 9.0)) << "he may have bent over the tablet all the time";
+}
+
 TEST_F(OnTheWay, SomebodyTooFarFromWhereTheVisitorWasIsNot) {
   guide();
   hide(1);
@@ -528,6 +553,21 @@ TEST_F(OnTheWay, SomebodyMistakenForTheVisitorWhoWalksOnAheadIsLeft) {
   person(6).velocity = {-1.5, 0.0};
   run(2.0);
   EXPECT_EQ(estimate.presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, WhereSomebodyMistakenForTheVisitorWentNobodyIsSupposed) {
+  guide();
+  hide(1);
+  run(2.0);
+  add(6, robot.position() + Point2(2.0, 0.4), {-1.0, 0.0});
+  run(1.0);
+  ASSERT_TRUE(sees(6));
+  drives = 0.0;
+  person(6).position = robot.position() + Point2(-1.1, 0.8);
+  person(6).velocity = {0.0, 0.0};
+  run(2.0);
+  hide(6);
+  EXPECT_EQ(run(2.0).presence, Presence::kNobody);
 }
 
 TEST_F(OnTheWay, AfterALongWaitTheVisitorMayComeFromAnywhere) {

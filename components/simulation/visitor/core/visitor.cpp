@@ -89,9 +89,10 @@ std::optional<Choice> Visitor::on_the_way(double now) {
     if (stopped_at_ && now - *stopped_at_ < character_.stops_for) return std::nullopt;
     return answered_ ? std::nullopt : press("continue");
   }
+  const bool comes = walk(now) == Walk::kFollow || walk(now) == Walk::kDawdle;
+  if (awaited_at_ && !comes) awaited_at_ = now;
   // The robot waits for somebody who has come up and stands where it does not look.
-  if (offers("stay") && awaited_at_ && now - *awaited_at_ >= kCatchesUp &&
-      (walk(now) == Walk::kFollow || walk(now) == Walk::kDawdle)) {
+  if (offers("stay") && awaited_at_ && now - *awaited_at_ >= kCatchesUp) {
     awaited_at_ = now;
     return press("stay");
   }

@@ -50,7 +50,7 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
   const geometry::Pose3 pose = camera.pose(world);
   camera_height_ = pose.translation.z();
   down_ = -std::asin(std::clamp((pose.rotation * Eigen::Vector3d::UnitX()).z(), -1.0, 1.0));
-  const double ahead = (inverse(origin) * pose.translation.head<2>()).x();
+  ahead_ = (inverse(origin) * pose.translation.head<2>()).x();
   const auto people = world.people();
   movers_.clear();
   for (const Person& person : people)
@@ -68,7 +68,7 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
       const std::int32_t who = hits_.what[i] - things;
       if (who < 0) continue;
       const auto range = static_cast<double>(hits_.range[i]);
-      if (!in_view(range * static_cast<double>(fan_.cosines()[i]) - ahead, height)) continue;
+      if (!in_view(range * static_cast<double>(fan_.cosines()[i]) - ahead_, height)) continue;
       Visible& visible = visible_[static_cast<std::size_t>(who)];
       visible.area += config_.filled * kSlice * range * fan_.increment();
       visible.top = std::min(height + 0.5 * kSlice, movers_[static_cast<std::size_t>(who)].top);
@@ -101,7 +101,8 @@ void PeopleModel::find(const World& world, const DepthCamera& camera,
     if (random_.uniform() >= found) continue;
     const Point2 sight = place.normalized();
     const Point2 seen = place + along * sight + across * Point2(-sight.y(), sight.x());
-    sightings.push_back({seen.x(), seen.y(), std::max(0.1, visible.top + higher)});
+    const bool cut = !in_view(place.x() - ahead_, movers_[i].top);
+    sightings.push_back({seen.x(), seen.y(), cut ? 0.0 : std::max(0.1, visible.top + higher)});
   }
 }
 

@@ -30,7 +30,7 @@ struct PeopleModelConfig {
 /// Somebody as the detector sees them, from the camera's place on the floor.
 struct ModelledSighting {
   double forward = 0.0, left = 0.0;  ///< [m]
-  double height = 0.0;               ///< [m] of the highest visible point
+  double height = 0.0;               ///< [m] of the highest visible point; 0: it leaves the image
 };
 
 class PeopleModel {
@@ -61,6 +61,7 @@ class PeopleModel {
   std::vector<Mover> movers_;
   std::vector<Visible> visible_;
   double camera_height_ = 0.0, down_ = 0.0;
+  double ahead_ = 0.0;  ///< [m] the camera, of the axle, where it looks
 };
 
 }  // namespace usher::world
