@@ -96,6 +96,13 @@ void LethalBits::clear(int column, int row) {
   }
 }
 
+void LethalBits::set(int column, int row) {
+  for (int w = std::max(0, (column - 63 + kStride - 1) / kStride); w <= column / kStride; ++w) {
+    words_[static_cast<std::size_t>(w) * stride_ + static_cast<std::size_t>(row)] |=
+        std::uint64_t{1} << (column - w * kStride);
+  }
+}
+
 ContactTest::ContactTest(const Footprint& footprint, CellExtent extent, cpu::Simd simd)
     : corners_(footprint.corners().begin(), footprint.corners().end()),
       sides_(footprint.sides().begin(), footprint.sides().end()),

@@ -42,8 +42,9 @@ class LethalBits {
   }
   /// Both counted with the rim.
   bool test(int column, int row) const;
-  /// Makes a cell free; both counted with the rim.
+  /// Makes a cell free, or lethal; both counted with the rim.
   void clear(int column, int row);
+  void set(int column, int row);
 
  private:
   void fill_row(const std::uint8_t* costs, int width, bool unknown_is_lethal, int row);

@@ -27,6 +27,7 @@ constexpr double kLaneGap = 0.05;    // [m] beside the clearance, to what stands
 constexpr double kMeeting = 1.2;     // [m] of path within which somebody is met
 constexpr double kWalksOn = 0.2;     // [m/s] the same way: no meeting
 constexpr double kWalks = 0.3;       // [m/s] slower, the costs say all
+constexpr double kAtTheRobot = 0.8;  // [m] from its middle
 constexpr double kArmsLength = 0.4;  // [m] between robot and person
 constexpr double kPolite = 6.0;      // [s] that it gives way
 constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
@@ -206,6 +207,29 @@ void DynamicWindow::find_walkers(const Pose2& pose, std::span<const MovingDisc> 
 void DynamicWindow::load(const Input& input) {
   bits_.assign(input.costs, config_.unknown_is_lethal,
                roomy_.reach_cells(input.costs.resolution()));
+  stand_in_the_way(input);
+}
+
+/// Of somebody who stands at the robot the laser sees only what is beyond its blind range: all of
+/// them is in the way, but for what would be in the robot.
+void DynamicWindow::stand_in_the_way(const Input& input) {
+  const grid::GridGeometry& g = input.costs.geometry();
+  for (const MovingDisc& person : input.people) {
+    if (person.velocity.norm() >= kWalks) continue;
+    if ((person.position - input.pose.position()).norm() > kAtTheRobot) continue;
+    const grid::Cell middle = g.cell_at(person.position.x(), person.position.y());
+    const double radius = std::min(person.radius, kAtTheRobot);
+    const int reach = static_cast<int>(radius / g.resolution) + 1;
+    for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+      for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
+        if (!g.contains({x, y})) continue;
+        const geometry::Point2 cell = g.center({x, y});
+        if ((cell - person.position).norm() > radius) continue;
+        if (config_.footprint.distance(inverse(input.pose) * cell) < g.resolution) continue;
+        bits_.set(x + bits_.rim(), y + bits_.rim());
+      }
+    }
+  }
 }
 
 Twist2 DynamicWindow::ramped(const Input& input, const Twist2& target, double fall) const {

@@ -149,6 +149,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd);
 
   bool valid(const Input& input) const;
+  void stand_in_the_way(const Input& input);
   void find_walkers(const geometry::Pose2& pose, std::span<const MovingDisc> people);
   void load(const Input& input);
 

@@ -258,6 +258,29 @@ TEST(Decide, CreepsPastWhoStandsWithinArmsLength) {
   EXPECT_GT(speed({0.4, -1.2}), 0.5) << "out of reach";
 }
 
+/// The laser, blind so near, shows nothing of them.
+TEST(Decide, DoesNotTurnIntoSomebodyWhoStandsAtItsSideAndGoesStraightOn) {
+  const DynamicWindowConfig config;
+  const MovingDisc person{{0.2, config.footprint.inscribed_radius() + 0.27}, {0, 0}, 0.25};
+  const Costs costs = empty_window();
+  const auto drive = [&](const std::vector<Pose2>& path) {
+    DynamicWindow planner = DynamicWindow::make(config).value();
+    EXPECT_TRUE(planner.set_path(path));
+    Pose2 pose;
+    Twist2 command;
+    double least = kInfinity;
+    for (int i = 0; i < 200; ++i) {
+      command = planner.decide(costs, pose, command, command, 0.05, {{person}}).command;
+      pose = geometry::integrate(pose, command, 0.05);
+      least = std::min(least, config.footprint.distance(inverse(pose) * person.position));
+    }
+    EXPECT_GE(least, person.radius - 0.02);
+    return pose.x;
+  };
+  EXPECT_LT(drive({{0, 0, 0}, {0.4, 0.1, 0.6}, {1.0, 1.2, 1.2}}), 0.1) << "the way is through them";
+  EXPECT_GT(drive({{0, 0, 0}, {3.0, 0, 0}}), 0.5);
+}
+
 TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
   DynamicWindow planner = planner_to(8.0);
   const auto reason = [&](const std::vector<MovingDisc>& people) {
