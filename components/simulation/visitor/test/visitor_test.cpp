@@ -239,7 +239,9 @@ TEST(Visitor, SaysThatHeIsThereToARobotThatWaitsForHim) {
   EXPECT_EQ(chosen(visitor, 11.0), "stay");
   EXPECT_EQ(chosen(visitor, 12.0), "") << "once is enough for a while";
   EXPECT_EQ(chosen(visitor, 30.0), "") << "he ties his lace";
-  EXPECT_EQ(chosen(visitor, 50.0), "stay");
+  EXPECT_EQ(chosen(visitor, 49.9), "");
+  EXPECT_EQ(chosen(visitor, 55.8), "") << "he comes up again";
+  EXPECT_EQ(chosen(visitor, 56.0), "stay");
 }
 
 TEST(Visitor, LeadsTheRobotAndSaysWhenTheyAreThere) {
