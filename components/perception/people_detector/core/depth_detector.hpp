@@ -20,7 +20,7 @@ struct Sighting {
 struct DetectorConfig {
   Windows::Config windows;
   double threshold = 0.5;  ///< [-] {-10..10} least log odds
-  double same = 0.36;       ///< [m] {0.1..1} nearer bodies are the same
+  double same = 0.36;      ///< [m] {0.1..1} nearer bodies are the same
 };
 
 /// The error names the first value that cannot be.

@@ -2821,12 +2821,12 @@ const Network& trained_network() {
        "b42ce6df07eafb2a1a025b031fc7a9e527e71ae4e51b5ef2fde7e0cb2820f715e1f8eb16d2ebf2331e1bfe20"
        "1ce41910081c03f7",
        6.875883322e-03F, -1.939619482e-01F},
-      {"7f46b7ea48d6cadacd3de0be3d913801c2649f6311faa95757fe9f478dc1ccbc",
-       5.420487840e-03F, -1.846918315e-01F},
-      {"02bf072904faf1f3f607170614031f8102fef0b44f5306f5f3d604fa0afafbfc",
-       1.521245227e-03F, 5.004987121e-01F},
-      {"fff4ff12fbf81aff2603de0704fb2f1d04fff4fafffb04051281f9f82c05fe00",
-       5.908656749e-04F, 6.340377498e-03F},
+      {"7f46b7ea48d6cadacd3de0be3d913801c2649f6311faa95757fe9f478dc1ccbc", 5.420487840e-03F,
+       -1.846918315e-01F},
+      {"02bf072904faf1f3f607170614031f8102fef0b44f5306f5f3d604fa0afafbfc", 1.521245227e-03F,
+       5.004987121e-01F},
+      {"fff4ff12fbf81aff2603de0704fb2f1d04fff4fafffb04051281f9f82c05fe00", 5.908656749e-04F,
+       6.340377498e-03F},
   };
   static const Network network = decode(kNeurons);
   return network;
