@@ -44,8 +44,10 @@ const char* name(Harm harm) {
 struct Trial {
   std::string victim;
   Harm harm = Harm::kKill;
-  double zero_ms = 0.0;       ///< from the harm to the first zero at the wheels
-  double standstill = 0.0;    ///< way from there to a standstill over the stopping distance; NaN
+  /// From the harm to the first zero at the wheels; NaN: who was killed was back before it was
+  /// missed.
+  double zero_ms = kNone;
+  double standstill = kNone;  ///< way from there to a standstill over the stopping distance; NaN
   double back_s = 0.0;        ///< from kill -9 to: heard again and the right to drive granted
   double on_its_way_s = 0.0;  ///< to: moves again as wanted
   bool contact = false;
@@ -90,12 +92,15 @@ class Attack {
     robot_.forget();
     const Instant harmed = Clock::now();
     kill(process, harm == Harm::kKill ? SIGKILL : SIGSTOP);
-    const auto zero = first_zero(harmed);
-    if (!zero) return Error{victim + ": no zero at the wheels within 2 s"};
-    trial.zero_ms = ms(*zero - harmed);
-    trial.standstill = kNone;
+    std::optional<Instant> heard_again;
+    const auto zero = first_zero(harmed, [&] {
+      if (!heard_again && robot_.life_of(victim) != life) heard_again = Clock::now();
+    });
+    const bool back_in_time = heard_again && ms(*heard_again - harmed) <= kMost;
+    if (!zero && !back_in_time) return Error{victim + ": no zero at the wheels within 2 s"};
+    if (zero) trial.zero_ms = ms(*zero - harmed);
     Instant killed = harmed;
-    if (harm == Harm::kHang) {
+    if (harm == Harm::kHang && zero) {
       auto share = come_to_rest(*zero);
       if (!share) return Error{victim + ": " + share.error()};
       trial.standstill = *share;
@@ -121,7 +126,7 @@ class Attack {
     robot_.forget();
     const Instant touched = Clock::now();
     if (auto status = robot_.touch("tablet:stop"); !status) return Error{status.error()};
-    const auto zero = first_zero(touched);
+    const auto zero = first_zero(touched, [] {});
     if (!zero) return Error{"tablet: no zero at the wheels within 2 s of the touch"};
     auto share = come_to_rest(*zero);
     if (!share) return Error{"tablet: " + share.error()};
@@ -138,9 +143,11 @@ class Attack {
   }
 
  private:
-  std::optional<Instant> first_zero(Instant harmed) {
+  template <class Look>
+  std::optional<Instant> first_zero(Instant harmed, const Look& look_meanwhile) {
     std::optional<Instant> zero;
     const auto stopped = [&] {
+      look_meanwhile();
       for (const auto& wheels : robot_.wheels()) {
         if (!wheels.zero() || wheels.at < harmed) continue;
         zero = wheels.at;
@@ -227,8 +234,8 @@ std::string trials_csv(const std::vector<Trial>& trials) {
 }
 
 Table by_victim(const std::vector<Trial>& trials, const std::vector<std::string>& victims) {
-  Table table({"component", "harm", "trials", "zero p50 ms", "zero max ms", "way / d(v) max",
-               "back max s"});
+  Table table({"component", "harm", "trials", "back before it was missed", "zero p50 ms",
+               "zero max ms", "way / d(v) max", "back max s"});
   for (const auto& victim : victims) {
     for (const Harm harm : {Harm::kKill, Harm::kHang, Harm::kTouch}) {
       std::vector<Trial> own;
@@ -240,7 +247,9 @@ Table by_victim(const std::vector<Trial>& trials, const std::vector<std::string>
       const auto way = select(own, [](const Trial& t) { return t.standstill; });
       const auto back = select(own, [](const Trial& t) { return t.back_s; });
       table.add({victim, name(harm), std::to_string(own.size()),
-                 format("%.0f", percentile(zero, 0.5)), format("%.0f", percentile(zero, 1.0)),
+                 std::to_string(own.size() - zero.size()),
+                 zero.empty() ? "-" : format("%.0f", percentile(zero, 0.5)),
+                 zero.empty() ? "-" : format("%.0f", percentile(zero, 1.0)),
                  way.empty() ? "-" : format("%.2f", percentile(way, 1.0)),
                  back.empty() ? "-" : format("%.2f", percentile(back, 1.0))});
     }
@@ -281,6 +290,8 @@ void judge(const std::vector<Trial>& trials, ResultSheet& sheet) {
   });
   const auto contacts = select(trials, [](const Trial& t) { return t.contact ? 1.0 : kNone; });
   sheet.metrics["trials"] = static_cast<double>(trials.size());
+  sheet.metrics["back_before_it_was_missed"] = static_cast<double>(
+      trials.size() - select(trials, [](const Trial& t) { return t.zero_ms; }).size());
   sheet.metrics["contacts"] = static_cast<double>(contacts.size());
   sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
   // What was not tried has no figure.
