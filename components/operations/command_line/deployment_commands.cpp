@@ -49,8 +49,9 @@ int check(const std::vector<std::string>& manifests) {
     }
     if (!deployment->findings.empty()) ++bad;
     if (deployment->findings.empty()) {
+      const auto hosts = deployment->manifest.hosts.size();
       std::cout << path << ": good, " << deployment->manifest.components.size() << " components on "
-                << deployment->manifest.hosts.size() << " hosts\n";
+                << hosts << (hosts == 1 ? " host\n" : " hosts\n");
     }
   }
   return bad == 0 ? 0 : 1;

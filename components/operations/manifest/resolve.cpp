@@ -8,6 +8,7 @@
 
 #include "foundation/text/suggestion.hpp"
 #include "idl/topics.hpp"
+#include "operations/manifest/dialogue.hpp"
 #include "operations/manifest/wiring.hpp"
 #include "runtime/parameters/interpret.hpp"
 
@@ -332,6 +333,7 @@ Deployment resolve(const Manifest& manifest, const Contracts& contracts,
   deployment.findings = manifest.findings;
   Resolver(manifest, contracts, deployment).run(overrides);
   judge_wiring(manifest, contracts, deployment.findings);
+  judge_dialogue(contracts, deployment);
   for (const auto& component : manifest.components) {
     const auto contract = contracts.find(component.type);
     if (contract != contracts.end())

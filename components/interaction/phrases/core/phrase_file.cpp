@@ -3,47 +3,71 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <map>
+#include <optional>
+#include <sstream>
 
 namespace usher::phrases {
 
 namespace {
 
-struct Page {
-  Language language;
-  std::map<std::string, std::string> phrases;
+struct Phrase {
+  std::string text;
+  std::string origin;
 };
 
-Result<std::string> scalar(const YAML::Node& node, const std::string& key,
-                           const std::string& path) {
-  const auto value = node[key];
-  if (!value || !value.IsScalar() || value.Scalar().empty())
-    return Error{path + ": '" + key + "' must be a text that is not empty"};
-  return value.Scalar();
+struct Page {
+  Language language;
+  std::map<std::string, Phrase> phrases;
+  std::string origin;  ///< of the section
+};
+
+std::string origin(const std::string& path, const YAML::Mark& mark) {
+  return path + ":" + std::to_string(std::max(mark.line, 0) + 1);
 }
 
-Result<Page> read_page(const std::string& path, const std::string& section) {
+/// A text that is not empty.
+std::optional<Phrase> scalar(const YAML::Node& node, const std::string& key,
+                             const std::string& where, const std::string& path,
+                             std::vector<Misprint>& misprints) {
+  const std::string at = node ? origin(path, node.Mark()) : where;
+  if (node && node.IsScalar() && !node.Scalar().empty()) return Phrase{node.Scalar(), at};
+  misprints.push_back({at, "'" + key + "' must be a text that is not empty"});
+  return std::nullopt;
+}
+
+std::optional<Page> read_page(const std::string& path, const std::string& section,
+                              std::vector<Misprint>& misprints) {
   YAML::Node root;
   try {
     root = YAML::LoadFile(path);
   } catch (const YAML::Exception& error) {
-    return Error{path + ": " + error.what()};
+    misprints.push_back({origin(path, error.mark), error.msg});
+    return std::nullopt;
   }
-  if (!root.IsMap() || !root["language"] || !root["language"].IsMap())
-    return Error{path + ": expected 'language: {tag: ..., name: ...}'"};
-  const auto tag = scalar(root["language"], "tag", path);
-  const auto name = scalar(root["language"], "name", path);
-  if (!tag) return Error{tag.error()};
-  if (!name) return Error{name.error()};
-  Page page{{*tag, *name}, {}};
+  const std::string top = path + ":1";
+  if (!root.IsMap() || !root["language"] || !root["language"].IsMap()) {
+    misprints.push_back({top, "expected 'language: {tag: ..., name: ...}'"});
+    return std::nullopt;
+  }
+  const auto language = root["language"];
+  const std::string at = origin(path, language.Mark());
+  const auto tag = scalar(language["tag"], "tag", at, path, misprints);
+  const auto name = scalar(language["name"], "name", at, path, misprints);
   const auto phrases = root[section];
-  if (!phrases || !phrases.IsMap()) return Error{path + ": expected a mapping '" + section + "'"};
+  if (!phrases || !phrases.IsMap()) {
+    misprints.push_back({top, "expected a mapping '" + section + "'"});
+    return std::nullopt;
+  }
+  if (!tag || !name) return std::nullopt;
+  Page page{{tag->text, name->text}, {}, origin(path, phrases.Mark())};
   for (const auto& entry : phrases) {
     const std::string key = entry.first.Scalar();
-    const auto text = scalar(phrases, key, path);
-    if (!text) return Error{text.error()};
-    if (!page.phrases.emplace(key, *text).second)
-      return Error{path + ": '" + key + "' is there twice"};
+    const auto text = scalar(entry.second, key, page.origin, path, misprints);
+    if (!page.phrases.emplace(key, text.value_or(Phrase{})).second)
+      misprints.push_back({origin(path, entry.first.Mark()), "'" + key + "' is there twice"});
   }
   return page;
 }
@@ -74,38 +98,62 @@ std::string filled(std::string text,
   return text;
 }
 
+std::vector<Misprint> PhraseBook::read(const std::string& folder,
+                                       const std::vector<std::string>& tags,
+                                       const std::string& section,
+                                       std::span<const std::string_view> keys) {
+  std::vector<Misprint> misprints;
+  if (tags.empty()) misprints.push_back({folder, "at least one language is needed"});
+  for (const std::string& tag : tags) {
+    if (std::any_of(languages_.begin(), languages_.end(),
+                    [&](const Language& language) { return language.tag == tag; })) {
+      misprints.push_back({folder, "language '" + tag + "' is asked for twice"});
+      continue;
+    }
+    const std::string path = std::filesystem::path(folder) / (tag + ".yaml");
+    auto page = read_page(path, section, misprints);
+    if (!page) continue;
+    if (page->language.tag != tag)
+      misprints.push_back(
+          {path + ":1", "expected tag '" + tag + "', got '" + page->language.tag + "'"});
+    std::vector<std::string> phrases;
+    for (const auto key : keys) {
+      auto entry = page->phrases.extract(std::string(key));
+      if (entry.empty()) {
+        misprints.push_back(
+            {page->origin, "'" + section + "." + std::string(key) + "' is missing"});
+      } else if (!phrases_.empty() && !entry.mapped().text.empty()) {
+        const auto& first = phrases_.front()[phrases.size()];
+        if (placeholders(first) != placeholders(entry.mapped().text))
+          misprints.push_back({entry.mapped().origin,
+                               "'" + std::string(key) + "' must have the placeholders of \"" +
+                                   first + "\", got \"" + entry.mapped().text + "\""});
+      }
+      phrases.push_back(entry.empty() ? "" : std::move(entry.mapped().text));
+    }
+    const std::string prefix = "nobody says '" + section + ".";
+    for (const auto& [key, phrase] : page->phrases)
+      misprints.push_back({phrase.origin, prefix + key + "'"});
+    languages_.push_back(page->language);
+    phrases_.push_back(std::move(phrases));
+  }
+  return misprints;
+}
+
 Result<PhraseBook> PhraseBook::load(const std::string& folder, const std::vector<std::string>& tags,
                                     const std::string& section,
                                     std::span<const std::string_view> keys) {
-  if (tags.empty()) return Error{folder + ": at least one language is needed"};
   PhraseBook book;
-  for (const std::string& tag : tags) {
-    const std::string path = folder + "/" + tag + ".yaml";
-    auto page = read_page(path, section);
-    if (!page) return Error{page.error()};
-    if (page->language.tag != tag)
-      return Error{path + ": expected tag '" + tag + "', got '" + page->language.tag + "'"};
-    std::vector<std::string> phrases;
-    for (const auto key : keys) {
-      const auto entry = page->phrases.extract(std::string(key));
-      if (entry.empty())
-        return Error{path + ": '" + section + "." + std::string(key) + "' is missing"};
-      if (!book.phrases_.empty()) {
-        const auto& first = book.phrases_.front()[phrases.size()];
-        if (placeholders(first) != placeholders(entry.mapped()))
-          return Error{path + ": '" + std::string(key) + "' must have the placeholders of \"" +
-                       first + "\", got \"" + entry.mapped() + "\""};
-      }
-      phrases.push_back(entry.mapped());
-    }
-    if (!page->phrases.empty())
-      return Error{path + ": nobody says '" + section + "." + page->phrases.begin()->first + "'"};
-    if (book.find(tag) < book.languages_.size() && book.languages_[book.find(tag)].tag == tag)
-      return Error{folder + ": language '" + tag + "' is asked for twice"};
-    book.languages_.push_back(page->language);
-    book.phrases_.push_back(std::move(phrases));
-  }
+  const auto misprints = book.read(folder, tags, section, keys);
+  if (!misprints.empty()) return Error{misprints.front().origin + ": " + misprints.front().text};
   return book;
+}
+
+std::vector<Misprint> PhraseBook::misprints(const std::string& folder,
+                                            const std::vector<std::string>& tags,
+                                            const std::string& section,
+                                            std::span<const std::string_view> keys) {
+  return PhraseBook().read(folder, tags, section, keys);
 }
 
 PhraseBook PhraseBook::of_keys(std::span<const std::string_view> keys) {
@@ -119,6 +167,11 @@ std::size_t PhraseBook::find(std::string_view tag) const {
   const auto found = std::find_if(languages_.begin(), languages_.end(),
                                   [&](const Language& language) { return language.tag == tag; });
   return found == languages_.end() ? 0 : static_cast<std::size_t>(found - languages_.begin());
+}
+
+std::vector<std::string> tags_of(const std::string& list) {
+  std::istringstream words(list);
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
 }  // namespace usher::phrases

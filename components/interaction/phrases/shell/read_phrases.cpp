@@ -1,9 +1,7 @@
 #include "interaction/phrases/shell/read_phrases.hpp"
 
 #include <filesystem>
-#include <sstream>
 #include <utility>
-#include <vector>
 
 namespace usher::phrases {
 
@@ -12,10 +10,8 @@ PhraseBook read_phrases(runtime::Host& host, const std::string& section,
   auto& parameters = host.parameters();
   const std::filesystem::path file = parameters.file(
       "texts", "", "A file of config/dialogue; those of the other languages lie beside it.");
-  std::istringstream list(parameters.text("languages", "en mi de fr",
-                                          "Languages of the dialogue, the first is the default."));
-  std::vector<std::string> tags;
-  for (std::string tag; list >> tag;) tags.push_back(tag);
+  const auto tags = tags_of(parameters.text(
+      "languages", "en mi de fr", "Languages of the dialogue, the first is the default."));
   if (file.empty()) return PhraseBook::of_keys(keys);
   auto book = PhraseBook::load(file.parent_path(), tags, section, keys);
   if (!book) host.fault("texts: " + book.error());

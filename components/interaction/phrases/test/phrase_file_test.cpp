@@ -58,6 +58,21 @@ TEST_F(PhraseFile, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(load({"xx"}).ok());
 }
 
+TEST_F(PhraseFile, NamesEveryMisprintWithItsLine) {
+  write("de",
+        "language: {tag: de, name: Deutsch}\nguide:\n  hallo: Hallo\n  take: \"Nach {ort}\"\n");
+  std::vector<std::string> found;
+  for (const auto& [origin, text] :
+       PhraseBook::misprints(folder_.path(), {"en", "de"}, "guide", kKeys))
+    found.push_back(origin.substr(folder_.path().size() + 1) + ": " + text);
+  EXPECT_EQ(found, (std::vector<std::string>{
+                       "de.yaml:3: 'guide.hello' is missing",
+                       "de.yaml:4: 'take' must have the placeholders of \"To {place}\", got "
+                       "\"Nach {ort}\"",
+                       "de.yaml:3: nobody says 'guide.hallo'"}));
+  EXPECT_TRUE(PhraseBook::misprints(folder_.path(), {"en"}, "guide", kKeys).empty());
+}
+
 TEST(Phrases, FillsPlaceholders) {
   EXPECT_EQ(filled("{a} to {b}, {a}", {{"a", "x{a}"}, {"b", "y"}}), "x{a} to y, x{a}");
   EXPECT_EQ(placeholders("{b} {a} {b} {"), (std::vector<std::string>{"a", "b"}));

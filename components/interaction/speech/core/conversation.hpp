@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "interaction/speech/core/grammar.hpp"
@@ -45,6 +47,9 @@ struct Wishes {
   bool halt = false;   ///< the supervisor shall stop the robot, since no dialogue can
   bool go_on = false;  ///< and let it move again
 };
+
+enum class Text : std::size_t { kDidYouSay, kByTouch, kHeld };
+inline constexpr std::array<std::string_view, 3> kTextKeys{"did_you_say", "by_touch", "held"};
 
 /// Our own sentences, in the language of the dialogue.
 struct Sentences {

@@ -29,9 +29,6 @@ constexpr auto kRecognitionTime = milliseconds(120);
 constexpr std::size_t kMostWords = 400;  // [byte] of a text
 constexpr const char* kHoldKey = "holds";
 
-enum class Text : std::size_t { kDidYouSay, kByTouch, kHeld };
-constexpr std::array<std::string_view, 3> kTextKeys{"did_you_say", "by_touch", "held"};
-
 }  // namespace
 
 SpeechComponent::Settings SpeechComponent::read_settings(runtime::Host& host) {
