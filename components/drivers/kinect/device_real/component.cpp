@@ -41,11 +41,11 @@ KinectComponent::KinectComponent(runtime::Host& host, runtime::Duration reading)
       publisher_(host),
       rejected_(host.health().counter("frames: rejected")) {
   auto& p = host.parameters();
-  const bool v1 = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
-                           "Kinect v2 (512 x 424) or v1 (640 x 480).") == "v1";
+  const auto model = p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
+                              "Kinect v2 (512 x 424) or v1 (640 x 480), simulated or recorded.");
   live_ = p.choice("source", {"recording", "live"}, "recording",
-                   "Recorded images, or a Kinect v1 at the USB.") == "live";
-  if (live_ && !v1) host.fault("a live Kinect v2 needs libfreenect2, which Debian does not have");
+                   "Recorded images, or a Kinect v1 at the USB, whatever the model.") == "live";
+  const bool v1 = live_ || model == "v1";
   const auto given = p.numbers("robot.kinect.distortion", "-", {-10, 10}, 0, 5, {},
                                "k1, k2, p1, p2, k3; none: the recording is rectified already.");
   Distortion distortion{};

@@ -84,7 +84,7 @@ TEST(LiveKinectTest, DeliversDepthAndColorOfTheTimeWhenAReadBeganAndSaysThatItHa
 TEST(LiveKinectTest, SaysWhatIsMissing) {
   if (is_fake()) GTEST_SKIP() << "against the library itself";
   runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
-                         "robot.kinect.model: v1\nsource: live");
+                         "robot.kinect.model: v2\nsource: live");
   host.run_for(milliseconds(2500));
   if (host.last(topics::kKinectDepth)) GTEST_SKIP() << "a Kinect is connected";
   EXPECT_THAT(host.heartbeat().reason(), testing::HasSubstr("no Kinect v1 at the USB"));
