@@ -95,6 +95,22 @@ TEST_F(Launch, WithoutManifestIsAWrongCall) {
   EXPECT_EQ(launch.wait(), 2);
 }
 
+TEST(Help, OfACommandNamesAllThatTheCommandTakes) {
+  const std::vector<std::vector<std::string>> commands{
+      {"launch", "--keys"},         {"check", "--keys"},
+      {"topics", "echo", "--keys"}, {"bench", "--json"},
+      {"bench", "--instructions"},  {"experiment", "--seeds"},
+      {"status", "--domain"},       {"calibrate", "kinect", "--keys"}};
+  for (auto command : commands) {
+    const std::string option = command.back();
+    command.back() = "--help";
+    command.insert(command.begin(), usher_program());
+    Process help(command);
+    EXPECT_EQ(help.wait(), 0) << help.errors();
+    EXPECT_NE(help.output().find(option), std::string::npos) << option << "\n" << help.output();
+  }
+}
+
 TEST(Measuring, HandsItsOptionsToTheProgramThatMeasures) {
   Process list({usher_program(), "experiment", "--list"});
   EXPECT_EQ(list.wait(), 0) << list.errors();

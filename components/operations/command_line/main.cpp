@@ -3,6 +3,22 @@
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
 
+namespace {
+
+/// Each command that heeds an option of the program says so: its own help is all that many read.
+void name_program_options(CLI::App& app) {
+  const CLI::Option* keys = app.get_option("--keys");
+  for (const char* name : {"check", "launch", "install", "doctor", "status", "topics", "goto",
+                           "stop", "move", "clear", "map", "meet", "teleop", "calibrate"}) {
+    CLI::App* command = app.get_subcommand(name);
+    const std::string text = "Of every command: --keys FOLDER\n  " + keys->get_description();
+    command->footer(text);
+    for (CLI::App* below : command->get_subcommands({})) below->footer(text);
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app("Usher: the software of an indoor guide robot", "usher");
   app.require_subcommand(1);
@@ -19,6 +35,7 @@ int main(int argc, char** argv) {
   usher::operations::add_calibrate_command(app, exit_code);
   usher::operations::add_demo_command(app, exit_code);
   usher::operations::add_measuring_commands(app, exit_code);
+  name_program_options(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -66,6 +66,11 @@ void add_measuring_commands(CLI::App& app, int& exit_code) {
       "bench", "Measure performance: usher bench NAME [--json] [--instructions]");
   bench_command->add_option("name", *name, "Which one");
   bench_command->add_flag("--list", *list, "Name them all");
+  bench_command->footer(
+      "Of each benchmark:\n"
+      "  --json                      Print one JSON object\n"
+      "  --instructions              Also count instructions, under valgrind\n"
+      "  --benchmark_*               Options of Google Benchmark");
   bench_command->allow_extras();
   bench_command->fallthrough(false);  // what it does not know is for the other program
   bench_command->callback(
@@ -74,6 +79,7 @@ void add_measuring_commands(CLI::App& app, int& exit_code) {
   auto* experiment_command = app.add_subcommand(
       "experiment",
       "Run an experiment: usher experiment NAME [--seeds N] [--out DIR]; --list names them all");
+  experiment_command->set_help_flag();  // the other program knows its options
   experiment_command->prefix_command();
   experiment_command->fallthrough(false);
   experiment_command->callback([=, &exit_code] {
