@@ -307,9 +307,12 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
     tablet.hear(true, true, {});
     tablet.locate(geometry::Pose2{10.0, 5.0, 0.5});
     int number = 0;
+    tablet::Screen paused, hurries;  // what the status has to share its line with
     Visit visit(language, [&](const guide::Screen& screen, const char* suffix) {
       static_cast<void>(tablet.take(to_tablet(screen), {}));
       states.insert(screen.state);
+      if (screen.state == "guide_paused") paused = to_tablet(screen);
+      if (std::string(suffix) == "-still_there") hurries = to_tablet(screen);
       ++number;
       const std::string name = language + "-" + (number < 10 ? "0" : "") + std::to_string(number) +
                                "-" + screen.state + suffix;
@@ -326,19 +329,18 @@ TEST_F(Screens, HaveRoomForEveryTextInEveryLanguage) {
     judge(language + " away");
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-90-away.png"));
     tablet.hear(true, true, {});
-    static_cast<void>(tablet.touch(tablet::Tablet::kStop, {}));
-    tablet::Screen hurries;  // what the status has to share its line with
-    hurries.id = 1000000;
-    hurries.language = language;
-    hurries.title = "Title";
-    hurries.text = "Text";
-    hurries.options = {{"stay", "Stay", 1, 2}};
-    hurries.time_left = 20.0;
     static_cast<void>(tablet.take(hurries, {}));
+    static_cast<void>(tablet.touch(tablet::Tablet::kStop, {}));
     draw(tablet.view({}));
     judge(language + " held");
     EXPECT_TRUE(picture().save(folder + "/" + QString::fromStdString(language) + "-91-held.png"));
-    static_cast<void>(tablet.touch(tablet::Tablet::kStart, tablet::Tablet::kSettles));
+    static_cast<void>(tablet.take(paused, {}));
+    draw(tablet.view({}));
+    judge(language + " just stopped");
+    EXPECT_TRUE(
+        picture().save(folder + "/" + QString::fromStdString(language) + "-92-just_stopped.png"));
+    static_cast<void>(tablet.take(hurries, {}));
+    static_cast<void>(tablet.touch(tablet::Tablet::kStart, tablet::Tablet::kCalms));
     const auto said = *phrases::PhraseBook::load(kTexts, kLanguages, "speech", kSpeechTexts);
     for (const std::size_t text : {1U, 2U}) {
       tablet.hear_speech(said.phrase(said.find(language), text), false);

@@ -24,7 +24,7 @@ bool Conversation::offers(std::string_view option_id) const {
                      [&](const Option& option) { return option.id == option_id; });
 }
 
-void Conversation::take(const Screen& screen, Time /*now*/) {
+void Conversation::take(const Screen& screen, Time now) {
   const bool another = screen.id != screen_.id;
   const bool more = screen.spoken_id > said_ && !screen.spoken.empty();
   // What comes first after a restart, of this component or of the dialogue, is nobody's answer.
@@ -32,13 +32,16 @@ void Conversation::take(const Screen& screen, Time /*now*/) {
       screen_.id != 0 && screen.answer_id != 0 &&
       (screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client);
   screen_ = screen;
-  // Whoever answers, by touch or voice, wants it to go on; unless the answer was a stop.
-  if (another && answered && alive_ && !offers(kContinue)) lift_hold();
+  // An answer, by touch or voice, sets the robot off; unless it was given before the stop.
+  const bool sets_off = another && answered && alive_ && offers(kStop);
+  const bool late = sets_off && holds_ && now - stopped_at_ < kAnswerLate;
+  if (sets_off && !late) lift_hold();
   if (another) {
     question_.reset();
     greeted_ear_ = false;
     if (more) wishes_.break_off = true;
   }
+  if (late) wishes_.answer = Wishes::Answer{screen_.id, std::string(kStop)};
   if (more) {
     said_ = screen.spoken_id;
     if (screen.tone != Tone::kNone) wishes_.tones.push_back(screen.tone);
@@ -75,7 +78,8 @@ void Conversation::answer(const std::string& option_id) {
   wishes_.answer = Wishes::Answer{screen_.id, option_id};
 }
 
-void Conversation::stop() {
+void Conversation::stop(Time now) {
+  stopped_at_ = now;
   question_.reset();
   wishes_.break_off = true;
   const bool stands = alive_ && offers(kContinue);  // the dialogue has stopped it already
@@ -102,8 +106,8 @@ void Conversation::hear_visit(bool goes_on) {
 }
 
 /// What was understood for sure: answers the screen, lifts its own stop.
-void Conversation::obey(const std::string& option_id) {
-  if (option_id == kStop) return stop();  // the second guess, confirmed
+void Conversation::obey(const std::string& option_id, Time now) {
+  if (option_id == kStop) return stop(now);  // the second guess, confirmed
   if (option_id == kStart || option_id == kContinue || option_id == kStay) lift_hold();
   if (offers(option_id)) answer(option_id);
 }
@@ -114,7 +118,7 @@ void Conversation::reply(const Phrase& phrase, Time now) {
     const Phrase confirmed = question_->candidates[question_->at];
     question_.reset();
     wishes_.break_off = true;
-    obey(confirmed.option_id);
+    obey(confirmed.option_id, now);
   } else if (phrase.option_id == kNo) {
     ++counts_.denied;
     if (++question_->at < question_->candidates.size()) {
@@ -127,7 +131,7 @@ void Conversation::reply(const Phrase& phrase, Time now) {
     ++counts_.acted;
     question_.reset();
     wishes_.break_off = true;
-    obey(phrase.option_id);
+    obey(phrase.option_id, now);
   }
   listen();
 }
@@ -165,12 +169,12 @@ void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phras
   }
   if (stops) {
     ++counts_.acted;
-    stop();
+    stop(now);
   } else if (question_) {
     reply(first, now);
   } else if (verdict == Verdict::kAct) {
     ++counts_.acted;
-    obey(first.option_id);
+    obey(first.option_id, now);
     listen();
   } else {
     Question question;

@@ -68,6 +68,8 @@ class Conversation {
   /// How long a question back waits.
   static constexpr Time kPatience = std::chrono::seconds(8);
   static constexpr int kMostQuestions = 2;  ///< about one utterance
+  /// An answer that sets the robot off so soon after a stop was given before it.
+  static constexpr Time kAnswerLate = std::chrono::milliseconds(1500);
 
   explicit Conversation(const DecisionRule& rule) : rule_(rule) {}
 
@@ -120,9 +122,9 @@ class Conversation {
   void listen();
   void ask(Time now);
   void answer(const std::string& option_id);
-  void stop();
+  void stop(Time now);
   void lift_hold();
-  void obey(const std::string& option_id);
+  void obey(const std::string& option_id, Time now);
   void reply(const Phrase& phrase, Time now);
 
   DecisionRule rule_;
@@ -131,6 +133,7 @@ class Conversation {
   std::uint64_t said_ = 0;
   bool able_ = false, alive_ = true, visit_ = false;
   bool holds_ = false, waited_ = false, greeted_ear_ = false;
+  Time stopped_at_{};  ///< by voice
   std::optional<Question> question_;
   std::vector<Phrase> phrases_;
   std::uint64_t phrases_id_ = 0;

@@ -356,12 +356,12 @@ TEST_F(Speech, ShowsItsStopAndLiftsItAtTheEndOfTheVisit) {
   say(last, -25.0);
   ASSERT_FALSE(host_->written(topics::kSupervisorRequest).empty());
   EXPECT_EQ(host_->last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
-  EXPECT_EQ(status().hint(), "Stopped. Any answer lets me go on.");
+  EXPECT_EQ(status().hint(), "Stopped. Say Start to go on.");
   host_->world().kill("speech");
   host_->world().start("speech");
   pass(3.0);
   show(5, {"yes", "no"}, "Go?");
-  EXPECT_EQ(status().hint(), "Stopped. Any answer lets me go on.") << "a restart is no answer";
+  EXPECT_EQ(status().hint(), "Stopped. Say Start to go on.") << "a restart is no answer";
   EXPECT_EQ(host_->last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
   serves_ = false;
   pass(1.0);

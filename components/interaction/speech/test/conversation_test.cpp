@@ -323,22 +323,38 @@ TEST_F(Talk, StopsWhenTheSecondGuessIsConfirmed) {
   EXPECT_TRUE(talk_.take_wishes().halt);
 }
 
-TEST_F(Talk, LiftsItsStopWhenSomebodyAnswers) {
+TEST_F(Talk, LiftsItsStopWhenAnAnswerSetsTheRobotOff) {
   show(screen(7, {"yes"}));
   hear("stop", kUnsure);
-  show(screen(8, {"yes"}));
+  now_ += seconds(2);
+  show(screen(8, {"stop"}));
   EXPECT_TRUE(talk_.holds()) << "another screen alone is nobody's will";
   talk_.take_wishes();
   auto answered = screen(9, {"yes"});
   answered.answer_client = "tablet";
   answered.answer_id = 4;
   show(answered);
+  EXPECT_TRUE(talk_.holds()) << "nor is the answer to a question";
+  answered = screen(10, {"stop", "cancel"});
+  answered.answer_client = "tablet";
+  answered.answer_id = 5;
+  show(answered);
   EXPECT_FALSE(talk_.holds());
   EXPECT_TRUE(talk_.take_wishes().go_on);
+  talk_.hear_dialogue(false);
   hear("stop", kUnsure);
-  auto stopped = screen(10, {"continue", "cancel"});
+  talk_.hear_dialogue(true);
+  talk_.take_wishes();
+  auto begun = screen(11, {"stop", "cancel"});
+  begun.answer_client = "tablet";
+  begun.answer_id = 6;
+  show(begun);
+  EXPECT_TRUE(talk_.holds()) << "that was answered before";
+  EXPECT_EQ(answer(), "stop") << "the dialogue stops, too";
+  hear("stop", kUnsure);
+  auto stopped = screen(12, {"continue", "cancel"});
   stopped.answer_client = "tablet";
-  stopped.answer_id = 5;
+  stopped.answer_id = 7;
   show(stopped);
   EXPECT_TRUE(talk_.holds()) << "the answer was a stop";
 }
@@ -354,7 +370,7 @@ TEST_F(Talk, KeepsItsStopOverRestarts) {
   EXPECT_EQ(talk_.hint(), "Stopped.");
   show(screen(8, {"yes"}));
   EXPECT_TRUE(talk_.holds()) << "the dialogue was restarted: no answer yet";
-  auto answered = screen(9, {"yes"});
+  auto answered = screen(9, {"stop"});
   answered.answer_client = "tablet";
   answered.answer_id = 1;
   show(answered);

@@ -14,6 +14,11 @@ constexpr const char* kDialogueStart = "start";
 constexpr const char* kDialogueContinue = "continue";
 constexpr const char* kStay = "stay";
 
+/// Whether a touch of this button lifts the tablet's stop.
+bool lets_move(const std::string& id) {
+  return id == Tablet::kStart || id == kDialogueStart || id == kDialogueContinue || id == kStay;
+}
+
 }  // namespace
 
 std::string way_text(double remaining, double eta) {
@@ -56,19 +61,41 @@ Touched Tablet::hear_visit(bool goes_on, Time now) {
 
 Touched Tablet::take(const Screen& screen, Time now) {
   const bool another = screen.id != screen_.id;
+  const bool drove = screen_.id == 0 || offers(kDialogueStop);  // the first one sets off nothing
   screen_ = screen;
   if (another) {
     pending_.reset();
     typed_.clear();
   }
-  // Who offers a stop moves the robot, or means to.
-  const bool drives = offers(kDialogueStop), paused = offers(kDialogueContinue);
-  if (hold_ == Hold::kDialogue && paused) hold_ = Hold::kDialogueTookOver;
-  const bool goes_on = (hold_ == Hold::kDialogueTookOver && !paused) ||
-                       (hold_ == Hold::kDialogue && !drives && !paused);
-  Touched touched{.move = goes_on && lift_hold()};
+  Touched touched = follow_hold(drove, now);
   watch_buttons(now);
   return touched;
+}
+
+/// What the new screen makes of the tablet's own stop. Who offers a stop moves the robot, or means
+/// to.
+Touched Tablet::follow_hold(bool drove, Time now) {
+  const bool drives = offers(kDialogueStop), paused = offers(kDialogueContinue);
+  switch (hold_) {
+    case Hold::kNone:
+      break;
+    case Hold::kDialogue:
+    case Hold::kDialogueTookOver:
+      if (paused) {
+        hold_ = Hold::kDialogueTookOver;
+      } else if (!drives) {
+        hold_ = Hold::kOwn;  // the journey has ended, not the wish to stand
+      } else if (hold_ == Hold::kDialogueTookOver) {
+        return {.move = lift_hold()};
+      }
+      break;
+    case Hold::kOwn:
+      if (!drives || drove) break;
+      if (now - stopped_at_ >= kCalms) return {.move = lift_hold()};
+      hold_ = Hold::kDialogue;
+      return {.answer = Answer{screen_.id, kDialogueStop, {}}};
+  }
+  return {};
 }
 
 bool Tablet::lift_hold() {
@@ -90,7 +117,9 @@ void Tablet::watch_buttons(Time now) {
   settled_ = now + kSettles;
 }
 
-Touched Tablet::stop() {
+Touched Tablet::stop(Time now) {
+  stopped_at_ = now;
+  calm_at_ = now + kCalms;
   Touched touched{.stop = true};
   hold_ = Hold::kOwn;
   if (shows_dialogue() && offers(kDialogueStop)) {
@@ -102,8 +131,10 @@ Touched Tablet::stop() {
 
 Touched Tablet::touch(const std::string& id, Time now) {
   const bool stops = id == kStop || id == kDialogueStop;
-  if (!stops && now < settled_) return {};
-  Touched touched = stops ? stop() : press(id, now);  // a stop again and again, if need be
+  const bool soon = !stops && !calm(now);
+  if (soon) calm_at_ = now + kCalms;
+  if (!stops && (now < settled_ || (soon && lets_move(id)))) return {};
+  Touched touched = stops ? stop(now) : press(id, now);  // a stop again and again, if need be
   watch_buttons(now);
   return touched;
 }
@@ -118,8 +149,7 @@ Touched Tablet::press(const std::string& id, Time now) {
   if (!shows_dialogue() || !offers(id)) return {};
   if (pending_ && now - pending_->since < kPatience) return {};
   pending_ = Pending{id, now};
-  const bool goes_on = id == kDialogueStart || id == kDialogueContinue || id == kStay;
-  return {.answer = Answer{screen_.id, id, {}}, .move = goes_on && lift_hold()};
+  return {.answer = Answer{screen_.id, id, {}}, .move = lets_move(id) && lift_hold()};
 }
 
 Touched Tablet::type(const std::string& text, Time /*now*/) {
@@ -130,7 +160,7 @@ Touched Tablet::type(const std::string& text, Time /*now*/) {
   return {.answer = Answer{screen_.id, line->id, typed_}};
 }
 
-void Tablet::add_options(View& view) const {
+void Tablet::add_options(View& view, Time now) const {
   const bool hurries = view.time_left >= 0.0;
   for (const auto& option : screen_.options) {
     if (option.takes_text) {
@@ -139,7 +169,8 @@ void Tablet::add_options(View& view) const {
       continue;
     }
     Button button{option.id, option.label,
-                  static_cast<Kind>(std::min<std::uint8_t>(option.kind, 2))};
+                  static_cast<Kind>(std::min<std::uint8_t>(option.kind, 2)),
+                  calm(now) || !lets_move(option.id)};
     if (option.panel == static_cast<std::uint8_t>(Panel::kService)) {
       if (option.id != kStay) button.kind = Kind::kService;
       // A question that is about to be given up has one small button: more time.
@@ -181,7 +212,7 @@ View Tablet::view(Time now) const {
     view.progress = screen_.progress;
     view.way_text = way_text(screen_.remaining, screen_.eta);
     if (screen_.time_left >= 0.0) view.time_left = screen_.time_left;
-    add_options(view);
+    add_options(view, now);
     if (pending_ && now - pending_->since < kPatience) {
       view.pending = true;
       view.pending_id = pending_->id;
@@ -191,6 +222,7 @@ View Tablet::view(Time now) const {
   const bool dialogue_starts = dialogue_goes_on || (shows_dialogue() && offers(kDialogueStart));
   const bool dialogue_stops = shows_dialogue() && offers(kDialogueStop);
   view.start_offered = holds() && !dialogue_starts;
+  view.start_active = calm(now);
   view.stop_offered = !holds() && !dialogue_stops && !dialogue_goes_on;
   // Beside the question, which can be answered all the same.
   if (hold_ == Hold::kOwn && shows_dialogue() && !dialogue_goes_on) view.status = say(Text::kHeld);

@@ -72,7 +72,8 @@ struct Touched {
 ///
 /// A stop goes to the dialogue and, so that it works when the dialogue does not, straight to the
 /// supervisor. The tablet lifts its own stop when the visitor touches Start, "I am still here" or
-/// Continue, when the dialogue, having taken the stop over, goes on, and when the visit ends.
+/// Continue, when an answer, by touch or voice, sets the robot off, and when the visit ends. A
+/// journey that ends while it is stopped leaves the robot stopped.
 class Tablet {
  public:
   explicit Tablet(phrases::PhraseBook phrases) : phrases_(std::move(phrases)) {}
@@ -83,6 +84,10 @@ class Tablet {
   /// Buttons that have just come are not touched yet: the finger was meant for those before. So
   /// long a double tap takes; reading what is new takes longer.
   static constexpr Time kSettles = std::chrono::milliseconds(400);
+  /// Who is frightened taps Stop again and again, and what lets the robot move comes to where Stop
+  /// was: it takes no touch until nobody has touched for so long. An answer that sets the robot off
+  /// sooner after a stop was given before it.
+  static constexpr Time kCalms = std::chrono::milliseconds(1500);
 
   /// Whether robot (supervisor) and dialogue (guide) are heard.
   void hear(bool robot, bool dialogue, Time now);
@@ -101,7 +106,8 @@ class Tablet {
   void replied() { pending_.reset(); }
 
   /// A button was touched; ids that are not on the view do nothing, nor does a second touch before
-  /// the reply, nor, but for a stop, one of buttons that came less than kSettles ago.
+  /// the reply, nor, but for a stop, one of buttons that came less than kSettles ago, nor what lets
+  /// the robot move less than kCalms after a stop or a touch that followed it.
   Touched touch(const std::string& id, Time now);
   /// The line to type into has this text now.
   Touched type(const std::string& text, Time now);
@@ -125,11 +131,13 @@ class Tablet {
   std::string say(Text text) const;
   bool offers(std::string_view id) const;
   bool shows_dialogue() const { return robot_heard_ && dialogue_heard_ && screen_.id != 0; }
-  Touched stop();
+  bool calm(Time now) const { return now >= calm_at_; }
+  Touched stop(Time now);
   Touched press(const std::string& id, Time now);
+  Touched follow_hold(bool drove, Time now);
   bool lift_hold();
   void watch_buttons(Time now);
-  void add_options(View& view) const;
+  void add_options(View& view, Time now) const;
 
   phrases::PhraseBook phrases_;
   Screen screen_;
@@ -142,6 +150,8 @@ class Tablet {
   Hold hold_ = Hold::kNone;
   std::vector<std::string> buttons_;  ///< ids on the view, the screen's first
   Time settled_{};                    ///< when they may be touched
+  Time stopped_at_{};                 ///< by this tablet
+  Time calm_at_{};                    ///< when the robot may be let move again
 };
 
 /// "34 m · 2 min" of what is known; empty when nothing is.

@@ -24,6 +24,7 @@ struct Button {
   std::string id;
   std::string label;
   Kind kind = Kind::kOption;
+  bool active = true;  ///< false: takes no touch yet
   bool operator==(const Button&) const = default;
 };
 
@@ -39,6 +40,7 @@ struct View {
   bool pending = false;                              ///< a touch is on its way
   std::string pending_id;                            ///< on which button
   bool stop_offered = false, start_offered = false;  ///< by the tablet itself, at the lower left
+  bool start_active = true;
   std::string stop_label, start_label;
   double time_left = -1.0;  ///< [s] until the question is given up; negative: not soon
   double progress = -1.0;   ///< {0..1}; negative: none

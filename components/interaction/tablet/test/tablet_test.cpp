@@ -122,7 +122,75 @@ TEST(Tablet, TakesNoSecondTapForTheNextQuestion) {
   EXPECT_TRUE(tablet.touch(Tablet::kStop, milliseconds(3200)).stop) << "a stop is never too soon";
   EXPECT_FALSE(tablet.touch(Tablet::kStart, milliseconds(3250)).move) << "Start came under it";
   EXPECT_TRUE(tablet.touch(Tablet::kStop, milliseconds(3260)).stop);
-  EXPECT_TRUE(tablet.touch(Tablet::kStart, milliseconds(3600)).move);
+  EXPECT_TRUE(tablet.touch(Tablet::kStart, milliseconds(4800)).move);
+}
+
+TEST(Tablet, WhoTapsStopAgainAndAgainDoesNotStartTheRobot) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.take(screen(7, "guide_active", {"stop"}), {}));
+  static_cast<void>(tablet.touch("stop", milliseconds(1000)));
+  static_cast<void>(
+      tablet.take(screen(8, "guide_paused", {"continue", "cancel"}), milliseconds(1100)));
+  for (int at = 1500; at <= 5000; at += 500) {
+    const Touched touched = tablet.touch("continue", milliseconds(at));
+    ASSERT_FALSE(touched.move || touched.answer) << at;
+    EXPECT_FALSE(tablet.view(milliseconds(at)).primary[0].active) << "and it is seen";
+  }
+  EXPECT_TRUE(tablet.view(milliseconds(5000)).primary[1].active) << "who cancels moves nothing";
+  EXPECT_FALSE(tablet.touch("continue", milliseconds(6499)).move);
+  EXPECT_TRUE(tablet.view(milliseconds(7999)).primary[0].active);
+  EXPECT_TRUE(tablet.touch("continue", milliseconds(7999)).move) << "1.5 s after the last touch";
+
+  Tablet asks = make();
+  static_cast<void>(asks.take(screen(7, "guide_ask", {"yes"}), {}));
+  for (int at = 1000; at <= 5000; at += 500) {
+    const bool stops = asks.view(milliseconds(at)).stop_offered;
+    EXPECT_FALSE(asks.touch(stops ? Tablet::kStop : Tablet::kStart, milliseconds(at)).move);
+    EXPECT_FALSE(asks.view(milliseconds(at)).start_active);
+  }
+  EXPECT_TRUE(asks.touch(Tablet::kStart, milliseconds(6500)).move);
+}
+
+TEST(Tablet, HoldsTheRobotWhenTheJourneyEndsUnderItsStop) {
+  for (const bool taken_over : {false, true}) {
+    Tablet tablet = make();
+    static_cast<void>(tablet.take(screen(7, "guide_active", {"stop"}), {}));
+    static_cast<void>(tablet.touch("stop", {}));
+    if (taken_over) {
+      EXPECT_FALSE(tablet.take(screen(8, "guide_paused", {"continue"}), {}).move);
+    }
+    EXPECT_FALSE(tablet.take(screen(9, "guide_success", {}), {}).move) << "it would turn to him";
+    EXPECT_TRUE(tablet.holds());
+    EXPECT_TRUE(tablet.view(kSettled).start_offered);
+    static_cast<void>(
+        tablet.take(screen(10, "guide_start", {"start", "cancel"}), milliseconds(8000)));
+    EXPECT_TRUE(tablet.touch("start", milliseconds(9000)).move);
+  }
+}
+
+TEST(Tablet, AnAnswerThatSetsTheRobotOffLiftsItsStopUnlessItWasGivenBefore) {
+  for (const char* state : {"guide_active", "follow_me"}) {
+    Tablet tablet = make();
+    static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes", "follow_me"}), {}));
+    static_cast<void>(tablet.touch(Tablet::kStop, milliseconds(1000)));
+    EXPECT_FALSE(tablet.take(screen(8, "guide_start", {"start"}), milliseconds(2000)).move);
+    const Touched spoken = tablet.take(screen(9, state, {"stop"}), milliseconds(2600));
+    EXPECT_TRUE(spoken.move) << state;
+    EXPECT_FALSE(tablet.holds());
+  }
+  Tablet late = make();
+  static_cast<void>(late.take(screen(7, "guide_start", {"start"}), {}));
+  static_cast<void>(late.touch("start", milliseconds(1000)));
+  EXPECT_TRUE(late.touch(Tablet::kStop, milliseconds(1100)).stop);
+  const Touched begun = late.take(screen(8, "guide_active", {"stop"}), milliseconds(1200));
+  EXPECT_FALSE(begun.move);
+  EXPECT_EQ(begun.answer, (Answer{8, "stop", ""})) << "the dialogue stops, too";
+  EXPECT_TRUE(late.holds());
+
+  Tablet restarted = make();
+  restarted.hold_again();
+  EXPECT_FALSE(restarted.take(screen(7, "guide_active", {"stop"}), milliseconds(9000)).move);
+  EXPECT_TRUE(restarted.holds()) << "that was answered before";
 }
 
 TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
@@ -133,14 +201,11 @@ TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
   EXPECT_FALSE(tablet.take(screen(8, "guide_paused", {"continue"}), {}).move);
   EXPECT_TRUE(tablet.take(screen(9, "guide_active", {"stop"}), {}).move) << "by voice, perhaps";
   EXPECT_FALSE(tablet.holds());
-  // It ended in the same moment.
-  static_cast<void>(tablet.touch("stop", {}));
-  EXPECT_TRUE(tablet.take(screen(10, "guide_success", {}), {}).move);
   // Continue on the screen.
   static_cast<void>(tablet.take(screen(11, "guide_active", {"stop"}), {}));
   static_cast<void>(tablet.touch("stop", {}));
   static_cast<void>(tablet.take(screen(12, "guide_paused", {"continue"}), {}));
-  const Touched go = tablet.touch("continue", kSettled);
+  const Touched go = tablet.touch("continue", Tablet::kCalms);
   EXPECT_TRUE(go.move);
   EXPECT_TRUE(go.answer);
   // Behind a visitor, too, the robot drives: nothing but his answer lifts it.
@@ -148,7 +213,7 @@ TEST(Tablet, LiftsItsStopWhenTheDialogueGoesOn) {
   static_cast<void>(tablet.touch("stop", {}));
   EXPECT_FALSE(tablet.take(screen(13, "follow_me", {"done", "stop"}), {}).move);
   EXPECT_TRUE(tablet.holds());
-  EXPECT_TRUE(tablet.take(screen(14, "end_ask", {"yes", "no"}), {}).move);
+  EXPECT_FALSE(tablet.take(screen(14, "end_ask", {"yes", "no"}), {}).move) << "nor does its end";
 }
 
 TEST(Tablet, KeepsItsOwnStopUntilStart) {
@@ -167,9 +232,9 @@ TEST(Tablet, KeepsItsOwnStopUntilStart) {
   EXPECT_TRUE(view.start_offered);
   EXPECT_FALSE(view.stop_offered);
   EXPECT_FALSE(tablet.touch("lab", kSettled).move) << "another answer is no leave to move";
-  EXPECT_TRUE(tablet.touch(Tablet::kStart, kSettled).move);
+  EXPECT_TRUE(tablet.touch(Tablet::kStart, milliseconds(1900)).move);
   EXPECT_FALSE(tablet.holds());
-  EXPECT_FALSE(tablet.touch(Tablet::kStart, milliseconds(900)).move);
+  EXPECT_FALSE(tablet.touch(Tablet::kStart, milliseconds(2900)).move);
 
   Tablet restarted = make();
   restarted.hold_again();
@@ -194,7 +259,7 @@ TEST(Tablet, LiftsItsOwnStopWhenTheVisitorStartsOrIsStillHere) {
     static_cast<void>(tablet.take(screen(7, "guide_start", {id, "cancel"}), {}));
     static_cast<void>(tablet.touch(Tablet::kStop, {}));
     EXPECT_EQ(tablet.view({}).start_offered, std::string(id) != "start") << "one Start is enough";
-    const Touched touched = tablet.touch(id, kSettled);
+    const Touched touched = tablet.touch(id, Tablet::kCalms);
     EXPECT_TRUE(touched.move) << id;
     EXPECT_TRUE(touched.answer) << id;
     EXPECT_FALSE(tablet.holds());

@@ -34,13 +34,19 @@ QVariant ButtonsModel::data(const QModelIndex& index, int role) const {
       return static_cast<int>(button.kind);
     case kPending:
       return button.id == pending_;
+    case kActive:
+      return button.active;
     default:
       return {};
   }
 }
 
 QHash<int, QByteArray> ButtonsModel::roleNames() const {
-  return {{kId, "buttonId"}, {kLabel, "label"}, {kKind, "kind"}, {kPending, "pending"}};
+  return {{kId, "buttonId"},
+          {kLabel, "label"},
+          {kKind, "kind"},
+          {kPending, "pending"},
+          {kActive, "active"}};
 }
 
 void ButtonsModel::set(const std::vector<Button>& buttons, const std::string& pending) {

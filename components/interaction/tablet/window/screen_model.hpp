@@ -68,7 +68,7 @@ class ButtonsModel : public QAbstractListModel {
   Q_PROPERTY(int count READ count NOTIFY changed)
 
  public:
-  enum Role { kId = Qt::UserRole, kLabel, kKind, kPending };
+  enum Role { kId = Qt::UserRole, kLabel, kKind, kPending, kActive };
   using QAbstractListModel::QAbstractListModel;
   int rowCount(const QModelIndex& parent = {}) const override;
   QVariant data(const QModelIndex& index, int role) const override;
@@ -96,6 +96,7 @@ class ScreenModel : public QObject {
   Q_PROPERTY(QString status READ status NOTIFY changed)
   Q_PROPERTY(bool stopOffered READ stopOffered NOTIFY changed)
   Q_PROPERTY(bool startOffered READ startOffered NOTIFY changed)
+  Q_PROPERTY(bool startActive READ startActive NOTIFY changed)
   Q_PROPERTY(QString stopLabel READ stopLabel NOTIFY changed)
   Q_PROPERTY(QString startLabel READ startLabel NOTIFY changed)
   Q_PROPERTY(QString queryLabel READ queryLabel NOTIFY changed)
@@ -128,6 +129,7 @@ class ScreenModel : public QObject {
   QString status() const { return text(view_.status); }
   bool stopOffered() const { return view_.stop_offered; }
   bool startOffered() const { return view_.start_offered; }
+  bool startActive() const { return view_.start_active; }
   QString stopLabel() const { return text(view_.stop_label); }
   QString startLabel() const { return text(view_.start_label); }
   QString queryLabel() const { return text(view_.query_label); }

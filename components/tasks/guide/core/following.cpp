@@ -132,7 +132,11 @@ void Guide::follow_visitor(Time now) {
       (sentence_ != say(Text::kComeBack) || now - sentence_at_ >= parameters_.follow.call)) {
     say_on_the_way(Text::kComeBack, Tone::kCall, now);
   }
-  if (move_at_ && now >= *move_at_) move_at_.reset();
+  if (move_at_ && now >= *move_at_) {
+    move_at_.reset();
+    lift_stop();
+    actions_.remember = true;
+  }
   if (!move_at_ && pose) go_behind(now);
 }
 

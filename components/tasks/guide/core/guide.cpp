@@ -57,12 +57,12 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
       follow_(parameters.follow) {
   assert(parameters.options_on_screen >= 4);
   state_ = resumed(state_of(memory.state));
+  stopped_ = memory.stopped;
   if (state_ != State::kInitialise) {
     language_ = phrases_.find(memory.language);
     visit_ = memory.visit;
     greeted_ = true;
     place_.name = memory.place;
-    stopped_ = memory.stopped;
     if (journey()) {
       goal_id_ = memory.goal_id;
       goal_at_ = departed_ = now;
@@ -165,6 +165,8 @@ const Actions& Guide::finish(Time now) {
 }
 
 void Guide::enter(State state, Cause cause, Time now) {
+  // Whose stop was just to be obeyed does not find the robot turning.
+  const bool arrives = state == State::kGuideSuccess && state_ == State::kGuideActive;
   const auto edge = std::find_if(kEdges.begin(), kEdges.end(), [&](const Edge& each) {
     return each.from == state_ && each.to == state && each.cause == cause;
   });
@@ -173,7 +175,7 @@ void Guide::enter(State state, Cause cause, Time now) {
   state_ = state;
   since_ = now;
   warned_ = false;
-  turns_ = state == State::kGuideSuccess || (state == State::kEndAsk && turns_);
+  turns_ = arrives || (state == State::kEndAsk && turns_);
   if (state == State::kEnd) end_visit(cause, now);
   if (!journey()) {
     screen_.progress = state == State::kGuideSuccess ? 1.0 : -1.0;
@@ -196,6 +198,7 @@ void Guide::begin_visit(bool greeted, Time now) {
 }
 
 void Guide::end_visit(Cause cause, Time now) {
+  lift_stop();
   visit_.duration = now - visit_since_;
   visit_.outcome = visit_.arrived > 0    ? Outcome::kArrived
                    : visit_.started > 0  ? Outcome::kGivenUp
@@ -484,6 +487,7 @@ void Guide::pass_time(Time now) {
   switch (state_) {
     case State::kInitialise:
       if (ready()) {
+        lift_stop();  // of a visit that a restart has ended
         language_ = 0;
         enter(State::kInactive, Cause::kReady, now);
       }

@@ -173,6 +173,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void begin_visit(bool greeted, Time now);
   void end_visit(Cause cause, Time now);
   void leave_journey();
+  void lift_stop();
 
   // Screens.
   Screen build(Time now) const;

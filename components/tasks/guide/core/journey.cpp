@@ -49,8 +49,7 @@ void Guide::depart(Time now) {
 void Guide::move_when_due(Time now) {
   if (!move_at_ || now < *move_at_) return;
   move_at_.reset();
-  if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
-  stopped_ = false;
+  lift_stop();
   if (goal_id_ == 0) {
     goal_id_ = next_id_++;
     goal_at_ = now;
@@ -74,15 +73,20 @@ void Guide::go_on(Time now) {
   stands_told_.reset();
 }
 
-/// Gives up the goal, if there is one. A stop of this visitor must not hold the robot for the next.
+void Guide::lift_stop() {
+  if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
+  stopped_ = false;
+}
+
+/// Gives up the goal, if there is one. A stop of the visitor holds the robot until he goes on or
+/// his visit ends.
 void Guide::leave_journey() {
   const auto stray = follows() ? own_goal() : std::nullopt;
   if (goal_id_ != 0 || stray) actions_.cancel = goal_id_ != 0 ? goal_id_ : *stray;
   goal_id_ = first_goal_ = 0;
   move_at_.reset();
   actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
-  if (stopped_) actions_.requests.push_back({RequestKind::kMovementOn, {}});
-  stopped_ = false;
+  if (state_ != State::kGuidePaused) lift_stop();
 }
 
 void Guide::fail(Text reason, Cause cause, Time now) {

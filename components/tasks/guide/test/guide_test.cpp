@@ -767,6 +767,33 @@ TEST(Guide, TurnsToTheVisitorOnArrival) {
   EXPECT_FALSE(rig.guide.turns_to()) << "and does not turn after him";
 }
 
+TEST(Guide, AStopOnArrivalHoldsUntilHeGoesOnOrLeaves) {
+  Rig rig;
+  rig.see(-1.5), rig.to_active(), rig.press("stop");
+  EXPECT_EQ(rig.taken(), "stop");
+  rig.navigate(GoalState::kSucceeded), rig.wait(2000);
+  ASSERT_EQ(rig.state(), "guide_success");
+  EXPECT_FALSE(rig.guide.turns_to()) << "somebody's foot is in the way";
+  EXPECT_EQ(rig.taken(), "end") << "the stop holds";
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.wait(4000), rig.press("yes"), rig.press("guide_me"), rig.press("foyer"), rig.press("start");
+  rig.around.supervisor = Supervisor::kNavigation;
+  rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "start:foyer go on goal:foyer");
+  rig.press("stop"), rig.press("cancel");
+  EXPECT_EQ(rig.taken(), "stop end cancel");
+  rig.press("yes"), rig.press("no"), rig.press("languages");
+  Rig after({}, rig.guide.memory(), 1000000);
+  EXPECT_EQ(after.state(), "inactive");
+  EXPECT_EQ(after.taken(), "on") << "nobody is served any more";
+  Rig leads;
+  leads.see(1.2), leads.to_active(), leads.press("stop"), leads.press("cancel");
+  leads.around.supervisor = Supervisor::kAvailable;
+  leads.press("yes"), leads.press("no"), leads.taken();
+  leads.press("follow_me"), leads.wait(1000);
+  EXPECT_EQ(leads.taken(), "start:visitor go on");
+}
+
 TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   Rig rig;
   rig.around.pose = geometry::Pose2{4.0, 1.0, 0.0};

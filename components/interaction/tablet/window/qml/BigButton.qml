@@ -10,6 +10,8 @@ FocusScope {
     property string label
     property int kind: 0
     property bool pending: false
+    // Dim: it takes no touch yet.
+    property bool active: true
     property double textSize: Theme.buttonTextSize * u
     // A stop must not wait for the finger to leave.
     property bool onPress: false
@@ -31,6 +33,7 @@ FocusScope {
 
     Rectangle {
         anchors.fill: parent
+        opacity: button.active ? 1 : 0.4
         radius: 28 * button.u
         color: button.down ? Qt.lighter(Theme.button(button.kind), 1.18) : Theme.button(button.kind)
         border.width: button.activeFocus || button.pending ? 8 * button.u : 0
@@ -43,7 +46,7 @@ FocusScope {
         width: parent.width - 24 * button.u
         horizontalAlignment: Text.AlignHCenter
         text: button.label
-        color: Theme.ink
+        color: button.active ? Theme.ink : Theme.title
         font.pixelSize: button.textSize
         font.weight: Font.DemiBold
         elide: Text.ElideRight

@@ -26,6 +26,7 @@ Grid {
             label: model.label
             kind: model.kind
             pending: model.pending
+            active: model.active
             onPress: model.buttonId === "stop"
             textSize: row.textSize
             width: row.stacked ? row.fill : wanted

@@ -39,6 +39,7 @@ Item {
                 label: model.label
                 kind: model.kind
                 pending: model.pending
+                active: model.active
                 onPress: model.buttonId === "stop"
                 width: page.cellWidth
                 height: page.cellHeight

@@ -116,6 +116,7 @@ Item {
                 label: kiosk.model.startLabel
                 kind: 1
                 visible: kiosk.model.startOffered
+                active: kiosk.model.startActive
                 onClicked: kiosk.model.pressStart()
             }
             ButtonRow {
