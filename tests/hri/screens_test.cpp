@@ -121,6 +121,9 @@ class Visit {
     wait(100), show("");
     around_.supervisor = guide::Supervisor::kAvailable;
     wait(4000), show("");
+    around_.speech = guide::Speech{~0ULL, true, true};
+    around_.torso = true;
+    wait(100);
     press("no"), show("");
     for (int i = 1; i <= 12; ++i) press("rating:3"), show(("-" + std::to_string(i + 1)).c_str());
     press("rating:3"), show("");

@@ -322,8 +322,9 @@ bool Guide::choose(const std::string& option, Time now) {
       return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
     case State::kEndAsk:
       if (yes) return to(State::kLocationAsk, Cause::kYes);
-      return to(parameters_.questionnaire && visit_.arrived > 0 ? State::kFeedback : State::kEnd,
-                Cause::kNo);
+      if (!parameters_.questionnaire || visit_.arrived == 0) return to(State::kEnd, Cause::kNo);
+      skip_what_is_not_there();
+      return to(State::kFeedback, Cause::kNo);
     case State::kFeedback:
       return rate(option, now);
     case State::kFollowMe:
@@ -387,6 +388,28 @@ bool Guide::choose_on_the_way(const std::string& option, Time now) {
   return true;
 }
 
+/// Of the voice, of being understood and of the body only where they are.
+bool Guide::asks(std::size_t statement) const {
+  const auto& speech = surroundings_.speech;
+  switch (statement + 1) {
+    case 1:
+    case 2:
+      return speech.has_value();
+    case 6:
+    case 7:
+      return speech && speech->understands;
+    case kStatements:
+      return surroundings_.torso;
+    default:
+      return true;
+  }
+}
+
+void Guide::skip_what_is_not_there() {
+  while (visit_.ratings.size() < kStatements && !asks(visit_.ratings.size()))
+    visit_.ratings.push_back(0);
+}
+
 /// One statement after the other; whoever has enough goes.
 bool Guide::rate(const std::string& option, Time now) {
   if (option == button::kCancel) {
@@ -395,6 +418,7 @@ bool Guide::rate(const std::string& option, Time now) {
   }
   visit_.ratings.push_back(
       option == button::kSkip ? std::uint8_t{0} : static_cast<std::uint8_t>(option.back() - '0'));
+  skip_what_is_not_there();
   const bool last = visit_.ratings.size() == kStatements;
   enter(last ? State::kEnd : State::kFeedback, last ? Cause::kYes : Cause::kChoice, now);
   return true;

@@ -75,6 +75,7 @@ enum class Hold : std::uint8_t {
 struct Speech {
   std::uint64_t spoken_id = 0;  ///< of the newest sentence that it said or says
   bool finished = true;         ///< it was said to its end, or broken off
+  bool understands = false;     ///< answers may be spoken
 };
 
 /// Whom the people detector sees: before a journey in front, on it behind.
@@ -95,6 +96,7 @@ struct Surroundings {
   std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
   std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
   std::optional<Speech> speech;            ///< nothing: nobody speaks aloud
+  bool torso = false;                      ///< there is a body that moves
 };
 
 struct Goal {
@@ -202,6 +204,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   bool choose_on_the_way(const std::string& option, Time now);
   bool choose_following(const std::string& option, Time now);
   bool rate(const std::string& option, Time now);
+  bool asks(std::size_t statement) const;
+  void skip_what_is_not_there();
   void choose_language(std::size_t language);
 
   // The way.

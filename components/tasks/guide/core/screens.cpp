@@ -147,8 +147,13 @@ void Guide::build_map(Screen& screen) const {
 void Guide::build_statement(Screen& screen) const {
   const std::size_t number = visit_.ratings.size();
   screen.title = phrases_.phrase(language_, static_cast<std::size_t>(Text::kStatement) + number);
-  screen.text = phrases::filled(say(Text::kDoYouAgree), {{"n", std::to_string(number + 1)},
-                                                         {"all", std::to_string(kStatements)}});
+  std::size_t before = 0, after = 0;
+  for (std::size_t other = 0; other < kStatements; ++other) {
+    if (other != number && asks(other)) ++(other < number ? before : after);
+  }
+  screen.text = phrases::filled(
+      say(Text::kDoYouAgree),
+      {{"n", std::to_string(before + 1)}, {"all", std::to_string(before + 1 + after)}});
   for (int agreement = 5; agreement >= 1; --agreement) {
     const auto label =
         static_cast<std::size_t>(Text::kAgree) + static_cast<std::size_t>(agreement) - 1;

@@ -34,7 +34,7 @@ struct Visit {
   double eta_error =
       kNothing;  ///< of the last arrival: its time over the ETA at departure, minus 1
   double largest_gap = kNothing;  ///< [m] behind a robot that did not wait
-  /// Of the statements of the questionnaire, as far as they were shown: 0 skipped, 1 strongly
+  /// Of the statements of the questionnaire, as far as it got: 0 skipped or not asked, 1 strongly
   /// disagrees .. 5 strongly agrees.
   std::vector<std::uint8_t> ratings;
 

@@ -18,6 +18,7 @@ constexpr auto kFollowAge = milliseconds(1000);
 constexpr auto kLocalizationAge = milliseconds(2000);
 constexpr auto kVisitorAge = milliseconds(500);
 constexpr auto kSpeechAge = milliseconds(2000);
+constexpr auto kTorsoAge = milliseconds(1000);
 constexpr auto kPoseAge = milliseconds(1000);
 constexpr const char* kMemory = "dialogue";
 constexpr const char* kLog = "visits.csv";
@@ -73,9 +74,10 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   time("follow_give_up", p.follow.give_up, "Waiting for so long it gives up.");
   number("follow_behind", "m", {0.8, 4}, p.behind,
          "So far behind a visitor whom the robot follows.");
-  p.questionnaire = parameters.flag(
-      "questionnaire", p.questionnaire,
-      "At the end of a visit that arrived: the 13 statements of the thesis' questionnaire.");
+  p.questionnaire =
+      parameters.flag("questionnaire", p.questionnaire,
+                      "At the end of a visit that arrived: the thesis' questionnaire, 13 "
+                      "statements where there are voice and torso.");
   return p;
 }
 
@@ -134,6 +136,10 @@ GuideComponent::GuideComponent(runtime::Host& host)
       host.input(topics::kSpeechStatus, {.max_age = kSpeechAge,
                                          .on_loss = "its screens do not wait for what is said",
                                          .optional = true});
+  torso_ =
+      host.input(topics::kTorsoStatus, {.max_age = kTorsoAge,
+                                        .on_loss = "its questionnaire asks nothing about the body",
+                                        .optional = true});
   answers_ = host.input(topics::kDialogueAnswer, {.optional = true},
                         [this](const auto& answer, const auto&) { take_answer(answer); });
   screen_ = host.output(topics::kDialogueScreen);
@@ -194,7 +200,8 @@ Surroundings GuideComponent::surroundings() const {
                                 visitor->person()};
   }
   if (const auto* speech = speech_.fresh(); speech != nullptr && speech->audible())
-    s.speech = Speech{speech->spoken_id(), speech->finished()};
+    s.speech = Speech{speech->spoken_id(), speech->finished(), speech->understands()};
+  s.torso = torso_.fresh() != nullptr;
   const auto* localization = localization_.fresh();
   if (localization != nullptr &&
       localization->state() != usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST) {

@@ -52,6 +52,7 @@ class GuideComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
   runtime::Input<usher_msgs::msg::Visitor> visitor_;
   runtime::Input<usher_msgs::msg::SpeechStatus> speech_;
+  runtime::Input<usher_msgs::msg::TorsoStatus> torso_;
   runtime::Input<usher_msgs::msg::DialogueAnswer> answers_;
   runtime::Output<usher_msgs::msg::DialogueScreen> screen_;
   runtime::Output<usher_msgs::msg::GuideStatus> status_;

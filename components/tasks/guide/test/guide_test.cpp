@@ -938,6 +938,7 @@ TEST(Guide, AsksWhatWasThoughtOfTheVisitAndKeepsTheAnswers) {
   ASSERT_TRUE(memory.ok()) << memory.error();
   Rig again(asks, *memory, 1000000);
   EXPECT_EQ(again.guide.screen().title, "The touch interface text was large enough to read.");
+  again.speak_and_move(), again.wait(100);
   for (int i = 0; i < 11; ++i) again.press("rating:" + std::to_string(i % 5 + 1));
   EXPECT_EQ(again.state(), "end");
   EXPECT_EQ(again.guide.screen().text, "Thank you for your answers.");
@@ -950,6 +951,29 @@ TEST(Guide, AsksWhatWasThoughtOfTheVisitAndKeepsTheAnswers) {
   Rig nowhere(asks);
   nowhere.to_options(), nowhere.press("cancel"), nowhere.press("no");
   EXPECT_EQ(nowhere.state(), "end") << "only of a visit that arrived";
+}
+
+TEST(Guide, AsksNothingAboutAVoiceOrABodyThatIsNotThere) {
+  Parameters asks;
+  asks.questionnaire = true;
+  Rig rig(asks);
+  rig.to_end_ask(), rig.press("no");
+  EXPECT_EQ(rig.guide.screen().title, "The touch interface text was large enough to read.");
+  EXPECT_EQ(rig.guide.screen().text, "Do you agree? Statement 1 of 8.");
+  for (int i = 0; i < 3; ++i) rig.press("rating:2");
+  EXPECT_EQ(rig.guide.screen().title, "Requesting my location was easy.");
+  for (int i = 0; i < 4; ++i) rig.press("rating:3");
+  EXPECT_EQ(rig.guide.screen().text, "Do you agree? Statement 8 of 8.");
+  rig.press("rating:4");
+  EXPECT_EQ(rig.state(), "end");
+  ASSERT_EQ(rig.visits.size(), 1U);
+  EXPECT_EQ(rig.visits[0].ratings,
+            (std::vector<std::uint8_t>{0, 0, 2, 2, 2, 0, 0, 3, 3, 3, 3, 4, 0}));
+  Rig deaf(asks);
+  deaf.to_end_ask(), deaf.speak_and_move();
+  deaf.around.speech->understands = false;
+  deaf.wait(100), deaf.press("no");
+  EXPECT_EQ(deaf.guide.screen().text, "Do you agree? Statement 1 of 11.");
 }
 
 TEST(Guide, RefusesRatingsThatAreNone) {

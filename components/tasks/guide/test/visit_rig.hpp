@@ -99,7 +99,9 @@ class Rig {
     wait(100);
     done.clear();
   }
-  void to_feedback() { to_active(), navigate(GoalState::kSucceeded), wait(4000), press("no"); }
+  void speak_and_move() { around.speech = Speech{~0ULL, true, true}, around.torso = true; }
+  void to_end_ask() { to_active(), navigate(GoalState::kSucceeded), wait(4000); }
+  void to_feedback() { to_end_ask(), speak_and_move(), wait(100), press("no"); }
 
   void note(const Actions& actions) {
     for (const Request& request : actions.requests) {
