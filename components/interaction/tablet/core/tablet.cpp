@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "foundation/text/shortened.hpp"
+#include "interaction/phrases/core/way.hpp"
 
 namespace usher::tablet {
 
@@ -24,13 +25,14 @@ bool lets_move(const std::string& id) {
 std::string way_text(double remaining, double eta) {
   std::string text;
   if (std::isfinite(remaining) && remaining >= 0.0) {
-    text = std::to_string(std::lround(std::min(remaining, 1e6))) + " m";
+    text = std::to_string(phrases::rounded_way(remaining)) + " m";
   }
   if (std::isfinite(eta) && eta >= 0.0) {
     const auto seconds = std::min(eta, 1e6);
     if (!text.empty()) text += " · ";
-    text += seconds < 55.0 ? std::to_string(5 * std::lround(std::ceil(seconds / 5.0))) + " s"
-                           : std::to_string(std::lround(seconds / 60.0)) + " min";
+    text += seconds < phrases::kInMinutesFrom
+                ? std::to_string(5 * std::lround(std::ceil(seconds / 5.0))) + " s"
+                : std::to_string(std::lround(seconds / 60.0)) + " min";
   }
   return text;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interaction/phrases/core/way.hpp"
 #include "tasks/guide/core/buttons.hpp"
 #include "tasks/guide/core/guide.hpp"
 
@@ -16,14 +17,13 @@ std::string Guide::say_place(Text text) const {
 }
 
 std::string Guide::way_words(double meters) const {
-  const double step = meters > 20.0 ? 5.0 : 1.0;  // nobody wants to hear "37 metres"
-  const auto rounded = static_cast<long>(std::round(std::min(meters, 1e6) / step) * step);
+  const long rounded = phrases::rounded_way(meters);
   if (rounded == 1) return say(Text::kOneMeter);
   return phrases::filled(say(Text::kMeters), {{"n", std::to_string(rounded)}});
 }
 
 std::string Guide::time_words(double seconds) const {
-  if (seconds < 45.0) return say(Text::kLessThanAMinute);
+  if (seconds < phrases::kInMinutesFrom) return say(Text::kLessThanAMinute);
   if (seconds < 90.0) return say(Text::kOneMinute);
   const auto minutes = static_cast<long>(std::round(std::min(seconds, 1e6) / 60.0));
   return phrases::filled(say(Text::kMinutes), {{"n", std::to_string(minutes)}});
