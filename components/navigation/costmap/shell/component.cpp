@@ -164,6 +164,9 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
   depth_blind_range_ = parameters.number(
       "depth_blind_range", "m", {0, 4}, 1.8,
       "Nearer than this the Kinect looks over low things: what is marked there stays.");
+  rear_blind_range_ = parameters.number(
+      "rear_blind_range", "m", {0, 4}, 1.2,
+      "Nearer than this the rear camera looks over low things: what is marked there stays.");
   low_persistence_ = parameters.number("low_persistence", "s", {0, 600}, 300.0,
                                        "The same for low things that the Kinect looks over: nobody "
                                        "sees them again while it stands.");
@@ -221,6 +224,7 @@ void CostmapComponent::add_layers(Map& map) {
   if (&map == &local_) depth.persistence = local_persistence_;
   map.depth = add(depth);
   depth.name = "rear";
+  depth.min_raytrace_range = rear_blind_range_;
   map.rear = add(depth);
   depth.name = "low";
   depth.min_raytrace_range = depth_blind_range_;

@@ -47,8 +47,8 @@ class Component : public testing::Test {
   void run(int ms, bool scans = true, bool localized = true) {
     for (int at = 0; at < ms; at += 20) {
       tf2_msgs::msg::TFMessage moving;
-      moving.transforms().push_back(
-          wire::transform(host.now(), frames::kOdom, frames::kBaseFootprint, geometry::Pose3{}));
+      moving.transforms().push_back(wire::transform(
+          host.now(), frames::kOdom, frames::kBaseFootprint, geometry::to_space(base)));
       if (localized)
         moving.transforms().push_back(
             wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
@@ -80,6 +80,7 @@ class Component : public testing::Test {
   grid::OccupancyGrid map{{160, 160, 0.05, -4.0, -4.0}, grid::kFree};
   runtime::TestHost host{runtime::component_factory<CostmapComponent>("costmap"), kFootprint};
   runtime::Time map_stamp{}, last_scan{};
+  geometry::Pose2 base;  // in odom and map
 };
 
 TEST_F(Component, MarksWhatTheLaserSees) {
@@ -153,6 +154,25 @@ TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
     run(20, false);
   }
   EXPECT_EQ(global_cost(1.02, 0.02), 252) << "the highest that a planner crosses";
+}
+
+TEST_F(Component, KeepsTheLowBoxBehindThatItBacksUpTo) {
+  tf2_msgs::msg::TFMessage fixed;
+  fixed.transforms().push_back(wire::transform(host.now(), frames::kBaseFootprint, "rear",
+                                               geometry::to_space({0.0, 0.0, geometry::kPi})));
+  host.publish(topics::kTfStatic, fixed);
+  give_map();
+  run(200);
+  const float nothing = std::numeric_limits<float>::infinity();
+  for (; base.x > -0.8; base.x -= 0.02) {  // the box is at -1.5 and leaves the image at 1.1 m
+    const auto gap = static_cast<float>(base.x + 1.5);
+    host.publish(topics::kRearScan, scan("rear", gap > 1.1F ? gap : nothing));
+    run(60);
+  }
+  EXPECT_EQ(local_cost(-1.5, 0.0), kLethalCost);
+  base.x = 0.0;
+  for (int i = 0; i < 10; ++i) host.publish(topics::kRearScan, scan("rear", nothing)), run(60);
+  EXPECT_LT(local_cost(-1.5, 0.0), kLethalCost) << "gone, as is seen from afar";
 }
 
 TEST_F(Component, GivesPeopleRoomUntilNobodyTellsOfThem) {
