@@ -26,15 +26,16 @@ DepthPipelineSimComponent::DepthPipelineSimComponent(runtime::Host& host)
   frames_ = host.output(topics::kTf);
   kinect_.input = host.input(
       topics::kSimKinectScan, {.max_age = kScanAge, .on_loss = "publishes no scans, degraded"},
-      [this](const auto& scan, const auto&) { take(kinect_, scan); },
-      [this] { host_.health().set(HealthState::kDegraded, "no depth scan"); });
+      [this](const auto& scan, const auto&) { take(kinect_, scan); }, [this] { report(); });
   low_.input =
       host.input(topics::kSimKinectScanLow,
                  {.max_age = kScanAge, .on_loss = "publishes no low scans", .optional = true},
                  [this](const auto& scan, const auto&) { take(low_, scan); });
   rear_.input = host.input(
       topics::kSimRearScan,
-      {.max_age = kScanAge, .on_loss = "goes on with the Kinect alone", .optional = true},
+      {.max_age = kScanAge,
+       .on_loss = "goes on with the Kinect alone; degraded when there was one",
+       .optional = true},
       [this](const auto& scan, const auto&) { take(rear_, scan); });
 }
 
@@ -60,7 +61,17 @@ void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::L
   channel.output->publish(stamp, static_cast<double>(scan.angle_min()),
                           static_cast<double>(scan.angle_increment()), channel.ranges,
                           channel.intensities);
-  if (&channel == &kinect_) host_.health().set(HealthState::kOk);
+  if (kinect_.confidence) report();
+}
+
+void DepthPipelineSimComponent::report() {
+  if (kinect_.input.fresh() == nullptr) {
+    host_.health().set(HealthState::kDegraded, "no depth scan");
+  } else if (rear_.confidence && rear_.input.fresh() == nullptr) {
+    host_.health().set(HealthState::kDegraded, "rear camera: no depth scan");
+  } else {
+    host_.health().set(HealthState::kOk);
+  }
 }
 
 }  // namespace usher::depth_pipeline

@@ -25,6 +25,7 @@ class DepthPipelineSimComponent final : public runtime::Component {
     runtime::Input<sensor_msgs::msg::LaserScan> input;
   };
   void take(Channel& channel, const sensor_msgs::msg::LaserScan& scan);
+  void report();
 
   runtime::Host& host_;
   PipelineConfig config_;

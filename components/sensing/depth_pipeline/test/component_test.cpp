@@ -327,17 +327,25 @@ TEST(DepthPipelineParameters, HaveNoAxleOfTheirOwn) {
   EXPECT_THAT(made.error(), HasSubstr("robot.wheel_radius"));
 }
 
-TEST(DepthPipelineSim, RatesAndPassesTheModelsScans) {
-  TestHost host(runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim"),
+class DepthPipelineSim : public testing::Test {
+ protected:
+  DepthPipelineSim() {
+    scan.angle_min(-0.5F);
+    scan.angle_max(0.5F);
+    scan.angle_increment(0.5F);
+    scan.range_min(0.05F);
+    scan.range_max(5.0F);
+    scan.ranges({1.0F, 2.0F, 3.0F});
+  }
+  std::string reason() { return host.heartbeat().reason(); }
+
+  TestHost host{runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim"),
                 "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, "
-                "robot.wheel_radius: 0.235 m}");
+                "robot.wheel_radius: 0.235 m}"};
   sensor_msgs::msg::LaserScan scan;
-  scan.angle_min(-0.5F);
-  scan.angle_max(0.5F);
-  scan.angle_increment(0.5F);
-  scan.range_min(0.05F);
-  scan.range_max(5.0F);
-  scan.ranges({1.0F, 2.0F, 3.0F});
+};
+
+TEST_F(DepthPipelineSim, RatesAndPassesTheModelsScans) {
   for (int i = 0; i < 4; ++i) {
     scan.header(wire::header(host.now(), "kinect_level"));
     if (i == 3) scan.ranges({1.0F, 0.6F, 3.0F});
@@ -352,6 +360,29 @@ TEST(DepthPipelineSim, RatesAndPassesTheModelsScans) {
   host.publish(topics::kSimKinectScan, scan);
   host.run_for(milliseconds(1100));
   EXPECT_EQ(host.counter("scans: rejected"), 1U);
+}
+
+TEST_F(DepthPipelineSim, HealthIsThatOfBothCameras) {
+  const auto live = [&](bool front, bool rear) {
+    for (int i = 0; i < 10; ++i) {
+      scan.header(wire::header(host.now(), "level"));
+      if (front) host.publish(topics::kSimKinectScan, scan);
+      if (rear) host.publish(topics::kSimRearScan, scan);
+      host.run_for(milliseconds(66));
+    }
+  };
+  live(true, false);
+  EXPECT_EQ(reason(), "") << "there was no rear camera";
+  live(true, true);
+  EXPECT_EQ(reason(), "");
+  live(true, false);
+  EXPECT_EQ(reason(), "rear camera: no depth scan");
+  live(true, true);
+  EXPECT_EQ(reason(), "");
+  live(false, true);
+  EXPECT_EQ(reason(), "no depth scan");
+  live(true, true);
+  EXPECT_EQ(reason(), "");
 }
 
 }  // namespace
