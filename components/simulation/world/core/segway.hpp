@@ -64,7 +64,7 @@ struct SegwayConfig {
   double odometry_turn_spread = 0.01;    ///< relative error of turns (track)
   double odometry_curl_spread = 0.003;   ///< [rad/m] unequal wheels
   double odometry_slip = 0.0015;         ///< [m/sqrt(m)] noise of each wheel
-  double track = 0.47;                   ///< [m]
+  double track = 0.5398;                 ///< [m] effective, for turning
   double pitch_noise = 0.0009;           ///< [rad]
   double pitch_rate_noise = 0.005;       ///< [rad/s]
   double yaw_rate_noise = 0.005;         ///< [rad/s] of the gyroscope

@@ -87,6 +87,11 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
                         "What the simulated robot drives on.") == "pioneer"
                    ? RobotConfig::Kind::kPioneer
                    : RobotConfig::Kind::kSegway;
+  double& track =
+      robot.kind == RobotConfig::Kind::kPioneer ? robot.pioneer.track : robot.segway.track;
+  track =
+      p.number("robot.track", "m", {0.1, 2}, track,
+               "Between the wheels as turns show it: their travels' difference over the angle.");
   robot.sonar.count = static_cast<int>(p.integer("robot.ultrasonic.count", "-", {1, 16}, 5,
                                                  "Sensors on the ring, the middle looks ahead."));
   robot.sonar.range_max =
