@@ -76,11 +76,12 @@ void ObstacleJudge::take_costs(runtime::Time stamp, const grid::Grid<std::uint8_
   ++costmaps_;
   for (std::size_t i = 0; i < objects_.size(); ++i) judge(i, odom_T_world, costs, seconds);
   const geometry::Pose2 world_T_odom = geometry::inverse(odom_T_world);
+  const double stray = config_.stray + config_.thickness;
   std::size_t strays = 0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     if (costs[i] != kLethal) continue;
     const geometry::Point2 place = world_T_odom * costs.geometry().center(costs.geometry().cell(i));
-    strays += everything_.nearest(place, config_.height, config_.stray).thing < 0;
+    strays += everything_.nearest(place, config_.height, stray).thing < 0;
   }
   false_cells_ += strays;
   false_costmaps_ += strays > 0;

@@ -35,7 +35,10 @@ class ObstacleJudge {
     double height = 1.8;                      ///< [m] higher things do not concern it
     double stopping_time = 1.48;              ///< [s] d(v) of table 8.1 over v
     double near = 0.15;   ///< [m] of a lethal cell from the object's nearest point
-    double stray = 0.25;  ///< [m] a lethal cell so far from everything is false
+    double stray = 0.25;  ///< [m] what is seen so far from everything is false
+    /// [m] that the costmap takes low things to be thick: a lethal cell is false beyond `stray` and
+    /// this.
+    double thickness = 0.3;
   };
   struct Verdict {
     std::string name;

@@ -80,7 +80,7 @@ TEST_F(ObstacleJudgeTest, ForgivesWhatLiesBehindAndWhoStands) {
 
 TEST_F(ObstacleJudgeTest, FindsCellsAndBearingsWhereNothingIs) {
   ObstacleJudge judge = make();
-  step(judge, 0.5, 0.6, {{3.02, 0.0}, {1.5, 1.0}});
+  step(judge, 0.5, 0.6, {{3.02, 0.0}, {3.6, 0.0}, {1.5, 1.0}});  // what it hides is no ghost
   step(judge, 0.6, 0.6, front_);
   EXPECT_EQ(judge.costmaps(), 2U);
   EXPECT_EQ(judge.false_costmaps(), 1U);
