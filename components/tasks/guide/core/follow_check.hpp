@@ -30,7 +30,8 @@ struct FollowLimits {
 /// The visitor as seen while guiding.
 struct FollowerSighting {
   bool seen = false;
-  double gap = std::numeric_limits<double>::quiet_NaN();  ///< [m] from the robot; when seen
+  /// [m] from the robot, 0: he walks ahead; when seen
+  double gap = std::numeric_limits<double>::quiet_NaN();
   bool behind = false;                                    ///< the robot; when seen
 };
 

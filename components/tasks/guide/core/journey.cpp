@@ -15,6 +15,8 @@ constexpr Time kSentence = std::chrono::seconds(4);  ///< a sentence stays at le
 constexpr Time kEtaSettles = std::chrono::seconds(3);
 constexpr double kAlmost = 10.0;  ///< [m]
 constexpr std::size_t kMostRemembered = 8;
+constexpr double kAhead = 0.5;        ///< [m] who walks before the robot does not fall behind ...
+constexpr double kAheadWithin = 6.0;  ///< [m] ... unless he is gone
 
 }  // namespace
 
@@ -207,8 +209,9 @@ void Guide::watch_navigation(Time now) {
 void Guide::watch_follower(Time now) {
   std::optional<FollowerSighting> sighting;
   if (const auto& visitor = surroundings_.visitor) {
-    sighting =
-        FollowerSighting{visitor->seen, std::hypot(visitor->x, visitor->y), visitor->x < 0.0};
+    const double range = std::hypot(visitor->x, visitor->y);
+    const bool ahead = visitor->x > kAhead && range < kAheadWithin;
+    sighting = FollowerSighting{visitor->seen, ahead ? 0.0 : range, visitor->x < 0.0};
   }
   const auto& pose = surroundings_.pose;
   const Follower before = follow_.state();

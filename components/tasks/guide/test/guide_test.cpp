@@ -268,6 +268,22 @@ TEST(Guide, FitsThePaceWaitsCallsAndGoesOn) {
   EXPECT_EQ(rig.guide.visit().waits, 1U);
 }
 
+TEST(Guide, WhoWalksAheadDoesNotFallBehind) {
+  Rig rig;
+  rig.see(-1.0), rig.to_active();
+  for (const double ahead : {2.5, 4.0, 5.5}) {
+    rig.see(ahead), rig.wait(70000);
+    EXPECT_EQ(rig.taken(), "") << ahead;
+    EXPECT_DOUBLE_EQ(rig.pace, 1.15) << ahead;
+    EXPECT_EQ(rig.state(), "guide_active");
+  }
+  rig.see(6.5), rig.wait(200);
+  EXPECT_EQ(rig.taken(), "stop") << "he has gone";
+  rig.see(4.5), rig.wait(1200);
+  EXPECT_EQ(rig.taken(), "on") << "he waits before it";
+  EXPECT_LT(rig.guide.visit().largest_gap, 1.5);
+}
+
 TEST(Guide, GoesOnWaitingWhenNobodyLooksAnyMore) {
   Rig rig;
   rig.see(1.2), rig.to_active();
