@@ -184,7 +184,7 @@ class Witness {
     }
   }
   void take(const usher_msgs::msg::DialogueScreen& screen) {
-    if (screen.spoken_id() != 0) {
+    if (screen.spoken_id() != 0 && !screen.spoken().empty()) {
       auto& sentence = said_[screen.spoken_id()];
       const std::string page = screen.title() + " " + screen.text();
       if (sentence.text.empty()) sentence = {screen.spoken(), now(), now()};

@@ -26,7 +26,8 @@ bool Conversation::offers(std::string_view option_id) const {
 
 void Conversation::take(const Screen& screen, Time now) {
   const bool another = screen.id != screen_.id;
-  const bool more = screen.spoken_id > said_ && !screen.spoken.empty();
+  const bool more =
+      screen.spoken_id > said_ && (!screen.spoken.empty() || screen.tone != Tone::kNone);
   // What comes first after a restart, of this component or of the dialogue, is nobody's answer.
   const bool answered =
       screen_.id != 0 && screen.answer_id != 0 &&
@@ -45,7 +46,8 @@ void Conversation::take(const Screen& screen, Time now) {
   if (more) {
     said_ = screen.spoken_id;
     if (screen.tone != Tone::kNone) wishes_.tones.push_back(screen.tone);
-    wishes_.say = Wishes::Say{screen.spoken_id, screen.spoken, screen.language};
+    if (!screen.spoken.empty())
+      wishes_.say = Wishes::Say{screen.spoken_id, screen.spoken, screen.language};
   }
   listen();
 }

@@ -145,6 +145,18 @@ TEST_F(Talk, SaysEachThingOnceAndANewQuestionBreaksTheOldOneOff) {
   EXPECT_EQ(wishes.tones, std::vector<Tone>{Tone::kMoving});
 }
 
+TEST_F(Talk, SoundsAToneThatComesAlone) {
+  auto turns = screen(1, {"yes"});
+  turns.spoken.clear();
+  turns.tone = Tone::kMoving;
+  show(turns);
+  const auto wishes = talk_.take_wishes();
+  EXPECT_EQ(wishes.tones, std::vector<Tone>{Tone::kMoving});
+  EXPECT_FALSE(wishes.say);
+  show(turns);
+  EXPECT_TRUE(talk_.take_wishes().tones.empty()) << "once";
+}
+
 TEST_F(Talk, SoundsWhenItBeginsAndWhenItEndsToListen) {
   show(screen(1, {"yes", "no"}));
   talk_.take_wishes();

@@ -12,7 +12,8 @@ constexpr Time kGoalEvery = std::chrono::milliseconds(700);
 constexpr double kGoalStep = 0.3;  ///< [m] a goal nearer to the last one, or to the robot, is none
 constexpr double kLookFrom = 0.3;  ///< [m] before the place where an unseen visitor was last
 constexpr double kJump = 2.0;      ///< [m] nobody walks so far unseen: the way begins anew
-constexpr int kMostGoalsFailed = 5;  ///< in a row
+constexpr int kMostGoalsFailed = 5;               ///< in a row
+constexpr Time kRests = std::chrono::seconds(5);  ///< then a tone sounds before it drives again
 
 }  // namespace
 
@@ -35,7 +36,7 @@ bool Guide::choose_following(const std::string& option, Time now) {
   held_since_.reset();
   stands_told_.reset();
   unheard_since_.reset();
-  departed_ = asked_again_ = moved_at_ = now;
+  departed_ = asked_again_ = moved_at_ = drove_at_ = now;
   move_at_ = now + parameters_.tone;
   sentence_ = say(Text::kWalkAhead);
   sentence_at_ = now;
@@ -137,7 +138,8 @@ void Guide::follow_visitor(Time now) {
     lift_stop();
     actions_.remember = true;
   }
-  if (!move_at_ && pose) go_behind(now);
+  if (goal_id_ != 0) drove_at_ = now;
+  if (!move_at_ && !stopped_ && pose) go_behind(now);
 }
 
 void Guide::go_behind(Time now) {
@@ -162,6 +164,11 @@ void Guide::go_behind(Time now) {
   if (seen && (place->position() - robot).norm() > std::hypot(visitor->x, visitor->y)) return;
   if (going_to_ && (place->position() - *going_to_).norm() < kGoalStep) return;
   if (going_to_ && now - goal_given_at_ < kGoalEvery) return;
+  if (now - drove_at_ >= kRests) {
+    drove_at_ = now;
+    move_at_ = now + parameters_.tone;
+    return sound(Tone::kMoving);
+  }
   going_to_ = place->position();
   goal_id_ = next_id_++;
   if (first_goal_ == 0) first_goal_ = goal_id_;

@@ -79,13 +79,14 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
     }
     if (follows()) {
       first_goal_ = goal_id_ = memory.goal_id;
-      departed_ = moved_at_ = now;
+      departed_ = moved_at_ = drove_at_ = now;
       move_at_ = now + parameters_.tone;
       sentence_ = say(Text::kWalkAhead);
     }
   }
   screen_.id = next_id_++;
   speak_screen();
+  if (move_at_) screen_.tone = Tone::kMoving;
   finish(now);
 }
 
@@ -121,7 +122,7 @@ bool Guide::there(const VisitorSighting& visitor) const {
 
 std::optional<double> Guide::turns_to() const {
   const auto& visitor = surroundings_.visitor;
-  if (!turns_ || !visitor || !visitor->seen) return std::nullopt;
+  if (!turns_ || !turns_now_ || !visitor || !visitor->seen) return std::nullopt;
   return std::atan2(visitor->y, visitor->x);
 }
 
@@ -430,7 +431,6 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
   surroundings_ = surroundings;
   watch_encounter(now);
-  if (const auto bearing = turns_to(); bearing && std::abs(*bearing) <= kFaced) turns_ = false;
   if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);
   if (state_ == State::kGuideActive || follows()) tell_why_it_stands(now);
   if (follows()) watch_following(now);
@@ -441,7 +441,23 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   if (state_ == State::kGuideActive && goal_id_ != 0) watch_obstacle(now);
   if (state_ == State::kGuideActive) refresh_journey(now);
   pass_time(now);
+  watch_turns(now);
   return finish(now);
+}
+
+/// A robot that stands turns to nobody, and looks for nobody, before a tone has told of it.
+void Guide::watch_turns(Time now) {
+  const auto& visitor = surroundings_.visitor;
+  const bool seen = turns_ && visitor && visitor->seen;
+  const bool faced = seen && std::abs(std::atan2(visitor->y, visitor->x)) <= kFaced;
+  if (faced) turns_ = false;
+  if (!may_seek() && (!seen || faced)) {
+    turn_at_.reset();
+  } else if (!turn_at_) {
+    turn_at_ = now + parameters_.tone;
+    sound(Tone::kMoving);
+  }
+  turns_now_ = turn_at_ && now >= *turn_at_;
 }
 
 void Guide::watch_encounter(Time now) {
@@ -488,7 +504,8 @@ bool Guide::another(const VisitorSighting& visitor) const {
 /// Whether what the screen says is being said, or about to be.
 bool Guide::speaks() const {
   const auto& speech = surroundings_.speech;
-  return speech && !(speech->finished && speech->spoken_id >= screen_.spoken_id);
+  return speech && !screen_.spoken.empty() &&
+         !(speech->finished && speech->spoken_id >= screen_.spoken_id);
 }
 
 void Guide::pass_time(Time now) {

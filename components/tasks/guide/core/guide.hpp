@@ -149,14 +149,16 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   const Surroundings& surroundings() const { return surroundings_; }
   /// Nobody is served, and somebody looks but sees nobody: the robot may turn slowly to look for
   /// people. Where nobody looks, a turn would find nobody.
-  bool seeks() const { return state_ == State::kInactive && human() == Human::kNo; }
+  /// Not before the tone has sounded.
+  bool seeks() const { return turns_now_ && may_seek(); }
   /// A visit goes on.
   bool serves() const { return visit_.id != 0 && visit_.outcome == Outcome::kOpen; }
   /// A journey goes on: the visitor follows.
   bool guides() const { return journey(); }
   /// The robot follows the visitor.
   bool follows() const { return state_ == State::kFollowMe; }
-  /// The bearing of the visitor [rad], whom the robot turns to on arrival; nothing: to nobody.
+  /// The bearing of the visitor [rad], whom the robot turns to on arrival; nothing: to nobody, or
+  /// not yet, while the tone sounds.
   std::optional<double> turns_to() const;
   const Visit& visit() const { return visit_; }
   const Funnel& funnel() const { return funnel_; }
@@ -194,6 +196,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   Text idle_text() const;
   void speak(const std::string& sentence, Tone tone = Tone::kNone);
   void speak_screen();
+  void sound(Tone tone);
   std::vector<const Location*> offered() const;
 
   // Answers.
@@ -216,6 +219,9 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   /// What the supervisor shows as the goal.
   std::string goal_name() const { return follows() ? "visitor" : place_.name; }
   bool question() const;
+  bool may_seek() const {
+    return state_ == State::kInactive && human() == Human::kNo && surroundings_.hold == Hold::kNone;
+  }
   Time patience() const {
     return state_ == State::kGuidePaused ? parameters_.pause : parameters_.answer;
   }
@@ -235,6 +241,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void start_navigation();
   std::optional<std::uint64_t> own_goal() const;
   void watch_obstacle(Time now);
+  void watch_turns(Time now);
   void watch_encounter(Time now);
   bool another(const VisitorSighting& visitor) const;
   bool speaks() const;
@@ -272,7 +279,9 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::vector<std::uint64_t> greeted_persons_;
   std::uint64_t near_person_ = 0;
   bool lost_visitor_ = false;
-  bool turns_ = false;  ///< to the visitor, on arrival
+  bool turns_ = false;           ///< to the visitor, on arrival
+  std::optional<Time> turn_at_;  ///< after the tone, to him or in search of somebody
+  bool turns_now_ = false;
   std::optional<Time> near_since_, nobody_since_;
 
   // This journey.
@@ -299,6 +308,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::optional<geometry::Point2> going_to_;
   Time goal_given_at_{};
   Time moved_at_{};       ///< when the newest goal of a following was given
+  Time drove_at_{};       ///< when a following last had a goal, or announced one
   int goals_failed_ = 0;  ///< in a row
   std::optional<Time> unseen_since_;
   std::uint32_t calls_heard_ = 0;

@@ -134,7 +134,8 @@ std::optional<Text> Guide::stands_for(Time now) const {
     return surroundings_.hold == Hold::kStopped ? Text::kStoppedMe : Text::kOneMoment;
   }
   const bool lost = waits_since_ && now - *waits_since_ >= parameters_.refresh;
-  return lost && !stopped_ ? std::optional(Text::kNotLocated) : std::nullopt;
+  const bool waits = stopped_ && !stands_told_;  // for the visitor
+  return lost && !waits ? std::optional(Text::kNotLocated) : std::nullopt;
 }
 
 void Guide::tell_why_it_stands(Time now) {
@@ -146,10 +147,16 @@ void Guide::tell_why_it_stands(Time now) {
   const auto why = stands_for(now);
   if (why == stands_told_) return;
   stands_told_ = why;
-  if (why) return say_on_the_way(*why, Tone::kNone, now);
-  if (!stopped_) {
-    say_on_the_way(follows() ? Text::kWalkAhead : Text::kHereWeGo, Tone::kMoving, now);
+  if (why) {
+    // So that it does not drive off by itself, but after a tone. Between two goals of a following
+    // the supervisor navigates nowhere.
+    const bool between = follows() && surroundings_.supervisor == Supervisor::kAvailable;
+    if (!between && (!stopped_ || move_at_)) stop_robot();
+    return say_on_the_way(*why, Tone::kNone, now);
   }
+  if (journey() && follow_.waits()) return;
+  say_on_the_way(follows() ? Text::kWalkAhead : Text::kHereWeGo, Tone::kMoving, now);
+  if (stopped_) move_at_ = now + parameters_.tone;
 }
 
 void Guide::watch_navigation(Time now) {
@@ -238,7 +245,7 @@ void Guide::watch_follower(Time now) {
   if (sighting && sighting->seen && !(follow_.gap() <= visit_.largest_gap)) {
     visit_.largest_gap = follow_.gap();
   }
-  if (stopped_ && !move_at_) {
+  if (stopped_ && !move_at_ && !stands_told_) {
     say_on_the_way(Text::kHereWeGo, Tone::kMoving, now);
     move_at_ = now + parameters_.tone;
   } else if (follow_.state() == Follower::kLagging && before == Follower::kFollowing &&

@@ -42,6 +42,15 @@ void Guide::speak_screen() {
   speak(sentence);
 }
 
+/// With what is about to be said, or alone.
+void Guide::sound(Tone tone) {
+  if (screen_.spoken_id == published_.spoken_id) {
+    speak({}, tone);
+  } else {
+    screen_.tone = tone;
+  }
+}
+
 Text Guide::idle_text() const {
   if (surroundings_.supervisor == Supervisor::kManual) return Text::kOperatorDrives;
   if (surroundings_.supervisor == Supervisor::kAvailable) return Text::kNoPlaces;

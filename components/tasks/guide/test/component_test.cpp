@@ -87,7 +87,7 @@ TEST_F(Stage, ShowsThatSomebodyElseHoldsTheRobot) {
   EXPECT_EQ(screen().status(), "standing");
   EXPECT_EQ(screen().text(), "stopped_me");
   supervisor.stopped_by({});
-  run(300);
+  run(1300);
   EXPECT_EQ(screen().status(), "driving");
   supervisor.granted(false);
   run(1500);

@@ -355,11 +355,24 @@ TEST(Guide, SeeksOnlyWhereSomebodyLooksAndSeesNobody) {
   EXPECT_FALSE(rig.guide.seeks()) << "nobody looks: a turn would find nobody";
   rig.see_nobody();
   rig.wait(100);
+  EXPECT_EQ(rig.toned_ms, rig.now_ms);
+  rig.wait(900);
+  EXPECT_FALSE(rig.guide.seeks()) << "a tone before the first motion";
+  rig.wait(100);
+  EXPECT_TRUE(rig.guide.seeks());
+  EXPECT_TRUE(rig.said.empty()) << rig.said.back();
+  rig.around.hold = Hold::kStopped, rig.wait(2000);
+  EXPECT_FALSE(rig.guide.seeks());
+  rig.around.hold = Hold::kNone, rig.wait(900);
+  EXPECT_FALSE(rig.guide.seeks()) << "likewise after somebody's stop";
+  rig.wait(200);
   EXPECT_TRUE(rig.guide.seeks());
   rig.see(3.0);
   rig.wait(100);
   EXPECT_FALSE(rig.guide.seeks()) << "somebody may come up";
   rig.see_nobody();
+  rig.wait(1200);
+  EXPECT_TRUE(rig.guide.seeks());
   rig.begin();
   EXPECT_FALSE(rig.guide.seeks()) << "somebody touched the screen";
 }
@@ -472,10 +485,14 @@ TEST(Guide, StartsTheNavigationAgainAtASupervisorThatForgotIt) {
   rig.to_active();
   rig.around.supervisor = Supervisor::kAvailable;
   rig.wait(5000);
-  EXPECT_EQ(rig.taken(), "start:am218 go");
+  EXPECT_EQ(rig.taken(), "stop start:am218 go");
   rig.around.supervisor = Supervisor::kNavigation;
   rig.wait(100);
   EXPECT_EQ(rig.state(), "guide_active");
+  EXPECT_EQ(rig.toned_ms, rig.now_ms);
+  EXPECT_EQ(rig.taken(), "") << "a tone before the first motion";
+  rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "on");
 }
 
 TEST(Guide, FailsWhenTheRobotDoesNotAnswerForLong) {
@@ -516,12 +533,16 @@ TEST(Guide, SaysThatSomebodyElseHasStoppedItAndGivesUpInTheEnd) {
   rig.navigate(GoalState::kActive);
   EXPECT_EQ(rig.said.back(), "Here we go.");
   EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
+  EXPECT_EQ(rig.taken(), "stop") << "so that it does not drive off with the tone";
+  EXPECT_EQ(rig.guide.screen().status, "Standing");
+  rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "on");
   EXPECT_EQ(rig.guide.screen().status, "Driving");
   rig.around.hold = Hold::kStopped;
   rig.wait(120100);
   EXPECT_EQ(rig.state(), "guide_error");
   EXPECT_TRUE(rig.guide.screen().text.starts_with("Somebody has stopped me."));
-  EXPECT_EQ(rig.taken(), "end cancel");
+  EXPECT_EQ(rig.taken(), "stop end on cancel");
 }
 
 TEST(Guide, AStopOfTheVisitorIsNotCutShortByAnotherOne) {
@@ -685,6 +706,10 @@ TEST(Guide, StaysStoppedAfterItsOwnRestart) {
   EXPECT_EQ(paused.taken(), "");
   paused.press("continue"), paused.wait(1000);
   EXPECT_EQ(paused.taken(), "on goal:am218");
+  Rig starting;
+  starting.to_start(), starting.press("start"), starting.wait(500);
+  const Guide restarted({}, book(), 1000000, starting.guide.memory(), {});
+  EXPECT_EQ(restarted.screen().tone, Tone::kMoving) << "it has not set off yet";
 
   Rig waits;
   waits.see(-1.0), waits.to_active(), waits.see(-5.0), waits.wait(100);
@@ -769,7 +794,11 @@ TEST(Guide, TurnsToTheVisitorOnArrival) {
   rig.see(-1.5), rig.to_active();
   EXPECT_FALSE(rig.guide.turns_to());
   rig.navigate(GoalState::kSucceeded);
-  rig.see_at(-1.0, 1.0, 0.0), rig.wait(100);
+  EXPECT_EQ(rig.toned_ms, rig.now_ms);
+  EXPECT_EQ(rig.guide.screen().spoken, "We have arrived. This is AM218.") << "with the tone";
+  rig.see_at(-1.0, 1.0, 0.0), rig.wait(900);
+  EXPECT_FALSE(rig.guide.turns_to());
+  rig.wait(100);
   ASSERT_TRUE(rig.guide.turns_to());
   EXPECT_NEAR(*rig.guide.turns_to(), 2.356, 1e-3);
   rig.see_nobody(), rig.wait(100);
@@ -845,6 +874,40 @@ TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   EXPECT_EQ(rig.taken(), "end");
   EXPECT_EQ(rig.guide.visit().arrived, 1U);
   EXPECT_FALSE(rig.guide.follows());
+}
+
+TEST(Guide, SoundsBeforeItFollowsAVisitorWhoStoodForLong) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(1.0), rig.wait(60000), rig.taken();
+  rig.see(3.0), rig.wait(100);
+  EXPECT_EQ(rig.toned_ms, rig.now_ms);
+  rig.wait(900);
+  EXPECT_EQ(rig.taken(), "");
+  rig.wait(100);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.pose->x = 1.8;
+  rig.see(1.0), rig.wait(3000), rig.taken();
+  rig.see(3.0), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "goal:pose") << "he has hardly stood";
+}
+
+TEST(Guide, StandsInAFollowingUntilTheToneAfterSomebodysStop) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100), rig.navigate(GoalState::kActive), rig.taken();
+  rig.around.hold = Hold::kStopped, rig.wait(5000);
+  EXPECT_EQ(rig.taken(), "stop");
+  rig.see(5.0), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "");
+  rig.around.hold = Hold::kNone, rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "");
+  EXPECT_EQ(rig.toned_ms, rig.now_ms - 900);
+  rig.wait(200);
+  EXPECT_EQ(rig.taken(), "on goal:pose");
 }
 
 TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {

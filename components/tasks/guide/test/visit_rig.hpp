@@ -44,6 +44,7 @@ class Rig {
   std::uint64_t goal = 0;
   std::optional<geometry::Pose2> goal_pose;
   std::vector<std::string> said;
+  int toned_ms = -1;  ///< when the last tone before a motion sounded
   std::vector<guide::Visit> visits;
   double pace = -1.0;
 
@@ -123,7 +124,8 @@ class Rig {
     const Screen& screen = guide.screen();
     if (screen.spoken_id != spoken_id_) {
       spoken_id_ = screen.spoken_id;
-      said.push_back(screen.spoken);
+      if (screen.tone == Tone::kMoving) toned_ms = now_ms;
+      if (!screen.spoken.empty()) said.push_back(screen.spoken);
     }
   }
   std::string taken() { return std::exchange(done, {}); }
