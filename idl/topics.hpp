@@ -72,7 +72,7 @@ inline constexpr Topic<sensor_msgs::msg::Image> kKinectColor{
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kKinectInfo{
     "kinect/depth/camera_info", Kind::kLatched, 1, 0, "kinect", "Intrinsics of the depth image."};
 inline constexpr Topic<sensor_msgs::msg::Image> kRearDepth{
-    "rear_camera/depth", Kind::kStream, 2, 30, "kinect", "The same of the camera that looks back."};
+    "rear_camera/depth", Kind::kStream, 2, 15, "kinect", "The same of the camera that looks back."};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kRearInfo{
     "rear_camera/depth/camera_info", Kind::kLatched, 1, 0, "kinect",
     "Intrinsics of its depth image."};
@@ -84,7 +84,7 @@ inline constexpr Topic<sensor_msgs::msg::Image> kKinectProcessed{
     "depth_pipeline",
     "Depth without floor, ceiling and noise, 16UC1 in mm, 0 = nothing; its frame is in tf."};
 inline constexpr Topic<sensor_msgs::msg::Image> kRearProcessed{
-    "rear_camera/depth/processed", Kind::kStream, 2, 30, "depth_pipeline",
+    "rear_camera/depth/processed", Kind::kStream, 2, 15, "depth_pipeline",
     "The same of the rear camera."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScan{
     "kinect/scan",
@@ -101,7 +101,7 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScanLow{
     "depth_pipeline",
     "Only what is too low to be seen from near: to be remembered there."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kRearScan{
-    "rear_camera/scan", Kind::kStream, 2, 30, "depth_pipeline", "Nearest obstacle behind."};
+    "rear_camera/scan", Kind::kStream, 2, 15, "depth_pipeline", "Nearest obstacle behind."};
 inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTilt{
     "kinect/tilt", Kind::kStream, 2, 20, "sensor_board", "Where the tilt servo stands."};
 inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTiltCommand{
@@ -370,7 +370,7 @@ inline constexpr Topic<sensor_msgs::msg::Image> kSimKinectColor{
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimKinectInfo{
     "sim/kinect/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its depth image."};
 inline constexpr Topic<sensor_msgs::msg::Image> kSimRearDepth{
-    "sim/rear_camera/depth", Kind::kStream, 2, 30, "world", "From the simulated rear camera."};
+    "sim/rear_camera/depth", Kind::kStream, 2, 15, "world", "From the simulated rear camera."};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimRearInfo{
     "sim/rear_camera/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its image."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScan{
@@ -383,7 +383,7 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScan{
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScanLow{
     "sim/kinect/scan/low", Kind::kStream, 2, 30, "world", "Its low obstacles."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimRearScan{
-    "sim/rear_camera/scan", Kind::kStream, 2, 30, "world", "The same of the rear camera."};
+    "sim/rear_camera/scan", Kind::kStream, 2, 15, "world", "The same of the rear camera."};
 inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimKinectPeople{
     "sim/kinect/people",
     Kind::kStream,

@@ -362,6 +362,15 @@ TEST_F(DepthPipelineSim, RatesAndPassesTheModelsScans) {
   EXPECT_EQ(host.counter("scans: rejected"), 1U);
 }
 
+TEST_F(DepthPipelineSim, TellsTheTimeBetweenTheScansOfEachCamera) {
+  scan.header(wire::header(host.now(), "level"));
+  host.publish(topics::kSimKinectScan, scan);
+  host.publish(topics::kSimRearScan, scan);
+  host.run_for(milliseconds(20));
+  EXPECT_FLOAT_EQ(host.last(topics::kKinectScan).value().scan_time(), 1.0F / 30.0F);
+  EXPECT_FLOAT_EQ(host.last(topics::kRearScan).value().scan_time(), 1.0F / 15.0F);
+}
+
 TEST_F(DepthPipelineSim, HealthIsThatOfBothCameras) {
   const auto live = [&](bool front, bool rear) {
     for (int i = 0; i < 10; ++i) {
