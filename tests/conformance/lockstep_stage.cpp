@@ -59,7 +59,7 @@ class LockstepStage final : public Stage {
   void publish_bytes(const Topic& topic, const Bytes& cdr) override {
     world_.publish_bytes(topic, cdr, "outsider", "here");
   }
-  void leave(const Sender& sender) override { world_.leave(sender.name); }
+  void leave(const Sender& sender) override { world_.leave(sender.name, sender.host); }
   bool cut(const std::string& a, const std::string& b, Duration duration) override {
     world_.cut(a, b, world_.now(), world_.now() + duration);
     return true;

@@ -96,8 +96,7 @@ void LockstepWorld::run_until(Time time) {
 
 Transport::Writer& LockstepWorld::outsider_writer(const OutputDeclaration& declaration,
                                                   const Speaker& speaker) {
-  const auto key = std::pair(speaker.participant, speaker.robot);
-  auto found = outsiders_.find(key);
+  auto found = outsiders_.find(speaker);
   if (found == outsiders_.end()) {
     // Without a host it lives beside the robot's first component, so that its stamps count there.
     const auto first = std::find_if(hosts_.begin(), hosts_.end(), [&](const auto& each) {
@@ -107,7 +106,7 @@ Transport::Writer& LockstepWorld::outsider_writer(const OutputDeclaration& decla
     const auto id = network_.join(
         speaker.participant, speaker.host.empty() ? fallback : speaker.host, true, speaker.robot);
     network_.announce(id);
-    found = outsiders_.emplace(key, Outsider{id, {}}).first;
+    found = outsiders_.emplace(speaker, Outsider{id, {}}).first;
   }
   auto& writer =
       found->second.writers[declaration.topic + ' ' + std::string(declaration.type->name)];
@@ -127,8 +126,8 @@ void LockstepWorld::write_bytes(const OutputDeclaration& declaration, Bytes cdr,
   outsider_writer(declaration, speaker).write(std::make_shared<const Bytes>(std::move(cdr)));
 }
 
-void LockstepWorld::leave(const std::string& participant) {
-  const auto found = outsiders_.find({participant, std::string()});
+void LockstepWorld::leave(const std::string& participant, const std::string& host) {
+  const auto found = outsiders_.find({participant, host, {}});
   if (found == outsiders_.end()) return;
   network_.leave(found->second.id);
   outsiders_.erase(found);

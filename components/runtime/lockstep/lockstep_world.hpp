@@ -143,7 +143,7 @@ class LockstepWorld {
     return outsider_writer(declaration_of(topic), {participant, host, {}}).guid();
   }
   /// The participant of publish() says goodbye; publishing again makes a new one.
-  void leave(const std::string& participant);
+  void leave(const std::string& participant, const std::string& host = {});
   /// Name of the participant that owns a writer; empty for a GUID that was never given.
   const std::string& participant_of(const Guid& writer) const {
     return network_.participant_of(writer);
@@ -175,6 +175,7 @@ class LockstepWorld {
  private:
   struct Speaker {
     std::string participant, host, robot;
+    auto operator<=>(const Speaker&) const = default;
   };
   struct Outsider {
     Network::ParticipantId id;
@@ -196,7 +197,7 @@ class LockstepWorld {
   Schedule schedule_;
   Network network_;
   std::vector<std::unique_ptr<LockstepHost>> hosts_;
-  std::map<std::pair<std::string, std::string>, Outsider> outsiders_;  ///< by name and robot
+  std::map<Speaker, Outsider> outsiders_;
   bool turning_ = false;
 };
 

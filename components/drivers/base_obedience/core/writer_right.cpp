@@ -95,13 +95,13 @@ bool WriterRight::holds(const WriterId& writer) const {
   });
 }
 
-bool WriterRight::accepts(const WriterId& writer, Time now, Time silence) const {
+bool WriterRight::trusted(const WriterId& writer) const {
   const auto at = std::find_if(known_.begin(), known_.end(),
                                [&](const Known& known) { return known.sighting.writer == writer; });
-  if (at == known_.end() || at->role == Role::kForeign) return false;
-  if (at->role == Role::kHolder) return true;
-  const Known* holder = holder_of(at->sighting.participant);
-  return holder == nullptr || !holder->heard_at || now - *holder->heard_at >= silence;
+  if (at == known_.end()) return false;
+  return std::none_of(known_.begin(), known_.end(), [&](const Known& known) {
+    return known.role == Role::kForeign && known.sighting.participant == at->sighting.participant;
+  });
 }
 
 std::optional<WriterId> WriterRight::holder() const {

@@ -59,10 +59,10 @@ class WriterRight {
 
   /// Whether the writer holds the right of its name.
   bool holds(const WriterId& writer) const;
-  /// Whether its samples may count now: it holds the right, or it waits for the right of a holder
-  /// that has shown no life for `silence`, which is what a restart looks like before discovery has
-  /// seen the old process dead.
-  bool accepts(const WriterId& writer, Time now, Time silence) const;
+  /// Whether it is who its name says as far as is known: it holds the right of the name or waits
+  /// for it, and nobody there was unmasked who claims that name too. Of two who live, which is the
+  /// liar cannot be told from the order in which they were met.
+  bool trusted(const WriterId& writer) const;
   /// Of the first allowed name that has a holder, in the order of appearance; who may write where
   /// one name is allowed.
   std::optional<WriterId> holder() const;

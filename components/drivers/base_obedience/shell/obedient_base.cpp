@@ -38,15 +38,15 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       obedience_(read_limits(host.parameters())),
       wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
                                              "Of the driven wheels; also the axle's height.")),
-      grantor_name_(host.parameters().text("grantor", "supervisor",
-                                           "The component that may grant the right to drive.")),
+      grantors_({host.parameters().text("grantor", "supervisor",
+                                        "The component that may grant the right to drive.")}),
       foreign_grants_(host.health().counter("grants: foreign writer")),
       foreign_(host.health().counter("commands: foreign writer")),
       foreign_requests_(host.health().counter("requests: foreign writer")) {
   grant_ = host.input(
       topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
-        if (!may_grant(info.writer)) return;
+        if (!may_grant(info.writer, info.effective)) return;
         const auto valid_for = std::chrono::duration<double>(
             std::isfinite(message.valid_for()) ? static_cast<double>(message.valid_for()) : 0.0);
         obedience_.grant(
@@ -55,6 +55,15 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
             host_.now().time_since_epoch());
       },
       [this] { cycle(); });
+  host.watch_writers(std::string(topics::kDriveGrant.name),
+                     [this](const runtime::WriterInfo& writer) {
+                       if (writer.alive) {
+                         grantors_.appeared({writer.guid, writer.participant, writer.host},
+                                            host_.now().time_since_epoch());
+                       } else {
+                         grantors_.gone(writer.guid);
+                       }
+                     });
   command_ = host.input(
       topics::kDriveCommand, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
@@ -79,19 +88,13 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
   battery_timer_ = host.timer("battery", milliseconds(1000), [this](auto) { publish_battery(); });
 }
 
-/// Of a name that discovery gave. Who took the supervisor's is found beside it; while there is none
-/// he looks like its restart.
-bool ObedientBase::may_grant(const runtime::Guid& writer) {
-  if (writer == grantor_) return true;
-  const auto all = grant_.writers();
-  const bool right = std::any_of(all.begin(), all.end(), [&](const runtime::WriterInfo& each) {
-    return each.guid == writer && each.participant == grantor_name_;
-  });
-  if (right)
-    grantor_ = writer;
-  else
-    ++foreign_grants_;
-  return right;
+/// By a name that discovery gave. Who took the supervisor's is unmasked by its life, and is nobody
+/// then, though it dies; a liar that nobody was met beside looks like its restart.
+bool ObedientBase::may_grant(const runtime::Guid& writer, runtime::Time written) {
+  grantors_.alive(writer, written.time_since_epoch());
+  const bool may = grantors_.trusted(writer);
+  if (!may) ++foreign_grants_;
+  return may;
 }
 
 void ObedientBase::cycle() {

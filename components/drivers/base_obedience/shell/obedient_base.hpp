@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drivers/base_obedience/core/base_obedience.hpp"
+#include "drivers/base_obedience/core/writer_right.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/kinematics/roll_out.hpp"
 #include "idl/topics.hpp"
@@ -54,7 +55,7 @@ class ObedientBase {
   double wheel_radius() const { return wheel_radius_; }  ///< [m]
 
  private:
-  bool may_grant(const runtime::Guid& writer);
+  bool may_grant(const runtime::Guid& writer, runtime::Time written);
   void cycle();
   /// What the base gets: the permitted command, or a stop.
   void drive();
@@ -73,8 +74,7 @@ class ObedientBase {
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;
   bool motors_off_ = false;  ///< requested, until a reset
-  std::string grantor_name_;
-  runtime::Guid grantor_{};  ///< whose name was looked up last
+  WriterRight grantors_;
   std::uint64_t& foreign_grants_;
   std::uint64_t& foreign_;
   std::uint64_t& foreign_requests_;

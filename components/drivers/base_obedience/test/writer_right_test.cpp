@@ -116,18 +116,24 @@ TEST(WriterRight, EachAllowedNameHasAHolder) {
   EXPECT_TRUE(right.holds(sighting(3).writer));
 }
 
-TEST(WriterRight, ARestartIsAcceptedOnceTheOldLifeIsSilent) {
+TEST(WriterRight, OfTwoWhoLiveUnderOneNameNeitherIsTrusted) {
   WriterRight right({"local_planner"});
-  const Time silence = milliseconds(120);
   right.appeared(sighting(1, "local_planner"), milliseconds(0));
-  right.alive(sighting(1).writer, milliseconds(900));
   right.appeared(sighting(2, "local_planner"), milliseconds(1000));
-  EXPECT_TRUE(right.accepts(sighting(1).writer, milliseconds(1000), silence));
-  EXPECT_FALSE(right.accepts(sighting(2).writer, milliseconds(1010), silence));
-  EXPECT_TRUE(right.accepts(sighting(2).writer, milliseconds(1020), silence));
+  right.appeared(sighting(3, "stranger"), milliseconds(1000));
+  EXPECT_TRUE(right.trusted(sighting(1).writer)) << "a stranger takes nobody's name";
+  EXPECT_TRUE(right.trusted(sighting(2).writer)) << "it may be the restart of a dead holder";
+  EXPECT_FALSE(right.trusted(sighting(3).writer));
+  EXPECT_FALSE(right.trusted(sighting(4).writer)) << "never seen";
   right.alive(sighting(1).writer, milliseconds(1100));
-  EXPECT_FALSE(right.accepts(sighting(2).writer, milliseconds(2000), silence)) << "unmasked";
-  EXPECT_FALSE(right.accepts(sighting(3).writer, milliseconds(2000), silence)) << "never seen";
+  EXPECT_FALSE(right.trusted(sighting(1).writer));
+  EXPECT_FALSE(right.trusted(sighting(2).writer));
+  right.gone(sighting(1).writer);
+  EXPECT_FALSE(right.trusted(sighting(2).writer)) << "it lied";
+  right.appeared(sighting(5, "local_planner"), milliseconds(1200));
+  EXPECT_FALSE(right.trusted(sighting(5).writer)) << "while the liar is there";
+  right.gone(sighting(2).writer);
+  EXPECT_TRUE(right.trusted(sighting(5).writer));
 }
 
 TEST(WriterRight, NobodyIsNoWriter) {

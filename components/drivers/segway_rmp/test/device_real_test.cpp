@@ -104,6 +104,36 @@ TEST_F(DeviceReal, IsDrivenOnlyUnderAGrantOfTheSupervisor) {
   EXPECT_NEAR(device->twist.v, 0.5, 0.01);
 }
 
+TEST_F(DeviceReal, IsNotDrivenByWhoTookTheSupervisorsNameThoughTheSupervisorDies) {
+  const auto impostor_drives = [&](int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      usher_msgs::msg::DriveGrant grant;
+      grant.stamp(wire::to_message(host.now()));
+      grant.granted(true);
+      grant.writer(host.world().writer_guid(topics::kDriveCommand, "intruder"));
+      grant.epoch(2);
+      grant.valid_for(0.12F);
+      host.world().publish(topics::kDriveGrant, grant, "supervisor", "elsewhere");
+      usher_msgs::msg::DriveCommand command;
+      command.stamp(wire::to_message(host.now()));
+      command.epoch(2);
+      command.number(++id);
+      command.v(0.8);
+      host.publish(topics::kDriveCommand, command, "intruder");
+      right.run(20);
+      EXPECT_LT(device->twist.v, 0.6);
+    }
+  };
+  right.v = 0.5;
+  right.run(2000);
+  impostor_drives(400);
+  EXPECT_EQ(device->twist.v, 0.0) << "two speak in the supervisor's name";
+  right.grants = right.commands = false;
+  impostor_drives(1000);
+  host.world().leave("supervisor");
+  impostor_drives(1000);
+}
+
 TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndReturnsByItself) {
   right.v = 0.5;
   right.run(2000);
