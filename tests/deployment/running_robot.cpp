@@ -95,7 +95,7 @@ RunningRobot::RunningRobot(std::uint32_t domain, bool secure, const std::string&
     static_cast<void>(code);
   }
   auto observer =
-      runtime::Observer::create({.name = "tests",
+      runtime::Observer::create({.name = "operator",
                                  .host = "nuc",
                                  .domain = domain_,
                                  .identity = secure ? keys() + "/operator" : std::string()});

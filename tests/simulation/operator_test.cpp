@@ -61,7 +61,7 @@ class OperatedRobot {
       sensor_msgs::msg::Joy joy;
       joy.axes({0.0F, static_cast<float>(forward), 0.0F, static_cast<float>(turn)});
       joy.buttons({0, 0, 0, 0, held ? 1 : 0});
-      run_->world().publish(topics::kJoy, joy, "pad");
+      run_->world().publish(topics::kJoy, joy, "operator");
       run_->world().run_for(milliseconds(40));
     }
   }

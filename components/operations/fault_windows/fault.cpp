@@ -56,7 +56,7 @@ constexpr std::array kSilentTopics = {
 
 constexpr std::array kFloods = {"heartbeat"sv, "supervisor/request"sv, "tf"sv, "joy"sv, "people"sv};
 /// Of those, what only the robot's own components may write.
-constexpr std::array kOwnFloods = {"tf"sv, "people"sv};
+constexpr std::array kOwnFloods = {"tf"sv, "joy"sv, "people"sv};
 
 std::string_view pick(Random& random, std::span<const std::string_view> from) {
   return from[random.below(from.size())];

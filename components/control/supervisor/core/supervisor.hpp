@@ -83,7 +83,8 @@ struct Request {
   std::uint64_t id = 0;
   std::string client;
   Command command = Command::kNone;
-  std::string goal;  ///< for kNavigationStart
+  std::string goal;      ///< for kNavigationStart
+  bool own_name = true;  ///< the client is the participant that wrote it
 };
 
 /// What became of a request.

@@ -79,7 +79,7 @@ void SupervisorComponent::watch_topics(const std::vector<drive::NamedComponent>&
     if (!names.empty()) watched.push_back({std::string(topic.name), std::move(names), false});
   };
   const auto tell = [&](const auto&... topic) { (tells(topic), ...); };
-  tell(topics::kBaseStatus, topics::kOdom, topics::kTf, topics::kTfStatic);
+  tell(topics::kJoy, topics::kBaseStatus, topics::kOdom, topics::kTf, topics::kTfStatic);
   tell(topics::kScan, topics::kScanFiltered, topics::kUltrasonic, topics::kUltrasonicFiltered,
        topics::kWhiskers, topics::kKinectScan, topics::kKinectScanLow, topics::kRearScan,
        topics::kPeople, topics::kPersonAhead);
@@ -220,8 +220,9 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                           message.state() == STATE_ACTIVE || message.state() == STATE_WAITING);
       },
       [this] { core_.exploration_lost(); });
-  request_ = host.input(topics::kSupervisorRequest, {.optional = true},
-                        [this](const auto& message, const auto&) { take_request(message); });
+  request_ = host.input(
+      topics::kSupervisorRequest, {.optional = true},
+      [this](const auto& message, const auto& info) { take_request(message, info.writer); });
   for (const WatchedTopic& topic : parameters_.topics) watch(topic.name);
   grant_ = host.output(topics::kDriveGrant);
   enable_ = host.output(topics::kMovementEnable);
@@ -248,10 +249,21 @@ void SupervisorComponent::watch(const std::string& topic) {
   });
 }
 
-void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message) {
-  core_.request(
-      {message.id(), message.client(), static_cast<Command>(message.command()), message.goal()},
-      now());
+/// The name of the participant that wrote a request; empty where discovery does not know it.
+const std::string& SupervisorComponent::asker(const runtime::Guid& writer) {
+  if (asker_.guid == writer) return asker_.participant;
+  const auto all = request_.writers();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.guid == writer; });
+  asker_ = found == all.end() ? runtime::WriterInfo{} : *found;
+  return asker_.participant;
+}
+
+void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message,
+                                       const runtime::Guid& writer) {
+  core_.request({message.id(), message.client(), static_cast<Command>(message.command()),
+                 message.goal(), asker(writer) == message.client()},
+                now());
   // The first one acts and is answered at once; a flood of them must not become one of answers.
   answer_later_ = now() - answered_at_ < kPeriod;
   if (answer_later_) return;

@@ -22,7 +22,8 @@ class SupervisorComponent final : public runtime::Component {
   /// Tells the core who appears on the topic and who leaves it.
   void watch(const std::string& topic);
   Time now() const { return host_.now().time_since_epoch(); }
-  void take_request(const usher_msgs::msg::SupervisorRequest& message);
+  void take_request(const usher_msgs::msg::SupervisorRequest& message, const runtime::Guid& writer);
+  const std::string& asker(const runtime::Guid& writer);
   void introduce_itself();
   void step();
   void publish_grant(const Decision& decision);
@@ -54,6 +55,7 @@ class SupervisorComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::NavigateStatus> navigation_;
   runtime::Input<usher_msgs::msg::ExploreStatus> exploration_;
   runtime::Input<usher_msgs::msg::SupervisorRequest> request_;
+  runtime::WriterInfo asker_;  ///< who asked last
   runtime::Output<usher_msgs::msg::DriveGrant> grant_;
   runtime::Output<usher_msgs::msg::MovementEnable> enable_;
   runtime::Output<usher_msgs::msg::BaseRequest> base_requests_;

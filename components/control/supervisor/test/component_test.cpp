@@ -18,12 +18,13 @@ manifest.components:
 
 class Component : public testing::Test {
  protected:
-  usher_msgs::msg::SupervisorStatus ask(const char* client, std::uint8_t command) {
+  usher_msgs::msg::SupervisorStatus ask(const std::string& client, std::uint8_t command,
+                                        const std::string& participant = {}) {
     usher_msgs::msg::SupervisorRequest request;
     request.id(++id);
     request.client(client);
     request.command(command);
-    host.publish(topics::kSupervisorRequest, request);
+    host.publish(topics::kSupervisorRequest, request, participant.empty() ? client : participant);
     host.run_for(milliseconds(120));
     return host.last(topics::kSupervisorStatus).value();
   }
@@ -48,6 +49,18 @@ TEST_F(Component, AStopAndAnEmergencyStopHoldOverACrash) {
   const auto faults = after_a_crash().faults();
   ASSERT_FALSE(faults.empty());
   EXPECT_EQ(host.last(topics::kDriveGrant)->granted(), false);
+}
+
+TEST_F(Component, InAnothersNameOneMayStopTheRobotAndNothingElse) {
+  ask("operator", COMMAND_EMERGENCY_STOP, "stranger");
+  EXPECT_EQ(ask("tablet", COMMAND_STOP, "stranger").stopped_by(),
+            std::vector<std::string>{"tablet"});
+  const auto refused = ask("operator", COMMAND_CLEAR, "stranger");
+  EXPECT_FALSE(refused.last_request_done());
+  EXPECT_NE(refused.last_request_reason().find("in the name of operator"), std::string::npos);
+  EXPECT_FALSE(ask("operator", COMMAND_MOVEMENT_ON, "tablet").stopped_by().empty());
+  EXPECT_TRUE(ask("operator", COMMAND_MOVEMENT_ON).stopped_by().empty());
+  EXPECT_TRUE(ask("operator", COMMAND_CLEAR).last_request_done());
 }
 
 TEST_F(Component, AFloodOfRequestsIsNoFloodOfAnswers) {

@@ -29,7 +29,7 @@ void Link::closed() {
 
 void Link::reset() {
   if (!emergency_ && reported_ == Mode::kBalancing) return;
-  emergency_ = false;
+  emergency_ = balanced_ = false;
   step_ = 0;  // a base that was switched off may have forgotten its settings
 }
 
@@ -38,6 +38,9 @@ std::optional<SegwayFeedback> Link::take(const Packet& packet, Time now) {
   if (!feedback) return std::nullopt;
   // A base that was away may have been switched off and have forgotten its settings.
   if (feedback_at_ && now - *feedback_at_ >= parameters_.lost) step_ = 0;
+  const bool fell = balanced_ && feedback->mode == Mode::kStandby;
+  if (feedback->mode == Mode::kBalancing) balanced_ = true;
+  if (fell) emergency_ = true;
   if (emergency_) feedback->mode = Mode::kEmergency;
   const bool news = !feedback_at_ || reported_ != feedback->mode ||
                     status_1_ != feedback->status_1 || status_2_ != feedback->status_2;

@@ -13,6 +13,9 @@ namespace usher::segway_rmp {
 ///
 /// The base answers nothing and holds the last command for 0.4 s, so settings are sent repeatedly
 /// and a command frame goes out in every cycle, zero where nothing else is wanted.
+///
+/// A base that balanced and then reports its motors off has fallen, or somebody switched it off: it
+/// counts as an emergency stop, so that it does not get up by itself while it is lifted.
 class Link {
  public:
   struct Parameters {
@@ -74,6 +77,7 @@ class Link {
   Time opened_at_{};
   int step_ = 0;
   bool emergency_ = false;
+  bool balanced_ = false;  ///< it did since it was last told to
   std::optional<Time> feedback_at_;
   Mode reported_ = Mode::kDisconnected;
   std::uint16_t status_1_ = 0;

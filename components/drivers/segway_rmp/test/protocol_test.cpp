@@ -355,6 +355,25 @@ TEST(Link, EmergencyHoldsUntilReset) {
   EXPECT_EQ(bench.base.speed, 164);
 }
 
+TEST(Link, ABaseThatFellDoesNotGetUpByItself) {
+  Bench bench;
+  bench.run(500, {1.0, 0.0});
+  bench.base.off = true;
+  bench.run(20, {1.0, 0.0});
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kEmergency);
+  bench.link.closed();
+  bench.run(500);
+  bench.link.opened(bench.now());  // somebody sees to the cable
+  bench.run(3000, {1.0, 0.0});
+  EXPECT_TRUE(bench.base.off);
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kEmergency);
+  EXPECT_TRUE(bench.link.emergency()) << "to be remembered over a restart";
+  bench.link.reset();
+  bench.run(500, {0.5, 0.0});
+  EXPECT_FALSE(bench.base.off);
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kBalancing);
+}
+
 TEST(Link, NoticesASilentBase) {
   Bench bench;
   bench.run(500);
