@@ -8,6 +8,9 @@ namespace usher::manual_control {
 
 namespace {
 
+/// Of a pad that was not heard: held or not, only what stops the robot counts at once.
+constexpr std::array kMayBeHeld = {false, true, true, true};
+
 bool pressed(std::span<const std::int32_t> buttons, std::size_t number) {
   return number < buttons.size() && buttons[number] != 0;
 }
@@ -29,12 +32,12 @@ ManualControl::Pad& ManualControl::pad_of(const drive::WriterId& writer, Time no
       pad = std::min_element(pads_.begin(), end,
                              [](const Pad& a, const Pad& b) { return a.heard_at < b.heard_at; });
     }
-    *pad = Pad{writer, now, false, {true, true, true, true}};
+    *pad = Pad{writer, now, false, kMayBeHeld};
   }
   // Whoever was silent for long may have been pressed meanwhile: that is no new press.
   if (now - pad->heard_at > parameters_.patience) {
     pad->seen_released = false;
-    pad->wishes.fill(true);
+    pad->wishes = kMayBeHeld;
   }
   pad->heard_at = now;
   return *pad;

@@ -49,7 +49,8 @@ struct Sticks {
 
 /// From sticks and buttons to a velocity. It drives only while the dead-man button is held, on one
 /// pad: the first that pressed it, until it releases it, speaks nonsense or is silent. A button
-/// that is held when its pad is first heard counts only after it was released once.
+/// that is held when its pad is first heard counts only after it was released once; but for
+/// movement_off, which counts at once.
 ///
 /// Deterministic, no allocation. `now` must not go back.
 class ManualControl {
@@ -73,7 +74,7 @@ class ManualControl {
     drive::WriterId writer{};
     Time heard_at{};
     bool seen_released = false;
-    std::array<bool, 4> wishes{};  ///< buttons of the four wishes, as last seen
+    std::array<bool, 4> wishes{};  ///< buttons of the four wishes, movement_off first, as last seen
   };
 
   Pad& pad_of(const drive::WriterId& writer, Time now);

@@ -63,13 +63,15 @@ ManualControlComponent::ManualControlComponent(runtime::Host& host)
        .on_loss = "takes the dead-man button as released",
        .optional = true},
       [this](const auto& joy, const auto& info) { take(joy, info); }, [this] { drive(); });
-  supervisor_ = host.input(
-      topics::kSupervisorStatus, {.optional = true},
-      [this](const auto& status, const auto&) { requests_.answered(status.last_request()); });
+  supervisor_ = host.input(topics::kSupervisorStatus, {.optional = true},
+                           [this](const auto& status, const auto&) {
+                             if (requests_.answered(status.last_request())) asks_to_stop_ = false;
+                           });
   command_ = host.output(topics::kCmdVelManual);
   timer_ = host.timer("drive", kPeriod, [this](auto) {
     drive();
-    if (requests_.waits() && host_.now() - asked_at_ > kLongestWait) requests_.give_up();
+    const bool too_late = !asks_to_stop_ && host_.now() - asked_at_ > kLongestWait;
+    if (requests_.waits() && too_late) requests_.give_up();
   });
   host.health().set(runtime::HealthState::kOk);
 }
@@ -84,7 +86,10 @@ void ManualControlComponent::take(const sensor_msgs::msg::Joy& joy,
 }
 
 void ManualControlComponent::ask(Wish wish) {
+  const bool movement = wish == Wish::kMovementOff || wish == Wish::kMovementOn;
+  if (asks_to_stop_ && !movement) return;
   requests_.give_up();  // the last button that was pressed is what is meant
+  asks_to_stop_ = wish == Wish::kMovementOff;
   usher_msgs::msg::SupervisorRequest request;
   request.id(requests_.next_id());
   request.command(command_for(wish));

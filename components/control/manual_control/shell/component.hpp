@@ -24,6 +24,7 @@ class ManualControlComponent final : public runtime::Component {
   std::uint64_t& rejected_;
   wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;
   runtime::Time asked_at_{};
+  bool asks_to_stop_ = false;  ///< as long as that is not answered
 
   runtime::Input<sensor_msgs::msg::Joy> joy_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;

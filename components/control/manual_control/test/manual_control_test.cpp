@@ -132,6 +132,14 @@ TEST(ManualControl, WhatStopsWins) {
   EXPECT_EQ(pad.joy(10, {kA, kX, kB, kY}), Wish::kMovementOff);
 }
 
+TEST(ManualControl, AHeldStopCountsThoughThePadWasSilent) {
+  Pad pad;
+  EXPECT_EQ(pad.joy(0, {kB}), Wish::kMovementOff) << "first heard";
+  EXPECT_EQ(pad.joy(100, {kB}), Wish::kNone);
+  EXPECT_EQ(pad.joy(1000, {kA, kB, kX}), Wish::kMovementOff);
+  EXPECT_EQ(pad.joy(2000, {kA}), Wish::kNone) << "no more than that";
+}
+
 TEST(ManualControl, RemembersAFewPadsOnly) {
   Pad pad;
   for (std::uint8_t i = 0; i < 100; ++i) pad.joy(i, {}, 0.0F, 0.0F, drive::WriterId{i});

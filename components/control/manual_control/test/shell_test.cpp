@@ -55,7 +55,7 @@ TEST(ManualControlShell, IsNeverSilentWhileItIsItsTurn) {
   EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
 }
 
-TEST(ManualControlShell, AsksUntilAnsweredAndNotForEver) {
+TEST(ManualControlShell, AsksUntilAnsweredAndNotForEverButForAStop) {
   auto host = make();
   host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
   host.run_for(milliseconds(20));
@@ -79,6 +79,20 @@ TEST(ManualControlShell, AsksUntilAnsweredAndNotForEver) {
   host.publish(topics::kJoy, joy(0, {0, 1, 0, 0}));
   host.run_for(milliseconds(2500));
   EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
+  host.clear();
+  const auto press = [&](const std::vector<std::int32_t>& buttons) {
+    host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+    host.run_for(milliseconds(20));
+    host.publish(topics::kJoy, joy(0, buttons));
+    host.run_for(milliseconds(20));
+  };
+  press({0, 0, 1, 0});
+  host.run_for(milliseconds(2000));
+  ASSERT_TRUE(host.last(topics::kSupervisorRequest)) << "the supervisor may come back";
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
+  press({1, 0, 0, 0});
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_MOVEMENT_ON);
+  host.run_for(milliseconds(2500));
   host.clear();
   host.run_for(milliseconds(2000));
   EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty());
