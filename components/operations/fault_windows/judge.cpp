@@ -55,11 +55,15 @@ void WindowJudge::violate(double t, const std::string& what) {
   violation_ = what + (hit_ ? ", " + number(t - *hit_) + " s after the hit" : ", before the hit");
 }
 
-/// A base that is to stand may be told to turn as fast as it did, so that it stays on its arc.
+/// A base that is to stand may be told to turn as it did, so that it stays on its arc.
 bool WindowJudge::rolls_out(const geometry::Twist2& twist) const {
-  double fastest = 0.0;
-  for (const At& each : speeds_) fastest = std::max(fastest, std::abs(each.twist.w));
-  return twist.v == 0.0 && std::abs(speed_.v) > kRolling && std::abs(twist.w) <= fastest + kTurning;
+  double right = 0.0, left = 0.0;
+  for (const At& each : speeds_) {
+    right = std::min(right, each.twist.w);
+    left = std::max(left, each.twist.w);
+  }
+  return twist.v == 0.0 && std::abs(speed_.v) > kRolling && twist.w >= right - kTurning &&
+         twist.w <= left + kTurning;
 }
 
 bool WindowJudge::wheels_stand(double t) const {
@@ -179,7 +183,12 @@ bool WindowJudge::reads(const Expectation& expectation, double t) const {
 
 void WindowJudge::grant(double t, bool foreign, bool granted, const Writer& holder,
                         std::uint64_t epoch) {
-  if (foreign || !granted) return;
+  if (foreign) return;
+  if (!granted) {
+    if (!withdrawn_at_) withdrawn_at_ = t;
+    return;
+  }
+  withdrawn_at_.reset();
   if (holder != holder_) number_.reset();
   holder_ = holder;
   epoch_ = epoch;

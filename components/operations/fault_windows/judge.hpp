@@ -118,7 +118,10 @@ class WindowJudge {
   };
 
   void violate(double t, const std::string& what);
-  bool granted(double t) const { return granted_at_ && t - *granted_at_ <= expiry(); }
+  bool granted(double t) const {
+    const bool withdrawn = withdrawn_at_ && t - *withdrawn_at_ > limits_.slack;
+    return granted_at_ && t - *granted_at_ <= expiry() && !withdrawn;
+  }
   double expiry() const { return limits_.expiry + limits_.slack; }
   bool wheels_stand(double t) const;
   bool deaf(double t) const;
@@ -136,7 +139,7 @@ class WindowJudge {
   geometry::Twist2 speed_;
   std::deque<Place> places_;  ///< of the last 5 s
   std::deque<At> speeds_;     ///< of the longest stop
-  std::optional<double> granted_at_;
+  std::optional<double> granted_at_, withdrawn_at_;
   Writer holder_ = drive::kNobody;
   std::uint64_t epoch_ = 0;
   std::optional<std::uint64_t> number_;

@@ -35,11 +35,14 @@ constexpr std::uint64_t kFirstId = 1000;
 constexpr double kRaster = 1.0;  // [m]
 constexpr double kRoom = 0.65;   // [m] of a start to the next wall
 
+/// What an operator reads of why the robot stands: what only slows it, or is only told, is no
+/// reason.
 std::vector<std::string> lines_of(const SupervisorStatus& status) {
+  using namespace usher_msgs::msg::SupervisorStatus_Constants;
   std::vector<std::string> lines;
   if (!status.reason().empty()) lines.push_back(status.reason());
   for (const auto& component : status.components()) {
-    if (component.health() != usher_msgs::msg::SupervisorStatus_Constants::HEALTH_OK)
+    if (component.criticality() == CRITICALITY_STOP && component.health() != HEALTH_OK)
       lines.push_back(component.name() + ": " + component.reason());
   }
   return lines;

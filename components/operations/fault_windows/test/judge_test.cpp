@@ -124,6 +124,15 @@ TEST_F(Judge, SeesWheelsThatAreToldToMoveWithoutAGrant) {
   EXPECT_THAT(violation(), HasSubstr("without a live grant"));
 }
 
+TEST_F(Judge, SeesWheelsThatGoOnAfterAWithdrawal) {
+  run_for(1.0);
+  granted = false;
+  run(1);
+  EXPECT_THAT(violation(), IsEmpty()) << "it is on its way to the base";
+  run(2);
+  EXPECT_THAT(violation(), HasSubstr("without a live grant"));
+}
+
 TEST_F(Judge, SeesWheelsThatDriveWhatNobodyCommanded) {
   run_for(1.0);
   wheels = 0.6;
@@ -200,8 +209,11 @@ TEST_F(Judge, LetsARollingRobotStayOnItsArc) {
   judge.truth(t, {x, 0.0, 0.0}, {0.5, 0.4}, 0, "");
   judge.wheels(t + 0.2, {0.0, 0.4});
   EXPECT_THAT(violation(), IsEmpty());
+  WindowJudge other = judge;
   judge.wheels(t + 0.2, {0.0, 0.6});
   EXPECT_THAT(violation(), HasSubstr("without a live grant")) << "faster than it turned";
+  other.wheels(t + 0.2, {0.0, -0.4});
+  EXPECT_THAT(other.judgement(t).violation, HasSubstr("without a live grant")) << "the other way";
 }
 
 TEST_F(Judge, SeesATurnOnTheSpotWithoutAGrant) {
