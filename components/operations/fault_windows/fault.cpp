@@ -285,7 +285,7 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
       }
       break;
     case FaultKind::kOdometry:
-      if (fault.variant == "not finite") {
+      if (fault.variant != "biased") {
         expected.zero_within = 0.8;
         expected.words = {"base", "odom", "segway_rmp"};
       }

@@ -18,7 +18,9 @@ constexpr double kSettled = 3.0;      // [s] every stop is over: d(v) / v and th
 constexpr double kWaySlack = 0.15;    // [m]
 constexpr double kWayShare = 1.1;     // of the stopping distance: the spread of table 8.1
 constexpr double kUnheard = 1.0;      // [s] after which an operator sees that nobody speaks
-constexpr double kLastSeconds = 5.0;  // [s] in which a robot on its way has moved
+constexpr double kLastSeconds = 8.0;  // [s] of the end: by then the navigator says that it is stuck
+constexpr double kLeansBack = 0.4;    // [s]
+constexpr double kRollsUnmeasured = 0.6;  // [s] who does not hear the base knows not when it stands
 // More than a balancing base sways meanwhile, one or the other, or less of both.
 constexpr double kMoved = 0.15;          // [m]
 constexpr double kTurned = 0.15;         // [rad]
@@ -55,19 +57,22 @@ void WindowJudge::violate(double t, const std::string& what) {
   violation_ = what + (hit_ ? ", " + number(t - *hit_) + " s after the hit" : ", before the hit");
 }
 
-/// A base that is to stand may be told to turn as it did, so that it stays on its arc.
-bool WindowJudge::rolls_out(const geometry::Twist2& twist) const {
+/// A base that is to stand may be told to turn as it did, or was told to, so that it stays on its
+/// arc.
+bool WindowJudge::rolls_out(double t, const geometry::Twist2& twist) const {
   double right = 0.0, left = 0.0;
-  for (const At& each : speeds_) {
-    right = std::min(right, each.twist.w);
-    left = std::max(left, each.twist.w);
+  for (const auto* turns : {&speeds_, &obeyed_}) {
+    for (const At& each : *turns) {
+      right = std::min(right, each.twist.w);
+      left = std::max(left, each.twist.w);
+    }
   }
-  return twist.v == 0.0 && std::abs(speed_.v) > kRolling && twist.w >= right - kTurning &&
+  return twist.v == 0.0 && t - rolled_at_ <= kRollsUnmeasured && twist.w >= right - kTurning &&
          twist.w <= left + kTurning;
 }
 
 bool WindowJudge::wheels_stand(double t) const {
-  return !wheels_ || zero(wheels_->twist) || rolls_out(wheels_->twist) ||
+  return !wheels_ || zero(wheels_->twist) || rolls_out(t, wheels_->twist) ||
          t - wheels_->t > limits_.hold;
 }
 
@@ -79,9 +84,11 @@ void WindowJudge::judge_stop(double t, std::optional<Stop>& stop, bool must, con
     return;
   }
   if (!stop) stop = Stop{t, place_->pose, std::abs(speed_.v)};
+  // Told so while it speeds up, a balancing base gets faster for a moment.
+  if (t - stop->t < kLeansBack) stop->speed = std::max(stop->speed, std::abs(speed_.v));
   const double way = geometry::distance(stop->from, place_->pose);
   const double most = kWayShare * limits_.stopping.distance(stop->speed) + kWaySlack;
-  if (way > most) {
+  if (!stop->settled && way > most) {
     violate(t, std::string(why) + ": " + number(way) + " m on from " + number(stop->speed) +
                    " m/s, at most " + number(most) + " m were allowed");
   }
@@ -111,6 +118,8 @@ void WindowJudge::truth(double t, const geometry::Pose2& pose, const geometry::T
   drop_older(places_, t - kLastSeconds);
   speeds_.push_back({t, twist});
   drop_older(speeds_, t - kSettled);
+  drop_older(obeyed_, t - kSettled);
+  if (std::abs(twist.v) > kRolling) rolled_at_ = t;
   if (contacts > contacts_ && deaf(t)) deaf_contacts_ += contacts - contacts_;
   if (contacts > contacts_ && !deaf(t)) violate(t, "contact with '" + contact_with + "'");
   contacts_ = contacts;
@@ -154,8 +163,9 @@ void WindowJudge::judge_words(double t) {
   std::string missing;
   for (const Expectation& expected : expectations_) {
     const bool stops = std::min(expected.zero_within, expected.forward_barred_within) <= since;
-    if (!stops || since > expected.lasts || expected.words.empty()) continue;
-    if (since <= expected.read_within || reads(expected, t)) return;
+    // What has just ended may still be what is read.
+    if (!stops || since > expected.lasts + expected.read_within || expected.words.empty()) continue;
+    if (since <= expected.read_within || since > expected.lasts || reads(expected, t)) return;
     missing = expected.words.front();
   }
   if (missing.empty()) return;
@@ -211,7 +221,7 @@ void WindowJudge::command(double t, const Writer& writer, std::uint64_t epoch, s
 
 void WindowJudge::wheels(double t, const geometry::Twist2& twist) {
   wheels_ = At{t, twist};
-  if (zero(twist) || rolls_out(twist)) return;
+  if (zero(twist) || rolls_out(t, twist)) return;
   told_to_drive_ = t;
   if (!granted(t)) {
     violate(t, "the wheels are told " + number(twist.v) + " m/s without a live grant");
@@ -223,7 +233,9 @@ void WindowJudge::wheels(double t, const geometry::Twist2& twist) {
   if (!commanded) {
     violate(t, "the wheels are told " + number(twist.v) + " m/s " + number(twist.w) +
                    " rad/s, which the holder of the grant did not command");
+    return;
   }
+  obeyed_.push_back({t, twist});
 }
 
 void WindowJudge::wish(double t, std::size_t source, const geometry::Twist2& twist) {
@@ -243,7 +255,7 @@ void WindowJudge::chosen(double t, const geometry::Twist2& twist) {
   drop_older(wishes_, t - limits_.memory);
   while (!limits_told_.empty() && limits_told_.front().first < t - limits_.memory)
     limits_told_.pop_front();
-  if (zero(twist) || rolls_out(twist) || !twist.finite()) {
+  if (zero(twist) || rolls_out(t, twist) || !twist.finite()) {
     within_limit_at_ = t;
     return;
   }

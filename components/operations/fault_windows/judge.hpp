@@ -43,9 +43,8 @@ struct Judgement {
 ///    hears nobody, its line being cut, is counted apart.
 ///  - The wheels are told to move only what the holder of a live grant commanded, under its epoch,
 ///    in growing order, finite, at most 120 ms ago.
-///  - Without that they are told zero, but for the turn rate that keeps the robot on its arc, and
-///  it
-///    stands within its measured stopping distance.
+///  - Without that they are told zero, but for the turn rate that keeps the robot on its arc while
+///    it rolls, and it stands within its measured stopping distance.
 ///  - What is commanded is within what enabled sources wished during the last second, and within
 ///    the limit in force.
 ///  - While a fault lasts that must stop the robot, it stands, and an operator reads why in the
@@ -125,7 +124,7 @@ class WindowJudge {
   double expiry() const { return limits_.expiry + limits_.slack; }
   bool wheels_stand(double t) const;
   bool deaf(double t) const;
-  bool rolls_out(const geometry::Twist2& twist) const;
+  bool rolls_out(double t, const geometry::Twist2& twist) const;
   void judge_stop(double t, std::optional<Stop>& stop, bool must, const char* why);
   void judge_expectations(double t);
   void judge_words(double t);
@@ -139,6 +138,8 @@ class WindowJudge {
   geometry::Twist2 speed_;
   std::deque<Place> places_;  ///< of the last 5 s
   std::deque<At> speeds_;     ///< of the longest stop
+  std::deque<At> obeyed_;     ///< what the wheels were told by right, likewise
+  double rolled_at_ = -1e9;   ///< when it last rolled
   std::optional<double> granted_at_, withdrawn_at_;
   Writer holder_ = drive::kNobody;
   std::uint64_t epoch_ = 0;

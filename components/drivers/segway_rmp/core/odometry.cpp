@@ -1,5 +1,6 @@
 #include "drivers/segway_rmp/core/odometry.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -24,11 +25,19 @@ bool Odometry::update(const SegwayFeedback& feedback) {
   const double right = feedback.right_travel - last_right_;
   const double lean = feedback.pitch - last_pitch_;
   const bool first = !started_;
+  const double fastest =
+      std::max(std::abs(feedback.left_velocity), std::abs(feedback.right_velocity));
+  if (first || left != 0.0 || right != 0.0 || fastest < parameters_.hangs_from)
+    counted_at_ = feedback.stamp;
   started_ = true;
   last_left_ = feedback.left_travel;
   last_right_ = feedback.right_travel;
   last_pitch_ = feedback.pitch;
   if (!first && std::abs(left) + std::abs(right) > 2.0 * parameters_.longest_step) {
+    ++rejected_;
+    return false;
+  }
+  if (feedback.stamp - counted_at_ > parameters_.hangs_after) {
     ++rejected_;
     return false;
   }

@@ -17,13 +17,15 @@ class Odometry {
     double wheel_radius = 0.2355;  ///< [m] {> 0}
     double track = 0.5398;         ///< [m] {> 0} effective, for turning
     double longest_step = 1.0;     ///< [m] {> 0} between two cycles; more is not believed
+    double hangs_from = 0.05;      ///< [m/s] {> 0} of a wheel that moves and counts no way
+    Time hangs_after = std::chrono::milliseconds(250);  ///< {> 0} of that
   };
 
   Odometry();
   explicit Odometry(const Parameters& parameters);
 
   /// One cycle of the base. False, and nothing changed but the reference for the next one, when it
-  /// is not finite or a leap.
+  /// is not finite, a leap, or a repetition: wheels that move and odometers that do not.
   bool update(const SegwayFeedback& feedback);
 
   /// The line to the base is lost: the velocities are not known, reported as zero, and the next
@@ -42,6 +44,7 @@ class Odometry {
   double last_left_ = 0.0;
   double last_right_ = 0.0;
   double last_pitch_ = 0.0;
+  Time counted_at_{};  ///< when the odometers last changed, or had no reason to
   geometry::Pose2 pose_;
   geometry::Twist2 twist_;
   geometry::Pose2 raw_pose_;

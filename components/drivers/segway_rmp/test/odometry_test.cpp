@@ -42,6 +42,33 @@ struct TrueBase {
   }
 };
 
+TEST(Odometry, RejectsMeasurementsThatHang) {
+  Odometry odometry;
+  TrueBase base;
+  SegwayFeedback feedback;
+  const auto after = [&](int ms) {
+    feedback.stamp += std::chrono::milliseconds(ms);
+    return odometry.update(feedback);
+  };
+  for (int i = 0; i < 10; ++i) {
+    base.drive(0.5, 0.0);
+    const auto stamp = feedback.stamp;
+    feedback = base.feedback();
+    feedback.stamp = stamp;
+    EXPECT_TRUE(after(10));
+  }
+  EXPECT_TRUE(after(250)) << "a lost cycle or two";
+  EXPECT_FALSE(after(10)) << "it moves, and gets nowhere";
+  EXPECT_EQ(odometry.rejected(), 1U);
+  base.drive(0.5, 0.0);
+  const auto stamp = feedback.stamp;
+  feedback = base.feedback();
+  feedback.stamp = stamp;
+  EXPECT_TRUE(after(10));
+  feedback.left_velocity = feedback.right_velocity = 0.0;
+  EXPECT_TRUE(after(5000)) << "it stands";
+}
+
 TEST(Odometry, LeaningIsNotDriving) {
   Odometry odometry;
   TrueBase base;

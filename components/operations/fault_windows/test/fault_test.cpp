@@ -76,7 +76,7 @@ TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
   WindowPlan plan;
   plan.faults = {{FaultKind::kBaseLink, "", "commands", 3.0},
                  {FaultKind::kHang, "lms100", "", 3.0},
-                 {FaultKind::kFlood, "joy", "", 3.0}};
+                 {FaultKind::kFlood, "heartbeat", "", 3.0}};
   const auto all = expectations(plan, kTargets);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_GT(all[1].zero_within, 0.4) << "zero is said, and nobody hears it";

@@ -74,7 +74,7 @@ TEST_F(Judge, SwayingInOnePlaceIsNotDriving) {
   run_for(2.0);
   command(0.0);
   for (int i = 0; i < 16; ++i) {
-    speed = i % 2 == 0 ? 0.04 : -0.04;  // 20 cm of way in five seconds, 2 cm from place to place
+    speed = i % 2 == 0 ? 0.04 : -0.04;  // 32 cm of way in eight seconds, 2 cm from place to place
     run_for(0.5);
   }
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
@@ -84,15 +84,15 @@ TEST_F(Judge, SwayingInOnePlaceIsNotDriving) {
 TEST_F(Judge, ALittleWayAndALittleTurnAreDriving) {
   run_for(2.0);
   stand();
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
   command(0.02);
   speed = 0.02;
   run_for(4.0);
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained) << "8 cm";
   turn_rate = 0.035;
-  run_for(4.0);
-  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kDrives) << "10 cm and 0.14 rad";
+  run_for(3.0);
+  EXPECT_EQ(judge.judgement(t).end, WindowEnd::kDrives) << "14 cm and 0.1 rad";
 }
 
 TEST_F(Judge, SeesAContact) {
@@ -197,9 +197,9 @@ TEST_F(Judge, SeesARobotThatCreepsWithoutAGrant) {
   run_for(1.0);
   supervisor_speaks = false;
   stand();
-  run_for(2.0);
+  run_for(3.0);
   speed = 0.06;
-  run_for(4.0);
+  run_for(5.0);
   EXPECT_THAT(violation(), HasSubstr("without a grant"));
 }
 
@@ -297,7 +297,7 @@ TEST_F(Judge, WaitsUntilASilentDriversBaseLetsGo) {
 
 TEST_F(Judge, WantsTheReasonToNameTheThing) {
   run_for(1.0);
-  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"lms100", "scan"}}});
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 12.0, .words = {"lms100", "scan"}}});
   stand();
   run_for(1.0);
   lines = {"amcl: silent"};
@@ -307,20 +307,34 @@ TEST_F(Judge, WantsTheReasonToNameTheThing) {
 
 TEST_F(Judge, WantsOneOfTwoThingsToBeNamed) {
   run_for(1.0);
-  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"lms100"}},
-                {.zero_within = 0.2, .lasts = 9.0, .words = {"rogue"}}});
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 12.0, .words = {"lms100"}},
+                {.zero_within = 0.2, .lasts = 12.0, .words = {"rogue"}}});
   stand();
   lines = {"foreign writer: rogue"};
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_THAT(violation(), IsEmpty());
+}
+
+TEST_F(Judge, TakesWhatHasJustEndedForTheReason) {
+  run_for(1.0);
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 4.0, .words = {"base"}},
+                {.zero_within = 0.2, .lasts = 12.0, .words = {"command"}}});
+  stand();
+  lines = {"segway_rmp: the base is silent"};
+  run_for(4.0);
+  lines = {"amcl: no scan"};
+  run_for(2.0);
+  EXPECT_THAT(violation(), IsEmpty());
+  run_for(1.0);
+  EXPECT_THAT(violation(), HasSubstr("does not read 'command'"));
 }
 
 TEST_F(Judge, ReadsTheReasonOfTheNavigation) {
   run_for(1.0);
   judge.navigation(t, kActive, "no word from the odometry");
-  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"odom"}}});
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 12.0, .words = {"odom"}}});
   stand();
-  run_for(6.0);
+  run_for(9.0);
   judge.navigation(t, kActive, "no word from the odometry");
   EXPECT_THAT(violation(), IsEmpty());
 }
@@ -328,18 +342,18 @@ TEST_F(Judge, ReadsTheReasonOfTheNavigation) {
 TEST_F(Judge, WantsNoReasonOfARobotThatArrived) {
   run_for(1.0);
   judge.navigation(t, kSucceeded, "");
-  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"odom"}}});
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 12.0, .words = {"odom"}}});
   stand();
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_THAT(violation(), IsEmpty());
 }
 
 TEST_F(Judge, ReadsTheReason) {
   run_for(1.0);
-  judge.hit(t, {{.zero_within = 0.2, .lasts = 9.0, .words = {"lms100"}}});
+  judge.hit(t, {{.zero_within = 0.2, .lasts = 12.0, .words = {"lms100"}}});
   stand();
   lines = {"amcl: silent", "lms100: silent"};
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_THAT(violation(), IsEmpty());
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kStands);
   EXPECT_EQ(judge.judgement(t).reason, "amcl: silent");
@@ -350,7 +364,7 @@ TEST_F(Judge, CountsNoReasonThatWasThereBeforeTheHit) {
   run_for(1.0);
   judge.hit(t, {});
   stand();
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
   EXPECT_THAT(violation(), HasSubstr("nobody says why"));
 }
@@ -360,7 +374,7 @@ TEST_F(Judge, ReadsThatTheSupervisorIsSilent) {
   judge.hit(t, {{.zero_within = 0.2, .lasts = 20.0, .words = {"supervisor"}}});
   supervisor_speaks = false;
   stand();
-  run_for(6.0);
+  run_for(9.0);
   EXPECT_THAT(violation(), IsEmpty());
   EXPECT_EQ(judge.judgement(t).reason, "supervisor: silent");
 }
@@ -386,12 +400,12 @@ TEST_F(Judge, LetsItBackOffFromAWhisker) {
 TEST_F(Judge, TellsHowTheNavigationEnded) {
   run_for(1.0);
   stand();
-  run_for(6.0);
+  run_for(9.0);
   judge.navigation(t, kActive, "waits for a person");
   judge.navigation(t, kActive, "");
   run_for(4.0);
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kWaits) << "a creeping robot waits now and then";
-  run_for(2.0);
+  run_for(5.0);
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kUnexplained);
   judge.navigation(t, kFailed, "no way");
   EXPECT_EQ(judge.judgement(t).end, WindowEnd::kGaveUp);
