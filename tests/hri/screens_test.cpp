@@ -36,13 +36,22 @@ constexpr std::array<std::string_view, 3> kSpeechTexts{"did_you_say", "by_touch"
 std::vector<guide::Location> office() {
   return {{"foyer", "Foyer", {4.5, 4.5}},
           {"reception", "Reception", {10.2, 4.6}},
-          {"electronics_lab", "Electronics lab", {24.5, 15.2}},
-          {"meeting_room", "Meeting room", {16.0, 7.4}},
+          {"electronics_lab",
+           "Electronics lab",
+           {24.5, 15.2},
+           {{"de", "Elektroniklabor"}, {"fr", "Électronique"}}},
+          {"meeting_room",
+           "Meeting room",
+           {16.0, 7.4},
+           {{"de", "Besprechungsraum"}, {"fr", "Salle de réunion"}, {"mi", "Rūma hui"}}},
           {"kitchen", "Kitchen", {21.5, 6.6}},
           {"robotics_lab", "Robotics lab", {26.6, 6.8}},
-          {"library", "Library", {7.0, 12.6}},
-          {"office_201", "Office 201", {14.2, 12.8}},
-          {"seminar_room", "Seminar room", {19.6, 20.6}},
+          {"library", "Library", {7.0, 12.6}, {{"de", "Bibliothek"}, {"mi", "Whare pukapuka"}}},
+          {"office_201", "Office 201", {14.2, 12.8}, {{"de", "Büro 201"}, {"mi", "Tari 201"}}},
+          {"seminar_room",
+           "Seminar room",
+           {19.6, 20.6},
+           {{"de", "Seminarraum"}, {"fr", "Salle de séminaire"}}},
           {"lounge", "Lounge", {30.4, 21.4}}};
 }
 

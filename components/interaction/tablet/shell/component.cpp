@@ -32,6 +32,7 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
       own_window_(std::move(own)),
       window_(own_window_ ? *own_window_ : *window),
       core_(phrases::read_phrases(host, "tablet", kTextKeys)),
+      titles_(phrases::read_place_titles(host)),
       rejected_(host.health().counter("inputs: rejected")),
       answers_(host, topics::kDialogueAnswer),
       requests_(host, topics::kSupervisorRequest) {
@@ -101,6 +102,10 @@ void TabletComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   if (screen.answer_client() == host_.name() && answers_.answered(screen.answer_id())) {
     core_.replied();
   }
+  if (screen.language() != language_) {
+    language_ = screen.language();
+    if (const auto* locations = locations_.latest()) take_locations(*locations);
+  }
   Screen taken;
   taken.id = screen.id();
   taken.state = screen.state();
@@ -142,7 +147,12 @@ void TabletComponent::take_locations(const usher_msgs::msg::Locations& locations
   std::vector<Place> places;
   for (const auto& location : locations.locations()) {
     const auto& at = location.pose().position();
-    places.push_back({location.name(), location.title(), {at.x(), at.y()}});
+    std::string title = location.title();
+    if (const auto place = titles_.find(location.name()); place != titles_.end()) {
+      if (const auto own = place->second.find(language_); own != place->second.end())
+        title = own->second;
+    }
+    places.push_back({location.name(), std::move(title), {at.x(), at.y()}});
   }
   window_.show_places(places);
 }

@@ -4,6 +4,7 @@
 
 #include "idl/topics.hpp"
 #include "interaction/finger/core/tap.hpp"
+#include "interaction/phrases/shell/place_titles.hpp"
 #include "interaction/tablet/core/tablet.hpp"
 #include "interaction/tablet/shell/window.hpp"
 #include "runtime/api/host.hpp"
@@ -36,6 +37,8 @@ class TabletComponent final : public runtime::Component {
   std::unique_ptr<Window> own_window_;
   Window& window_;
   Tablet core_;
+  phrases::PlaceTitles titles_;
+  std::string language_;  ///< of the dialogue
   finger::Lines finger_;
   View shown_;
   bool held_ = false;

@@ -49,10 +49,29 @@ class Component : public testing::Test {
                              return std::unique_ptr<runtime::Component>(
                                  std::make_unique<TabletComponent>(host, window_));
                            }},
-                          "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml"};
+                          "texts: " USHER_SOURCE_DIR
+                          "/config/dialogue/en.yaml\n"
+                          "site.titles: [{place: kitchen, language: de, title: Küche}]"};
   std::uint64_t request_seen_ = 0;
   bool serves_ = false;
 };
+
+TEST_F(Component, NamesThePlacesOnTheMapInTheLanguageOfTheDialogue) {
+  usher_msgs::msg::Locations locations;
+  locations.locations().emplace_back().name("kitchen");
+  locations.locations().back().title("Kitchen");
+  host_.publish(topics::kLocations, locations, "navigator");
+  auto message = screen(5, "guide_options", {"kitchen"});
+  show(message);
+  ASSERT_EQ(window_.places.size(), 1U);
+  EXPECT_EQ(window_.places[0].title, "Kitchen");
+  message.id(6), message.language("de");
+  show(message);
+  EXPECT_EQ(window_.places[0].title, "Küche");
+  message.id(7), message.language("fr");
+  show(message);
+  EXPECT_EQ(window_.places[0].title, "Kitchen");
+}
 
 TEST_F(Component, ShowsWhatTheEarAsks) {
   hear();

@@ -186,6 +186,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void build_map(Screen& screen) const;
   void build_languages(Screen& screen) const;
   void build_statement(Screen& screen) const;
+  const std::string& tag() const { return phrases_.languages()[language_].tag; }
   bool stands() const;
   std::string status() const;
   void add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const;

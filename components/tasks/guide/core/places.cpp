@@ -82,13 +82,13 @@ std::string folded(std::string_view utf8) {
 }
 
 std::vector<const Location*> search(const std::vector<Location>& locations, std::string_view query,
-                                    std::size_t most) {
+                                    const std::string& language, std::size_t most) {
   std::string wanted = folded(query);
   while (!wanted.empty() && wanted.back() == ' ') wanted.pop_back();
   std::vector<std::pair<int, const Location*>> hits;
   for (const Location& location : locations) {
-    const int best =
-        std::min(rank(wanted, folded(location.label())), rank(wanted, folded(location.name)));
+    const int best = std::min(rank(wanted, folded(location.label(language))),
+                              rank(wanted, folded(location.name)));
     if (best < kNoMatch) hits.emplace_back(best, &location);
   }
   std::stable_sort(hits.begin(), hits.end(),

@@ -13,7 +13,7 @@ std::string Guide::say(Text text) const {
 }
 
 std::string Guide::say_place(Text text) const {
-  return phrases::filled(say(text), {{"place", place_.label()}});
+  return phrases::filled(say(text), {{"place", place_.label(tag())}});
 }
 
 std::string Guide::way_words(double meters) const {
@@ -115,13 +115,13 @@ void Guide::build_places(Screen& screen) const {
   const std::size_t room = parameters_.options_on_screen;
   const auto offer = [&](const Location& location) {
     screen.options.push_back(
-        {location.name, location.label(), OptionKind::kOption, Panel::kPrimary, false});
+        {location.name, location.label(tag()), OptionKind::kOption, Panel::kPrimary, false});
   };
   if (searching_) {
     screen.content = Content::kSearch;
     screen.options.push_back(
         {button::kQuery, say(Text::kTypeName), OptionKind::kOption, Panel::kPrimary, true});
-    const auto hits = search(locations_, query_, std::min<std::size_t>(room, 3));
+    const auto hits = search(locations_, query_, tag(), std::min<std::size_t>(room, 3));
     for (const Location* hit : hits) offer(*hit);
     screen.text = say(hits.empty() ? Text::kNoHits : Text::kTypeName);
     add(screen, button::kBack, Text::kBack, OptionKind::kOption, Panel::kSecondary);
@@ -144,8 +144,9 @@ void Guide::build_map(Screen& screen) const {
   screen.title = place_.name.empty() ? say(Text::kLocationShow) : say_place(Text::kPlaceShow);
   const Location* here =
       surroundings_.pose ? nearest(locations_, surroundings_.pose->position()) : nullptr;
-  screen.text = here == nullptr ? say(Text::kNotLocated)
-                                : phrases::filled(say(Text::kNear), {{"place", here->label()}});
+  screen.text = here == nullptr
+                    ? say(Text::kNotLocated)
+                    : phrases::filled(say(Text::kNear), {{"place", here->label(tag())}});
   add(screen, button::kWhereIs, Text::kWhereIs, OptionKind::kOption, Panel::kSecondary);
   if (!place_.name.empty()) {
     add(screen, button::kGuideMe, Text::kGuideMe, OptionKind::kOption, Panel::kSecondary);

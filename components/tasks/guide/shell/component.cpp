@@ -102,6 +102,7 @@ GuideComponent::GuideComponent(runtime::Host& host)
       ignored_answers_(host.health().counter("answers: ignored")),
       rejected_locations_(host.health().counter("locations: rejected")),
       forgotten_(host.health().counter("memory: not kept")),
+      titles_(phrases::read_place_titles(host)),
       transforms_(host),
       requests_(host, topics::kSupervisorRequest),
       goals_(host, topics::kNavigateGoal) {
@@ -226,7 +227,11 @@ void GuideComponent::take_locations(const usher_msgs::msg::Locations& message) {
   std::vector<Location> locations;
   for (const auto& location : message.locations()) {
     const auto& at = location.pose().position();
-    locations.push_back({location.name(), location.title(), {at.x(), at.y()}});
+    const auto titles = titles_.find(location.name());
+    locations.push_back({location.name(),
+                         location.title(),
+                         {at.x(), at.y()},
+                         titles == titles_.end() ? decltype(Location::titles){} : titles->second});
   }
   if (!core_.set_locations(std::move(locations), now())) ++rejected_locations_;
   step();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "idl/topics.hpp"
+#include "interaction/phrases/shell/place_titles.hpp"
 #include "runtime/api/host.hpp"
 #include "tasks/guide/core/guide.hpp"
 #include "tasks/guide/core/visit_log.hpp"
@@ -39,6 +40,7 @@ class GuideComponent final : public runtime::Component {
   std::uint64_t& ignored_answers_;
   std::uint64_t& rejected_locations_;
   std::uint64_t& forgotten_;
+  phrases::PlaceTitles titles_;
   std::uint64_t ticks_ = 0;
   usher_msgs::msg::GuideStatus told_;               ///< the newest status
   std::optional<geometry::Point2> visitor_in_map_;  ///< [m] of the newest sighting

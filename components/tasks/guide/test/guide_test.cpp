@@ -1055,6 +1055,17 @@ TEST(Guide, AsksNothingAboutAVoiceOrABodyThatIsNotThere) {
   EXPECT_EQ(deaf.guide.screen().text, "Do you agree? Statement 1 of 11.");
 }
 
+TEST(Guide, NamesPlacesInTheVisitorsLanguage) {
+  Rig rig;
+  ASSERT_TRUE(
+      rig.guide.set_locations({{"kitchen", "Kitchen", {1, 0}, {{"de", "Küche"}}}}, rig.now()).ok());
+  rig.press("language:de"), rig.wait(3000), rig.press("guide_me");
+  ASSERT_FALSE(rig.guide.screen().options.empty());
+  EXPECT_EQ(rig.guide.screen().options[0].label, "Küche");
+  rig.press("kitchen");
+  EXPECT_EQ(rig.guide.screen().title, "Ihr Ziel: Küche.");
+}
+
 TEST(Guide, RefusesRatingsThatAreNone) {
   const std::string good = to_text(Memory{});
   for (const char* bad : {"6", "12345012345012", "a"}) {

@@ -9,13 +9,14 @@ namespace usher::guide {
 namespace {
 
 const std::vector<Location> kPlaces{
-    {"meeting_room", "Meeting room", {1, 1}}, {"kitchen", "Kitchen", {5, 5}},
+    {"meeting_room", "Meeting room", {1, 1}}, {"kitchen", "Kitchen", {5, 5}, {{"de", "Küche"}}},
     {"robotics_lab", "Robotics lab", {9, 0}}, {"vision_lab", "Vision lab", {20, 0}},
     {"cafe", "Café Français", {30, 0}},       {"office_201", "", {40, 0}}};
 
 std::string names(std::string_view query) {
   std::string out;
-  for (const auto* hit : search(kPlaces, query, 10)) out += (out.empty() ? "" : " ") + hit->name;
+  for (const auto* hit : search(kPlaces, query, "de", 10))
+    out += (out.empty() ? "" : " ") + hit->name;
   return out;
 }
 
@@ -30,7 +31,15 @@ TEST(Search, FindsBeginningsThenPartsThenTypingErrors) {
   EXPECT_EQ(names("robtics"), "robotics_lab");
   EXPECT_EQ(names("xq"), "");
   EXPECT_EQ(names("zzzz"), "");
-  EXPECT_EQ(search(kPlaces, "", 3).size(), 3U);
+  EXPECT_EQ(search(kPlaces, "", "en", 3).size(), 3U);
+}
+
+TEST(Search, KnowsTheTitleOfTheLanguageAndElseThePlainOne) {
+  EXPECT_EQ(names("kuch"), "kitchen");
+  EXPECT_EQ(search(kPlaces, "küche", "fr", 10).size(), 0U);
+  EXPECT_EQ(kPlaces[1].label("de"), "Küche");
+  EXPECT_EQ(kPlaces[1].label("fr"), "Kitchen");
+  EXPECT_EQ(kPlaces[5].label("de"), "office_201");
 }
 
 TEST(Search, DoesNotMindAccentsAndCase) {
@@ -45,7 +54,7 @@ TEST(Search, SurvivesAnyBytes) {
     std::string query;
     for (std::uint64_t n = random.below(90); n > 0; --n)
       query += static_cast<char>(random.below(256));
-    EXPECT_LE(search(kPlaces, query, 4).size(), 4U);
+    EXPECT_LE(search(kPlaces, query, "en", 4).size(), 4U);
   }
 }
 

@@ -1,0 +1,23 @@
+#include "interaction/phrases/shell/place_titles.hpp"
+
+namespace usher::phrases {
+
+PlaceTitles read_place_titles(runtime::Host& host) {
+  using runtime::ParameterKind;
+  const auto records = host.parameters().records(
+      "site.titles",
+      {{"place", ParameterKind::kText, "-", {}, "Name of a location."},
+       {"language", ParameterKind::kText, "-", {}, "ISO 639-1."},
+       {"title", ParameterKind::kText, "-", {}, "For people who chose that language."}},
+      "Titles of places in single languages; else the location's own counts.");
+  PlaceTitles titles;
+  for (const auto& record : records) {
+    const auto& place = record.text("place");
+    const auto& language = record.text("language");
+    if (!titles[place].emplace(language, record.text("title")).second)
+      host.fault("site.titles: '" + place + "' has two titles in '" + language + "'");
+  }
+  return titles;
+}
+
+}  // namespace usher::phrases
