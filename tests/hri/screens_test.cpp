@@ -97,9 +97,8 @@ class Visit {
     press("electronics_lab"), show("-place");
     press("done"), show("");
     wait(41000), show("-still_there");
-    press("stay");
     around_.visitor = guide::VisitorSighting{true, 1.2, 0.0, 0.0};
-    wait(100), show("-somebody_seen");
+    wait(100), press("where_is"), press("cancel"), show("-somebody_seen");
     press("follow_me"), show("");
     around_.visitor = guide::VisitorSighting{};
     wait(1500), show("-come_back");
@@ -142,6 +141,7 @@ class Visit {
   static guide::Parameters with_questionnaire() {
     guide::Parameters parameters;
     parameters.questionnaire = true;
+    parameters.introduction = std::chrono::seconds(3);
     return parameters;
   }
   void wait(int ms) {

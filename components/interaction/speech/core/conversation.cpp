@@ -41,6 +41,8 @@ void Conversation::take(const Screen& screen, Time now) {
     question_.reset();
     greeted_ear_ = false;
     if (more) wishes_.break_off = true;
+    if (waited_ && !screen.listens) wishes_.tones.push_back(Tone::kHeard);
+    waited_ = false;
   }
   if (late) wishes_.answer = Wishes::Answer{screen_.id, std::string(kStop)};
   if (more) {

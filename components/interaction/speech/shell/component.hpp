@@ -72,7 +72,7 @@ class SpeechComponent final : public runtime::Component {
 
   std::vector<std::int16_t> out_, in_;
   usher_msgs::msg::SpeechStatus reported_;
-  std::uint64_t ticks_ = 0, retry_at_ = 0;
+  std::uint64_t ticks_ = 0;
   bool level_was_zero_ = false;
   std::uint64_t& understood_;
   std::uint64_t& ignored_;

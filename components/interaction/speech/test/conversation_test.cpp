@@ -173,6 +173,22 @@ TEST_F(Talk, SoundsWhenItBeginsAndWhenItEndsToListen) {
   EXPECT_EQ(talk_.take_wishes().tones, std::vector<Tone>{Tone::kHeard});
 }
 
+TEST_F(Talk, SoundsThatItListensNoMoreWhenTheAnswerSetsTheRobotOff) {
+  show(screen(1, {"start", "cancel"})), talk_.take_wishes();
+  pass(seconds(1)), talk_.take_wishes();
+  auto goes = screen(2, {"stop", "cancel"});
+  goes.listens = false;
+  goes.tone = Tone::kMoving;
+  show(goes);
+  EXPECT_EQ(talk_.take_wishes().tones, (std::vector<Tone>{Tone::kHeard, Tone::kMoving}));
+  pass(seconds(1));
+  EXPECT_TRUE(talk_.take_wishes().tones.empty());
+  show(screen(3, {"yes"})), talk_.take_wishes();
+  pass(seconds(1)), talk_.take_wishes();
+  show(screen(4, {"yes"}));
+  EXPECT_TRUE(talk_.take_wishes().tones.empty()) << "it goes on listening";
+}
+
 TEST_F(Talk, AnswersWhenSure) {
   show(screen(7, {"yes", "no"}));
   talk_.take_wishes();

@@ -154,7 +154,7 @@ Touched Tablet::press(const std::string& id, Time now) {
   return {.answer = Answer{screen_.id, id, {}}, .move = lets_move(id) && lift_hold()};
 }
 
-Touched Tablet::type(const std::string& text, Time /*now*/) {
+Touched Tablet::type(const std::string& text) {
   const auto line = std::find_if(screen_.options.begin(), screen_.options.end(),
                                  [](const Screen::Option& option) { return option.takes_text; });
   if (!shows_dialogue() || line == screen_.options.end()) return {};

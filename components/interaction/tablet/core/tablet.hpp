@@ -26,11 +26,9 @@ enum class Text : std::size_t {
   kHeld,
   kStopUnsure,
   kYouAreHere,
-  kNothingFound,
 };
-inline constexpr std::array<std::string_view, 9> kTextKeys{
-    "away", "away_text",   "starting",     "stop",         "start",
-    "held", "stop_unsure", "you_are_here", "nothing_found"};
+inline constexpr std::array<std::string_view, 8> kTextKeys{
+    "away", "away_text", "starting", "stop", "start", "held", "stop_unsure", "you_are_here"};
 
 enum class Panel : std::uint8_t { kPrimary = 0, kSecondary = 1, kService = 2 };
 
@@ -110,7 +108,7 @@ class Tablet {
   /// the robot move less than kCalms after a stop or a touch that followed it.
   Touched touch(const std::string& id, Time now);
   /// The line to type into has this text now.
-  Touched type(const std::string& text, Time now);
+  Touched type(const std::string& text);
 
   /// This tablet holds the robot; to be kept over a restart.
   bool holds() const { return hold_ != Hold::kNone; }

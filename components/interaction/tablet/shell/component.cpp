@@ -188,7 +188,7 @@ void TabletComponent::act(const Touched& touched) {
 
 void TabletComponent::tick() {
   for (const auto& touch : window_.take_touches()) {
-    act(touch.typed ? core_.type(touch.text, now()) : core_.touch(touch.text, now()));
+    act(touch.typed ? core_.type(touch.text) : core_.touch(touch.text, now()));
   }
   if (++ticks_ % kShowEvery != 0) return;
   show();

@@ -316,15 +316,15 @@ TEST(Tablet, SendsWhatIsTypedAndCutsItAtALetter) {
   search.content = 3;
   search.options[0].takes_text = true;
   static_cast<void>(tablet.take(search, {}));
-  EXPECT_EQ(tablet.type("kit", {}).answer, (Answer{3, "query", "kit"}));
+  EXPECT_EQ(tablet.type("kit").answer, (Answer{3, "query", "kit"}));
   EXPECT_EQ(tablet.view({}).page, Page::kSearch);
   EXPECT_EQ(tablet.view({}).query_id, "query");
   std::string many;
   for (int i = 0; i < 30; ++i) many += "ā";
-  EXPECT_EQ(tablet.type(many, {}).answer->text.size(), 40U);
-  EXPECT_EQ(tablet.type("x" + many, {}).answer->text.size(), 39U);
+  EXPECT_EQ(tablet.type(many).answer->text.size(), 40U);
+  EXPECT_EQ(tablet.type("x" + many).answer->text.size(), 39U);
   static_cast<void>(tablet.take(screen(4, "guide_start", {"start"}), {}));
-  EXPECT_FALSE(tablet.type("kit", {}).answer);
+  EXPECT_FALSE(tablet.type("kit").answer);
 }
 
 TEST(WayText, SaysWhatIsKnown) {

@@ -38,7 +38,7 @@ std::optional<Hearing::Answer> Hearing::step(double now) {
   if (asks_) {  // "yes"
     asks_ = false;
     ++said_;
-    return Answer{*wanted_};
+    return random_.uniform() < rates_.confirmed ? std::optional(Answer{*wanted_}) : std::nullopt;
   }
   if (tries_ == Delivery::kMostSaid) {
     next_at_ = now + Delivery::kTouchAgain;

@@ -12,9 +12,10 @@ namespace usher::visitor {
 
 /// What an ear makes of what is said to it, shares of all utterances; the rest is not heard.
 struct HearingRates {
-  double understood = 0.52;  ///< at once
-  double asked_back = 0.45;  ///< "Did you say ...?", rightly; answered truly
+  double understood = 0.48;  ///< at once
+  double asked_back = 0.41;  ///< "Did you say ...?", rightly; answered truly
   double mistaken = 0.03;    ///< for another button of the screen
+  double confirmed = 0.93;   ///< of the answers to "Did you say ...?": heard
 };
 
 /// The robot's ear where no sound is simulated: words take effect as often, and as late, as

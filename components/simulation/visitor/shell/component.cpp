@@ -70,6 +70,8 @@ HearingRates VisitorComponent::read_hearing(runtime::Host& host) {
   share("voice_asked_back", rates.asked_back, "That the robot asks back for.");
   share("voice_mistaken", rates.mistaken,
         "That is taken for another button; what remains is not heard.");
+  share("voice_confirmed", rates.confirmed,
+        "Share of its answers to a question back that are heard.");
   if (rates.understood + rates.asked_back + rates.mistaken > 1.0 + 1e-9)
     host.fault("voice_understood, voice_asked_back and voice_mistaken must not exceed 1 together");
   return rates;
@@ -161,8 +163,9 @@ void VisitorComponent::write(const Choice& choice, Means means) {
 
 void VisitorComponent::give(const Choice& choice) {
   const bool voice = input_ == Input::kVoice || (input_ == Input::kMixed && turns_++ % 2 == 1);
-  // Nobody spells what can be typed.
-  const Means means = voice && choice.text.empty() ? Means::kVoice : Means::kTouch;
+  // Nobody spells what can be typed, and the robot understands English only.
+  const bool heard = choice.text.empty() && screen_.latest()->language() == "en";
+  const Means means = voice && heard ? Means::kVoice : Means::kTouch;
   if (means == Means::kVoice && !(limbs_ && limbs_->has_mouth())) {
     hearing_.want(core_.screen_id(), choice.option, in_seconds(host_.now()));
     return;

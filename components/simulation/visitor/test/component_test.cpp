@@ -50,11 +50,12 @@ class Someone : public testing::Test {
         "destination: library\nreading_time: 0.5 s\n" + parameters, line_);
     host_->run_for(milliseconds(100));
   }
-  void show(std::uint64_t id, const std::string& state, const std::vector<std::string>& options) {
+  void show(std::uint64_t id, const std::string& state, const std::vector<std::string>& options,
+            const std::string& language = "en") {
     usher_msgs::msg::DialogueScreen screen;
     screen.id(id);
     screen.state(state);
-    screen.language("en");
+    screen.language(language);
     screen.time_left(std::numeric_limits<float>::quiet_NaN());
     for (const auto& option : options) {
       auto& entry = screen.options().emplace_back();
@@ -96,7 +97,10 @@ TEST_F(Someone, WritesItsAnswersWhereThereAreNoDevices) {
 }
 
 TEST_F(Someone, IsAskedBackWhereNoSoundIsSimulated) {
-  start("input: voice\nvoice_understood: 0\nvoice_asked_back: 1\nvoice_mistaken: 0", false);
+  start(
+      "input: voice\nvoice_understood: 0\nvoice_asked_back: 1\nvoice_confirmed: 1\nvoice_mistaken: "
+      "0",
+      false);
   show(1, "guide_options", {"library", "lounge"});
   pass(30);
   EXPECT_TRUE(answers().empty()) << "did you say ...?";
@@ -106,6 +110,15 @@ TEST_F(Someone, IsAskedBackWhereNoSoundIsSimulated) {
   EXPECT_EQ(answers().front().input(), input::INPUT_VOICE);
   EXPECT_EQ(host_->counter("voice: said"), 2U);
   EXPECT_EQ(host_->counter("voice: asked back"), 1U);
+}
+
+TEST_F(Someone, SpeaksNoLanguageThatTheRobotDoesNotUnderstand) {
+  start("input: voice\nlanguage: de\nvoice_understood: 1\nvoice_asked_back: 0\nvoice_mistaken: 0",
+        false);
+  show(1, "guide_options", {"library", "lounge"}, "de");
+  pass(30);
+  ASSERT_FALSE(answers().empty());
+  EXPECT_EQ(answers().front().input(), input::INPUT_TOUCH);
 }
 
 TEST_F(Someone, TouchesAndTypesOnTheTablet) {

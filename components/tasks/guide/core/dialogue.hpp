@@ -101,6 +101,7 @@ inline constexpr std::array kEdges{
     Edge{State::kGuidePaused, State::kGuideError, Cause::kFailure},
     Edge{State::kGuidePaused, State::kEnd, Cause::kTimeout},
     Edge{State::kGuideError, State::kGuideOptions, Cause::kYes},
+    Edge{State::kGuideError, State::kGuideAsk, Cause::kYes},
     Edge{State::kGuideError, State::kEndAsk, Cause::kNo},
     Edge{State::kGuideError, State::kEnd, Cause::kTimeout},
     Edge{State::kGuideError, State::kEnd, Cause::kLeft},

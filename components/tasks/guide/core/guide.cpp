@@ -182,6 +182,7 @@ void Guide::enter(State state, Cause cause, Time now) {
     screen_.progress = state == State::kGuideSuccess ? 1.0 : -1.0;
     screen_.eta = screen_.remaining = kNothing;
   }
+  offers_following_ = human() == Human::kYes;
   screen_.id = next_id_++;
   screen_ = build(now);
   if (state != State::kInitialise && state != State::kInactive) speak_screen();
@@ -216,15 +217,19 @@ const Actions& Guide::answer(const Answer& answer, Time now) {
   const bool numbered = !answer.client.empty() && answer.id != 0;
   if (numbered) {
     if (handled_.size() >= kMostClients && handled_.count(answer.client) == 0) handled_.clear();
-    std::uint64_t& newest = handled_[answer.client];
-    if (answer.id <= newest) {
-      actions_.screen_changed = true;  // its client did not hear the reply
+    Handled& newest = handled_[answer.client];
+    if (answer.id <= newest.id) {
+      // Its client did not hear the reply; another one's may have taken its place.
+      last_answer_ = answer;
+      last_result_ = newest.result;
+      actions_.screen_changed = true;
       return finish(now);
     }
-    newest = answer.id;
+    newest.id = answer.id;
   }
   last_result_ = judge(answer, now);
   last_answer_ = answer;
+  if (numbered) handled_[answer.client].result = last_result_;
   actions_.screen_changed = true;
   if (last_result_ != AnswerResult::kDone) {
     ++ignored_answers_;
@@ -320,7 +325,8 @@ bool Guide::choose(const std::string& option, Time now) {
       if (option == button::kCancel) return to(State::kEndAsk, Cause::kNo);
       return choose_place(option, now);
     case State::kGuideError:
-      return yes ? to(State::kGuideOptions, Cause::kYes) : to(State::kEndAsk, Cause::kNo);
+      if (yes) return to(failed_to_follow() ? State::kGuideAsk : State::kGuideOptions, Cause::kYes);
+      return to(State::kEndAsk, Cause::kNo);
     case State::kEndAsk:
       if (yes) return to(State::kLocationAsk, Cause::kYes);
       if (!parameters_.questionnaire || visit_.arrived == 0) return to(State::kEnd, Cause::kNo);

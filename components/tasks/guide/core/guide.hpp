@@ -25,7 +25,7 @@
 namespace usher::guide {
 
 struct Parameters {
-  Time introduction = std::chrono::seconds(3);  ///< the greeting is shown; a language can be chosen
+  Time introduction = std::chrono::seconds(6);  ///< the greeting is shown; a language can be chosen
   Time answer = std::chrono::seconds(60);       ///< a question waits so long
   Time warning = std::chrono::seconds(20);      ///< before it is given up; one touch asks for more
   Time pause = std::chrono::seconds(120);       ///< a stop on the way waits so long
@@ -217,6 +217,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   bool known() const { return !locations_.empty(); }
   bool journey() const { return state_ == State::kGuideActive || state_ == State::kGuidePaused; }
   bool on_the_way() const { return journey() || follows(); }
+  /// At an error: a journey has a place, a following has none.
+  bool failed_to_follow() const { return place_.name.empty(); }
   /// What the supervisor shows as the goal.
   std::string goal_name() const { return follows() ? "visitor" : place_.name; }
   bool question() const;
@@ -265,6 +267,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
 
   // This question.
   std::size_t page_ = 0;
+  bool offers_following_ = false;  ///< as long as the question stands, whom it sees meanwhile
   bool searching_ = false;
   std::string query_;
   bool warned_ = false;
@@ -321,7 +324,11 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   Text failure_ = Text::kNoWay;
   Time refreshed_{};
 
-  std::map<std::string, std::uint64_t> handled_;  ///< newest answer of each client
+  struct Handled {
+    std::uint64_t id = 0;
+    AnswerResult result = AnswerResult::kNone;
+  };
+  std::map<std::string, Handled> handled_;  ///< newest answer of each client
   Answer last_answer_;
   AnswerResult last_result_ = AnswerResult::kNone;
   std::uint64_t ignored_answers_ = 0;

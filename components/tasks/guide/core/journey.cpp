@@ -200,9 +200,9 @@ void Guide::watch_navigation(Time now) {
       enter(State::kGuideSuccess, Cause::kArrived, now);
       break;
     case GoalState::kFailed:
-    case GoalState::kCancelled:
       fail(Text::kNoWay, Cause::kFailure, now);
       break;
+    case GoalState::kCancelled:  // not by this guide, which forgets what it cancels
     case GoalState::kReplaced:
       fail(Text::kOtherGoal, Cause::kFailure, now);
       break;

@@ -8,6 +8,12 @@
 
 namespace usher::guide {
 
+namespace {
+
+constexpr double kAt = 2.5;  ///< [m] farther from a place we are only near it
+
+}  // namespace
+
 std::string Guide::say(Text text) const {
   return phrases_.phrase(language_, static_cast<std::size_t>(text));
 }
@@ -144,9 +150,13 @@ void Guide::build_map(Screen& screen) const {
   screen.title = place_.name.empty() ? say(Text::kLocationShow) : say_place(Text::kPlaceShow);
   const Location* here =
       surroundings_.pose ? nearest(locations_, surroundings_.pose->position()) : nullptr;
-  screen.text = here == nullptr
-                    ? say(Text::kNotLocated)
-                    : phrases::filled(say(Text::kNear), {{"place", here->label(tag())}});
+  if (here == nullptr) {
+    screen.text = say(Text::kNotLocated);
+  } else {
+    const bool at = (here->at - surroundings_.pose->position()).norm() <= kAt;
+    screen.text =
+        phrases::filled(say(at ? Text::kNear : Text::kNearby), {{"place", here->label(tag())}});
+  }
   add(screen, button::kWhereIs, Text::kWhereIs, OptionKind::kOption, Panel::kSecondary);
   if (!place_.name.empty()) {
     add(screen, button::kGuideMe, Text::kGuideMe, OptionKind::kOption, Panel::kSecondary);
@@ -238,7 +248,7 @@ Screen Guide::build(Time now) const {
       screen.title = say(Text::kGuideAsk);
       yes_or_no();
       secondary(button::kWhereIs, Text::kWhereIs);
-      if (human() == Human::kYes)
+      if (offers_following_)
         add(screen, button::kFollowMe, Text::kFollowMe, OptionKind::kOption, Panel::kPrimary);
       break;
     case State::kFollowMe:
@@ -261,7 +271,7 @@ Screen Guide::build(Time now) const {
       break;
     case State::kGuideError:
       screen.place = place_.name;
-      screen.title = say(Text::kSorry);
+      screen.title = say(failed_to_follow() ? Text::kNotFollowed : Text::kSorry);
       screen.text = say(failure_) + " " + say(Text::kTryAgain);
       yes_or_no();
       break;
@@ -279,9 +289,8 @@ Screen Guide::build(Time now) const {
       build_statement(screen);
       break;
     case State::kEnd:
-      screen.title = say(Text::kSeeYou);
+      screen.title = say(lost_visitor_ ? Text::kLostYou : Text::kSeeYou);
       if (visit_.ratings.size() == kStatements) screen.text = say(Text::kThanksForAnswers);
-      if (lost_visitor_) screen.text = say(Text::kLostYou);
       secondary(button::kAgain, Text::kAgain);
       break;
   }

@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 /// The component in a robot that is told by hand what it does. Its texts are their keys.
 class Stage : public testing::Test {
  protected:
-  Stage() : host(runtime::component_factory<GuideComponent>("guide"), "") {
+  Stage() : host(runtime::component_factory<GuideComponent>("guide"), "introduction_time: 3") {
     Locations locations;
     locations.locations().emplace_back().name("lab");
     host.publish(topics::kLocations, locations);

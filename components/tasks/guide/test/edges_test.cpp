@@ -44,7 +44,7 @@ const Step kGoneFromStart{[](Rig& r) { r.see_nobody(), r.wait(15100); }, State::
 
 const Step kFollowing{[](Rig& r) { r.to_following(); }, State::kFollowMe, ""};
 const Step kFeedback{[](Rig& r) {
-                       Parameters asks;
+                       Parameters asks = quick();
                        asks.questionnaire = true;
                        r.guide = Guide(asks, book(), 1, {}, {});
                        EXPECT_TRUE(r.guide.set_locations(rooms(), r.now()).ok());
@@ -148,6 +148,11 @@ const std::vector<Case>& cases() {
        {kFollowing,
         {[](Rig& r) { r.around.supervisor = Supervisor::kFault, r.wait(100); }, State::kGuideError,
          "end"}}},
+      {"walks ahead, there is no way, tries again",
+       {kFollowing,
+        {[](Rig& r) { r.see(3.0), r.wait(1100), r.navigate(GoalState::kReplaced); },
+         State::kGuideError, "goal:pose end cancel"},
+        PRESS("yes", kGuideAsk)}},
       {"walks ahead, is lost",
        {kFollowing,
         {[](Rig& r) { r.see_nobody(), r.wait(1500); }, State::kFollowMe, "goal:pose"},

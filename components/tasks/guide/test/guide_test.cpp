@@ -40,6 +40,8 @@ TEST(Guide, SpeaksTheSentencesOfTheThesis) {
   rig.press("yes");
   EXPECT_EQ(rig.guide.screen().title, "Here is our location, choose Done when you have seen it.");
   EXPECT_EQ(rig.guide.screen().text, "We are at CO239.") << "the nearest place";
+  rig.around.pose->y = 3.0, rig.wait(100);
+  EXPECT_EQ(rig.guide.screen().text, "We are near CO239.");
   rig.press("done");
   EXPECT_EQ(rig.guide.screen().title, "Would you like me to guide you somewhere?");
   rig.press("yes");
@@ -334,7 +336,7 @@ TEST(Guide, GivesUpAVisitorWhoDoesNotComeBack) {
   rig.see(-5.0);
   rig.wait(61000);
   EXPECT_EQ(rig.state(), "end");
-  EXPECT_EQ(rig.guide.screen().text, "I have lost you, so I stop here.");
+  EXPECT_EQ(rig.guide.screen().title, "I have lost you, so I stop here.");
   ASSERT_EQ(rig.visits.size(), 1U);
   EXPECT_EQ(rig.visits[0].outcome, Outcome::kGivenUp);
   EXPECT_EQ(rig.guide.funnel().given_up, 1U);
@@ -675,7 +677,7 @@ TEST(Guide, GoesOnAfterItsOwnRestart) {
   before.wait(3000);
   before.press("guide_me");
   {
-    Rig after({}, before.guide.memory(), 1000000);
+    Rig after(quick(), before.guide.memory(), 1000000);
     EXPECT_EQ(after.state(), "guide_options");
     EXPECT_EQ(after.guide.screen().title, "Wohin möchten Sie?");
     EXPECT_GT(after.guide.screen().id, before.guide.screen().id);
@@ -684,7 +686,7 @@ TEST(Guide, GoesOnAfterItsOwnRestart) {
   before.around.supervisor = Supervisor::kNavigation;
   before.wait(1000);
   before.navigate(GoalState::kActive);
-  Rig after({}, before.guide.memory(), 1000000);
+  Rig after(quick(), before.guide.memory(), 1000000);
   EXPECT_EQ(after.state(), "guide_active");
   EXPECT_EQ(after.guide.screen().title, "Wir sind unterwegs. Ziel: AM218.");
   after.goal = before.goal;
@@ -699,7 +701,7 @@ TEST(Guide, StaysStoppedAfterItsOwnRestart) {
   Rig before;
   before.to_start(), before.press("start"), before.wait(500), before.press("stop");
   ASSERT_EQ(before.taken(), "start:am218 go stop") << "stopped before the first motion";
-  Rig paused({}, before.guide.memory(), 1000000);
+  Rig paused(quick(), before.guide.memory(), 1000000);
   paused.around.supervisor = Supervisor::kNavigation;
   paused.wait(10000);
   EXPECT_EQ(paused.state(), "guide_paused");
@@ -714,7 +716,7 @@ TEST(Guide, StaysStoppedAfterItsOwnRestart) {
   Rig waits;
   waits.see(-1.0), waits.to_active(), waits.see(-5.0), waits.wait(100);
   ASSERT_EQ(waits.taken(), "stop");
-  Rig again({}, waits.guide.memory(), 1000000);
+  Rig again(quick(), waits.guide.memory(), 1000000);
   again.around.supervisor = Supervisor::kNavigation;
   again.goal = waits.goal;
   again.navigate(GoalState::kWaiting);
@@ -828,7 +830,7 @@ TEST(Guide, AStopOnArrivalHoldsUntilHeGoesOnOrLeaves) {
   rig.press("stop"), rig.press("cancel");
   EXPECT_EQ(rig.taken(), "stop end cancel");
   rig.press("yes"), rig.press("no"), rig.press("languages");
-  Rig after({}, rig.guide.memory(), 1000000);
+  Rig after(quick(), rig.guide.memory(), 1000000);
   EXPECT_EQ(after.state(), "inactive");
   EXPECT_EQ(after.taken(), "on") << "nobody is served any more";
   Rig leads;
@@ -972,6 +974,10 @@ TEST(Guide, FollowsOnlyWhomItSees) {
   rig.see_nobody(), rig.wait(100);
   EXPECT_FALSE(rig.offers("follow_me"));
   rig.see(1.0), rig.wait(100);
+  EXPECT_FALSE(rig.offers("follow_me")) << "no button moves under a finger";
+  rig.press("where_is"), rig.press("cancel");
+  EXPECT_TRUE(rig.offers("follow_me"));
+  rig.see_nobody(), rig.wait(1000);
   EXPECT_TRUE(rig.offers("follow_me"));
 }
 
@@ -985,13 +991,48 @@ TEST(Guide, EndsAFollowingThatHasNoWay) {
     rig.navigate(GoalState::kFailed);
   }
   EXPECT_EQ(rig.state(), "guide_error");
+  EXPECT_EQ(rig.guide.screen().title, "Sorry, I was unable to follow you.");
+  rig.press("yes");
+  EXPECT_TRUE(rig.offers("follow_me")) << "that is what he wanted";
+}
+
+TEST(Guide, SaysThatSomebodyElseHasSentItElsewhere) {
+  for (const auto state : {GoalState::kCancelled, GoalState::kReplaced}) {
+    Rig rig;
+    rig.to_active(), rig.navigate(state);
+    EXPECT_TRUE(rig.guide.screen().text.starts_with("Somebody gave me another goal."));
+  }
+}
+
+TEST(Guide, RepliesToEachOfTwoWhoAnswerInTheSameMoment) {
+  Rig rig;
+  rig.to_location_ask();
+  const auto screen = rig.guide.screen().id;
+  const Answer touch{screen, "guide_me", "", Input::kTouch, "tablet", 7};
+  const Answer word{screen, "no", "", Input::kVoice, "speech", 3};
+  rig.note(rig.guide.answer(touch, rig.now())), rig.note(rig.guide.answer(word, rig.now()));
+  EXPECT_EQ(rig.guide.last_answer().client, "speech");
+  EXPECT_EQ(rig.guide.last_result(), AnswerResult::kLate);
+  rig.note(rig.guide.answer(touch, rig.now()));  // its reply was overwritten
+  EXPECT_EQ(rig.guide.last_answer().client, "tablet");
+  EXPECT_EQ(rig.guide.last_answer().id, 7U);
+  EXPECT_EQ(rig.guide.last_result(), AnswerResult::kDone);
+  EXPECT_EQ(rig.state(), "guide_options");
+}
+
+TEST(Guide, LeavesTimeToFindTheLanguage) {
+  Rig rig(Parameters{});
+  rig.begin(), rig.wait(5900);
+  EXPECT_EQ(rig.state(), "introduction");
+  rig.wait(100);
+  EXPECT_EQ(rig.state(), "location_ask");
 }
 
 TEST(Guide, AFollowingThatWasRestartedGoesOn) {
   Rig before;
   before.to_following();
   before.see(3.0), before.wait(1100);
-  Rig after({}, before.guide.memory(), 1000000);
+  Rig after(quick(), before.guide.memory(), 1000000);
   EXPECT_EQ(after.state(), "follow_me");
   after.around.supervisor = Supervisor::kNavigation;
   after.goal = before.goal;
@@ -1002,7 +1043,7 @@ TEST(Guide, AFollowingThatWasRestartedGoesOn) {
 }
 
 TEST(Guide, AsksWhatWasThoughtOfTheVisitAndKeepsTheAnswers) {
-  Parameters asks;
+  Parameters asks = quick();
   asks.questionnaire = true;
   Rig rig(asks);
   rig.to_feedback();
@@ -1033,7 +1074,7 @@ TEST(Guide, AsksWhatWasThoughtOfTheVisitAndKeepsTheAnswers) {
 }
 
 TEST(Guide, AsksNothingAboutAVoiceOrABodyThatIsNotThere) {
-  Parameters asks;
+  Parameters asks = quick();
   asks.questionnaire = true;
   Rig rig(asks);
   rig.to_end_ask(), rig.press("no");
@@ -1077,7 +1118,7 @@ TEST(Guide, RefusesRatingsThatAreNone) {
 // back, what is said is short, and a robot left alone comes to rest.
 TEST(Guide, HasNoDeadEnd) {
   Random random(11);
-  Parameters asks;
+  Parameters asks = quick();
   asks.questionnaire = true;
   std::set<std::string> labels{"AM218", "CO239", "Foyer"};
   const auto texts = book();

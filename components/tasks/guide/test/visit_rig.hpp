@@ -24,10 +24,17 @@ inline phrases::PhraseBook book(const std::vector<std::string>& tags = {"en", "m
   return std::move(book).value();
 }
 
+/// With a greeting that is soon over.
+inline Parameters quick() {
+  Parameters parameters;
+  parameters.introduction = std::chrono::seconds(3);
+  return parameters;
+}
+
 /// The guide in a robot that is well, with every action written down.
 class Rig {
  public:
-  explicit Rig(const Parameters& parameters = {}, const Memory& memory = {},
+  explicit Rig(const Parameters& parameters = quick(), const Memory& memory = {},
                std::uint64_t first_id = 100)
       : guide(parameters, book(), first_id, memory, {}) {
     EXPECT_TRUE(guide.set_locations(rooms(), {}).ok());
