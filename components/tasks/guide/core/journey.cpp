@@ -217,7 +217,8 @@ void Guide::watch_follower(Time now) {
   std::optional<FollowerSighting> sighting;
   if (const auto& visitor = surroundings_.visitor) {
     const double range = std::hypot(visitor->x, visitor->y);
-    const bool ahead = visitor->x > kAhead && range < kAheadWithin;
+    // Who has been missed and walks about before it may as well walk away.
+    const bool ahead = visitor->x > kAhead && range < kAheadWithin && !follow_.waits();
     sighting = FollowerSighting{visitor->seen, ahead ? 0.0 : range, visitor->x < 0.0};
   }
   const auto& pose = surroundings_.pose;
