@@ -31,12 +31,11 @@ DepthPipelineSimComponent::DepthPipelineSimComponent(runtime::Host& host)
       host.input(topics::kSimKinectScanLow,
                  {.max_age = kScanAge, .on_loss = "publishes no low scans", .optional = true},
                  [this](const auto& scan, const auto&) { take(low_, scan); });
-  rear_.input = host.input(
-      topics::kSimRearScan,
-      {.max_age = kScanAge,
-       .on_loss = "goes on with the Kinect alone; degraded when there was one",
-       .optional = true},
-      [this](const auto& scan, const auto&) { take(rear_, scan); });
+  rear_.input = host.input(topics::kSimRearScan,
+                           {.max_age = kScanAge,
+                            .on_loss = "goes on with the Kinect alone; degraded when there was one",
+                            .optional = true},
+                           [this](const auto& scan, const auto&) { take(rear_, scan); });
 }
 
 void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::LaserScan& scan) {

@@ -32,7 +32,7 @@ struct FollowerSighting {
   bool seen = false;
   /// [m] from the robot, 0: he walks ahead; when seen
   double gap = std::numeric_limits<double>::quiet_NaN();
-  bool behind = false;                                    ///< the robot; when seen
+  bool behind = false;  ///< the robot; when seen
 };
 
 /// Whether the visitor keeps up with the robot: fits the pace to the gap, waits, calls, gives up.
