@@ -13,9 +13,9 @@ namespace usher::kinematics {
 /// balancing base that is told zero leans back first and rolls on for 1.48 s x v (thesis, table
 /// 8.1) while its turn rate is gone after 0.2 s: straight on, off the arc that was free, into the
 /// door post. So the forward velocity is zero at once, and the turn rate falls with the measured
-/// speed. Where nothing measures, the base does what it was last told, and its turn rate falls with
-/// the time that a stop takes: it rolls out all the same. A turn rate that it was not told lately
-/// is measured by something that hangs, and counts only as far as it was told.
+/// speed. Where nothing measures, the base does what it was last told, and goes on turning for a
+/// while: it rolls out all the same. A turn rate that it was not told lately is measured by
+/// something that hangs, and counts only as far as it was told.
 class RollOut {
  public:
   static constexpr double kStanding = 0.08;  ///< [m/s] slower it stands
@@ -54,10 +54,7 @@ class RollOut {
     if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *rolled_at_ >= most ||
         now - measured_at_ >= kBlind)
       return tell({}, now);
-    const auto blind = [](auto time) { return std::chrono::duration<double>(time).count(); };
-    const double left =
-        1.0 - blind(now - measured_at_) / blind(std::min<decltype(most)>(most, kBlind));
-    return tell({0.0, onset_.w * share_ * std::clamp(left, 0.0, 1.0)}, now);
+    return tell({0.0, onset_.w * share_}, now);
   }
   /// It may drive, and is told so: the next stop begins anew.
   void drive(const geometry::Twist2& told, std::chrono::nanoseconds now) {

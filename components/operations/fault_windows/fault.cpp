@@ -236,6 +236,7 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
         // The guard process that sends zero for a dead base driver is not simulated.
         expected.deaf = fault.target == targets.base_driver;
         expected.zero_within = expected.deaf ? kHeld : 0.2;
+        expected.revoked_within = 0.3;
         expected.words = {fault.target};
       }
       break;
@@ -262,6 +263,7 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
       // Latched: an operator ends it.
       expected.zero_within =
           fault.variant == "rogue" ? 0.1 : 0.2;  // a claimer of the name shows itself later
+      expected.revoked_within = 0.3;
       expected.lasts = kWindow;
       expected.words = {fault.variant};
       break;
@@ -314,8 +316,16 @@ std::vector<Expectation> expectations(const WindowPlan& plan, const FaultTargets
     return (fault.kind == FaultKind::kCrash || fault.kind == FaultKind::kHang) &&
            fault.target == "supervisor";
   });
+  // A touch that nobody tells of bars nothing: the robot stands because nobody tells.
+  const bool unfelt = std::any_of(plan.faults.begin(), plan.faults.end(), [](const Fault& fault) {
+    const bool ends = fault.kind == FaultKind::kCrash || fault.kind == FaultKind::kHang;
+    return (fault.kind == FaultKind::kTopicSilence && fault.target == "whiskers") ||
+           (fault.kind == FaultKind::kWhiskers && fault.variant == "silent") ||
+           (ends && fault.target == "sensor_board");
+  });
   for (std::size_t i = 0; i < all.size(); ++i) {
     Expectation& each = all[i];
+    if (unfelt) each.forward_barred_within = Expectation::kNever;
     if (deaf) each.zero_within = std::max(each.zero_within, kHeld);
     if (silent == plan.faults.end() || &*silent == &plan.faults[i]) continue;
     // Nobody withdraws the right to drive: it runs out. And nobody tells why until it is back.

@@ -49,6 +49,7 @@ struct Expectation {
   /// there; kNever: it may drive on.
   double zero_within = kNever;
   double forward_barred_within = kNever;  ///< [s] likewise, but it may still drive backwards
+  double revoked_within = kNever;         ///< [s] after the hit nobody has the right to drive
   /// The base hears nobody: what it touches meanwhile no software keeps it from.
   bool deaf = false;
   double lasts = 0.0;              ///< [s] after the hit these hold

@@ -139,6 +139,8 @@ void WindowJudge::judge_expectations(double t) {
                      number(wheels_->twist.w) + " rad/s");
     }
     judge_stop(t, expected_stops_[i], must_stand, "during the fault");
+    if (lasts && since > expected.revoked_within && granted(t))
+      violate(t, "the right to drive is granted still");
 
     const bool barred = lasts && since > expected.forward_barred_within && place_;
     auto& bar = barred_[i];

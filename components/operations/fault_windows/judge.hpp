@@ -47,8 +47,9 @@ struct Judgement {
 ///    it rolls, and it stands within its measured stopping distance.
 ///  - What is commanded is within what enabled sources wished during the last second, and within
 ///    the limit in force.
-///  - While a fault lasts that must stop the robot, it stands, and an operator reads why in the
-///    supervisor's status or in that of the navigation.
+///  - While a fault lasts that must stop the robot, it stands, nobody has the right to drive where
+///    that must be revoked, and an operator reads why in the supervisor's status or in that of the
+///    navigation.
 ///  - In the end it is on its way, or stands and says why.
 ///
 /// Time [s] counts from the start of the run and does not go back between calls. Pure; O(1) memory

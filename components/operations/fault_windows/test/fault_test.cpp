@@ -83,6 +83,17 @@ TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
   EXPECT_EQ(all[2].zero_within, Expectation::kNever);
 }
 
+TEST(ExpectationOfAFault, ForATouchThatNobodyTellsOfIsNothing) {
+  WindowPlan plan;
+  plan.faults = {{FaultKind::kTopicSilence, "whiskers", "", 20.0},
+                 {FaultKind::kWhiskers, "", "pressed", 5.0}};
+  const auto all = expectations(plan, kTargets);
+  EXPECT_EQ(all[1].forward_barred_within, Expectation::kNever);
+  EXPECT_LT(all[0].zero_within, 1.0) << "but it stands";
+  plan.faults.erase(plan.faults.begin());
+  EXPECT_LT(expectations(plan, kTargets)[0].forward_barred_within, 1.0);
+}
+
 TEST(ExpectationOfAFault, BesideASilentSupervisorIsThatTheGrantRunsOut) {
   WindowPlan plan;
   plan.faults = {{FaultKind::kHang, "supervisor", "", 3.0},

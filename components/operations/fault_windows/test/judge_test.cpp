@@ -265,6 +265,16 @@ TEST_F(Judge, SeesARobotThatDrivesThroughAFault) {
   EXPECT_THAT(violation(), HasSubstr("still told"));
 }
 
+TEST_F(Judge, SeesARightThatIsNotRevoked) {
+  run_for(1.0);
+  judge.hit(t, {{.zero_within = 0.2, .revoked_within = 0.3, .lasts = 5.0, .words = {}}});
+  stand();
+  run_for(0.28);
+  EXPECT_THAT(violation(), IsEmpty());
+  run_for(0.1);
+  EXPECT_THAT(violation(), HasSubstr("granted still"));
+}
+
 TEST_F(Judge, ExpectsNothingAfterTheFault) {
   run_for(1.0);
   judge.hit(t, {{.zero_within = 0.2, .lasts = 0.15, .words = {}}});
