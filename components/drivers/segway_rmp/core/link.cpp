@@ -14,7 +14,7 @@ void Link::opened(Time now) {
   opened_at_ = now;
   step_ = 0;
   decoder_.reset();
-  assembler_.reset();
+  assembler_.reopened();
   feedback_at_.reset();
   reported_ = Mode::kDisconnected;
   reason_ = "waiting for feedback";

@@ -12,6 +12,14 @@ Odometry::Odometry(const Parameters& parameters) : parameters_(parameters) {
   assert(parameters.wheel_radius > 0.0 && parameters.track > 0.0 && parameters.longest_step > 0.0);
 }
 
+/// The way of a wheel that was so fast when it was last heard.
+bool Odometry::rolled_out(double travel, double velocity) const {
+  constexpr double kSway = 0.1;  // [m] of a base that balances on the spot
+  return std::abs(travel) <= kSway ||
+         (travel * velocity > 0.0 &&
+          std::abs(travel) <= parameters_.longest_stop * std::abs(velocity) + kSway);
+}
+
 bool Odometry::update(const SegwayFeedback& feedback) {
   const double values[] = {feedback.pitch,        feedback.pitch_rate,    feedback.left_travel,
                            feedback.right_travel, feedback.left_velocity, feedback.right_velocity};
@@ -24,16 +32,21 @@ bool Odometry::update(const SegwayFeedback& feedback) {
   const double left = feedback.left_travel - last_left_;
   const double right = feedback.right_travel - last_right_;
   const double lean = feedback.pitch - last_pitch_;
-  const bool first = !started_;
+  const bool bridged =
+      interrupted_ && rolled_out(left, left_velocity_) && rolled_out(right, right_velocity_);
+  const bool first = !started_ || (interrupted_ && !bridged);
   const double fastest =
       std::max(std::abs(feedback.left_velocity), std::abs(feedback.right_velocity));
-  if (first || left != 0.0 || right != 0.0 || fastest < parameters_.hangs_from)
+  if (first || bridged || left != 0.0 || right != 0.0 || fastest < parameters_.hangs_from)
     counted_at_ = feedback.stamp;
   started_ = true;
+  interrupted_ = false;
   last_left_ = feedback.left_travel;
   last_right_ = feedback.right_travel;
   last_pitch_ = feedback.pitch;
-  if (!first && std::abs(left) + std::abs(right) > 2.0 * parameters_.longest_step) {
+  left_velocity_ = feedback.left_velocity;
+  right_velocity_ = feedback.right_velocity;
+  if (!first && !bridged && std::abs(left) + std::abs(right) > 2.0 * parameters_.longest_step) {
     ++rejected_;
     return false;
   }
@@ -56,7 +69,7 @@ bool Odometry::update(const SegwayFeedback& feedback) {
 }
 
 void Odometry::interrupt() {
-  started_ = false;
+  interrupted_ = started_;
   twist_ = raw_twist_ = {};
 }
 

@@ -17,6 +17,7 @@ class Odometry {
     double wheel_radius = 0.2355;  ///< [m] {> 0}
     double track = 0.5398;         ///< [m] {> 0} effective, for turning
     double longest_step = 1.0;     ///< [m] {> 0} between two cycles; more is not believed
+    double longest_stop = 2.5;     ///< [s] {> 0} x speed: the farthest roll-out without a line
     double hangs_from = 0.05;      ///< [m/s] {> 0} of a wheel that moves and counts no way
     Time hangs_after = std::chrono::milliseconds(250);  ///< {> 0} of that
   };
@@ -28,8 +29,10 @@ class Odometry {
   /// is not finite, a leap, or a repetition: wheels that move and odometers that do not.
   bool update(const SegwayFeedback& feedback);
 
-  /// The line to the base is lost: the velocities are not known, reported as zero, and the next
-  /// cycle is a new beginning of the way, wherever its counters stand.
+  /// The line to the base is lost: the velocities are not known, reported as zero. Meanwhile the
+  /// base rolls out, and its odometers count on: what they tell afterwards is one arc more, where
+  /// it is no longer than a stop takes and in the direction of the last motion. Else, as after a
+  /// reset of the counters, the next cycle is a new beginning of the way, wherever they stand.
   void interrupt();
 
   const geometry::Pose2& pose() const { return pose_; }          ///< of base_footprint in odom
@@ -40,10 +43,14 @@ class Odometry {
 
  private:
   Parameters parameters_;
+  bool rolled_out(double travel, double velocity) const;
+
   bool started_ = false;
+  bool interrupted_ = false;
   double last_left_ = 0.0;
   double last_right_ = 0.0;
   double last_pitch_ = 0.0;
+  double left_velocity_ = 0.0, right_velocity_ = 0.0;  ///< [m/s]
   Time counted_at_{};  ///< when the odometers last changed, or had no reason to
   geometry::Pose2 pose_;
   geometry::Twist2 twist_;

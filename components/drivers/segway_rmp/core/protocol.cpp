@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMostSpeedCounts = 1176.0;
 constexpr double kMostTurnCounts = 1024.0;
-constexpr double kMostStep = 1.0;  // [m] in one cycle; more is a reset of the counter
+constexpr double kMostStep = 5.0;  // [m] since the last cycle; more is a reset of the counter
 
 std::uint16_t counts(double value, double most) {
   if (!std::isfinite(value)) return 0;
@@ -43,9 +43,15 @@ PacketBytes command(const geometry::Twist2& twist, const Calibration& calibratio
 
 PacketBytes shutdown() { return to_base(kIdShutdown, {0, 0, 0, 0}); }
 
-void FeedbackAssembler::reset() {
-  const Calibration calibration = calibration_;
-  *this = FeedbackAssembler(calibration);
+void FeedbackAssembler::reopened() {
+  FeedbackAssembler anew(calibration_);
+  anew.feedback_.left_travel = feedback_.left_travel;
+  anew.feedback_.right_travel = feedback_.right_travel;
+  anew.counters_known_ = counters_known_;
+  anew.left_counter_ = left_counter_;
+  anew.right_counter_ = right_counter_;
+  anew.counter_jumps_ = counter_jumps_;
+  *this = anew;
 }
 
 Mode FeedbackAssembler::mode() const {

@@ -57,8 +57,8 @@ class FeedbackAssembler {
   /// this one falls silent.
   std::optional<SegwayFeedback> take(const Packet& packet, Time now);
 
-  /// After opening a connection: travel starts at zero.
-  void reset();
+  /// The connection was opened anew: the counters have counted on, nothing else is known.
+  void reopened();
 
   /// The operational mode that the base reports, if it was heard.
   std::optional<std::uint16_t> operational_mode() const { return operational_mode_; }

@@ -117,6 +117,28 @@ TEST(Odometry, StartsWhereverTheCountersStand) {
   EXPECT_NEAR(odometry.pose().x, 0.01, 1e-9);
 }
 
+TEST(Odometry, CountsWhatTheBaseRolledOnWhileItsLineWasCut) {
+  Odometry odometry;
+  TrueBase base;
+  odometry.update(base.feedback());
+  geometry::Pose2 truth;
+  const auto drive = [&](double v, double w) {
+    base.drive(v, w);
+    truth = geometry::integrate(truth, {v, w}, kPeriod);
+  };
+  for (int i = 0; i < 100; ++i) {
+    drive(0.7, 0.2);
+    ASSERT_TRUE(odometry.update(base.feedback()));
+  }
+  odometry.interrupt();
+  for (int i = 0; i < 150; ++i) drive(0.7 * (1.0 - i / 150.0), 0.2 * (1.0 - i / 150.0));
+  base.drive(0.0, 0.0);
+  ASSERT_TRUE(odometry.update(base.feedback()));
+  EXPECT_EQ(odometry.rejected(), 0U);
+  EXPECT_LT(geometry::distance(odometry.pose(), truth), 0.01);
+  EXPECT_NEAR(odometry.pose().yaw, truth.yaw, 1e-9);
+}
+
 TEST(Odometry, AnInterruptedLineIsNoMotion) {
   Odometry odometry;
   SegwayFeedback feedback;
@@ -129,7 +151,7 @@ TEST(Odometry, AnInterruptedLineIsNoMotion) {
   EXPECT_NEAR(before.x, 0.8, 1e-9);
   odometry.interrupt();
   EXPECT_EQ(odometry.twist(), (geometry::Twist2{})) << "nobody knows, so nothing moves";
-  feedback.left_travel = feedback.right_travel = 0.0;  // a reopened line counts from zero
+  feedback.left_travel = feedback.right_travel = 0.0;  // a base switched on again counts from zero
   ASSERT_TRUE(odometry.update(feedback));
   EXPECT_EQ(odometry.pose(), before);
   feedback.left_travel = feedback.right_travel = 0.01;

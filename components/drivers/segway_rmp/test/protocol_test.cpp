@@ -219,6 +219,17 @@ TEST(Feedback, TravelWrapsNeverAndJumpsNever) {
   EXPECT_NEAR(feedback->right_travel, 3322.0 / 33215.0, 1e-9);
 }
 
+TEST(Feedback, TravelGoesOnWhereTheLineWasOpenedAnew) {
+  FeedbackAssembler assembler{Calibration{}};
+  Cycle cycle;
+  take(assembler, cycle_packets(cycle));
+  cycle.left = cycle.right = 33215;
+  assembler.reopened();
+  const auto feedback = take(assembler, cycle_packets(cycle));
+  ASSERT_TRUE(feedback);
+  EXPECT_NEAR(feedback->left_travel, 1.0 - Cycle{}.left / 33215.0, 1e-9);
+}
+
 TEST(Feedback, FollowsOneChannelAndChangesWhenItFallsSilent) {
   FeedbackAssembler assembler{Calibration{}};
   Cycle cycle;

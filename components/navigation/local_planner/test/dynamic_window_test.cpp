@@ -314,6 +314,28 @@ TEST(Decide, BrakesStraightBeforeSomebodyInsteadOfIntoTheWall) {
   EXPECT_LT(std::abs(decision.command.w), 0.1);
 }
 
+TEST(Decide, BrakesOnTheArcThatItIsOnWhereATurnGainsLittle) {
+  World world(-3, -3, 3, 3);
+  world.add(Box{0.7, 0.36, 0.8, 3});
+  world.add(Box{0.7, -3, 0.8, -0.24});
+  world.finish(0.305);
+  DynamicWindow planner = planner_to(8.0);
+  const Decision decision = planner.decide(world.costs(), {}, {0.7, 0}, {0.7, 0}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kBraking);
+  EXPECT_LT(std::abs(decision.command.w), 0.01);
+}
+
+TEST(Decide, BrakesPastAPostThatATurnLeavesFree) {
+  World world(-3, -3, 3, 3);
+  world.add(Box{0.9, -3, 1.0, -0.26});
+  world.add(Box{0.9, 0.45, 1.0, 3});
+  world.finish(0.305);
+  DynamicWindow planner = planner_to(8.0);
+  const Decision decision = planner.decide(world.costs(), {}, {0.9, 0}, {0.9, 0}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kBraking);
+  EXPECT_GT(decision.command.w, 0.05) << "away from it";
+}
+
 TEST(Decide, GivesUpATurnThatWhiskersBarInBothSenses) {
   DynamicWindow planner = DynamicWindow::make({}).value();
   ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {-2, 0, 0}}).ok());
