@@ -19,6 +19,7 @@
 #include <sstream>
 
 #include "runtime/dds/bytes_type.hpp"
+#include "runtime/dds/lease_check.hpp"
 #include "runtime/dds/security.hpp"
 #include "runtime/dds/signed_presence.hpp"
 #include "runtime/dds/socket_buffers.hpp"
@@ -271,6 +272,7 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   if (options.domain > 232)
     return Error{"a DDS domain is 0..232, found " + std::to_string(options.domain)};
   isolate_library();
+  use_lease_check();
   std::unique_ptr<Participant> self(new Participant(options, clock));
   const auto open = std::make_shared<std::atomic<bool>>(false);
   GuardOptions guard;

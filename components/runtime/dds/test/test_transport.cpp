@@ -1,4 +1,5 @@
 // Transport and Observer over real participants.
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <fastdds/dds/publisher/Publisher.hpp>
 
@@ -389,6 +390,16 @@ TEST(DdsTransport, MeetsOthersAlsoWhenPeersAreGiven) {
   Deliveries deliveries;
   (*made)->open_reader(input(topics::kDialogueAnswer), deliveries.deliver());
   EXPECT_TRUE(eventually([&] { return writer.reader_count() == 1; }));
+}
+
+TEST(DdsTransport, AsksTheProgramAndNotTheLibraryWhoseLeaseHasEnded) {
+  void* check = dlsym(RTLD_DEFAULT,
+                      "_ZN8eprosima8fastrtps4rtps3PDP35check_remote_participant_livelinessEPNS1_"
+                      "20ParticipantProxyDataE");
+  ASSERT_NE(check, nullptr) << "the library has no such function: is the replacement still needed?";
+  Dl_info info{};
+  ASSERT_NE(dladdr(check, &info), 0);
+  EXPECT_EQ(std::string(info.dli_fname).find("libfastrtps"), std::string::npos) << info.dli_fname;
 }
 
 TEST(DdsTransport, LeavesNoSharedMemoryBehind) {
