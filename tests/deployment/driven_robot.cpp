@@ -113,7 +113,8 @@ bool DrivenRobot::sets_out(const std::string& place) {
 }
 
 bool DrivenRobot::under_way() const {
-  return errand_->output().find("arrived") == std::string::npos && errand_->errors().empty();
+  return errand_ && errand_->output().find("arrived") == std::string::npos &&
+         errand_->errors().empty();
 }
 
 double DrivenRobot::speed() const {

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <mutex>
 #include <random>
 
 #include "deployment/driven_robot.hpp"
@@ -26,6 +29,7 @@ constexpr const char* kDriveChain[] = {"supervisor",     "movement_control", "se
 constexpr const char* kVisitorsSide[] = {"tablet", "speech"};
 constexpr double kBack = 1.0, kVisitorsSideBack = 3.0;  // [s] the promise
 constexpr double kDriving = 0.2;                        // [m/s]
+constexpr double kGuardBack = 1.0;                      // [s] from a hang of the guard on
 constexpr double kWithoutGrant = 0.2;  // [s] a grant's life, and the way to the judge
 constexpr unsigned kSeed = 20;
 constexpr int kKills = 20;
@@ -105,6 +109,54 @@ TEST_F(Restarts, OfEachPartTakeASecondAndTheErrandGoesOn) {
         "%-16s ok after %4.2f s, may drive after %4.2f s, drives after %4.2f s (machine %.1fx)\n",
         victim.c_str(), back, whole.count(), goes_on.count(), slow);
   }
+  EXPECT_EQ(robot().contacts(), 0U);
+}
+
+/// The guard of the base's line.
+pid_t guard_of(pid_t driver) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+    std::ifstream file(entry.path() / "stat");
+    pid_t pid = 0, parent = 0;
+    std::string name, state;
+    if (file >> pid >> name >> state >> parent && parent == driver && name == "(usher-guard)")
+      return pid;
+  }
+  return 0;
+}
+
+TEST_F(Restarts, AGuardThatHangsIsReplacedAndTheBaseIsDisconnectedMeanwhile) {
+  using usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING;
+  using usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED;
+  std::mutex mutex;
+  std::uint8_t state = STATE_DISCONNECTED;
+  const auto base =
+      running().observer().reader(topics::kBaseStatus, [&](const auto& message, const auto&) {
+        const std::scoped_lock lock(mutex);
+        state = message.state();
+      });
+  ASSERT_TRUE(base);
+  const auto is = [&](std::uint8_t wanted) {
+    const std::scoped_lock lock(mutex);
+    return state == wanted;
+  };
+  ASSERT_TRUE(robot().under_way() || robot().sets_out("lounge") || robot().sets_out("foyer"))
+      << story();
+  ASSERT_TRUE(drives()) << story();
+  const pid_t guard = guard_of(running().components().at("segway_rmp"));
+  ASSERT_GT(guard, 0);
+  const double slow = slowdown();
+  const auto hung = Clock::now();
+  ::kill(guard, SIGSTOP);
+  ASSERT_TRUE(running().wait_for([&] { return is(STATE_DISCONNECTED); }, Seconds(10))) << story();
+  const Seconds gone = Clock::now() - hung;
+  ASSERT_TRUE(running().wait_for([&] { return is(STATE_BALANCING); }, Seconds(10))) << story();
+  const Seconds back = Clock::now() - hung;
+  std::printf("guard hung: disconnected after %4.2f s, back after %4.2f s (machine %.1fx)\n",
+              gone.count(), back.count(), slow);
+  EXPECT_LT(back.count(), kGuardBack * slow);
+  EXPECT_EQ(::kill(guard, 0), -1);
+  EXPECT_TRUE(robot().is_ready()) << story();
   EXPECT_EQ(robot().contacts(), 0U);
 }
 

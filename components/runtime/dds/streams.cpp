@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -33,6 +34,10 @@ constexpr auto kReopenAfter = std::chrono::seconds(1);
 constexpr auto kReopenSoon = std::chrono::milliseconds(50);
 constexpr auto kConnectTimeout = std::chrono::seconds(3);
 constexpr auto kGuardStart = std::chrono::seconds(1);
+/// A guard shows life five times in this; a longer silence, or a longer farewell, is a hang.
+constexpr auto kGuardSilence = std::chrono::milliseconds(500);
+/// Who looks so late was held up as well, and what the guard sent may not be there yet.
+constexpr auto kLate = std::chrono::milliseconds(250);
 constexpr auto kOfferAgain = std::chrono::milliseconds(10);
 constexpr auto kLineAgain = std::chrono::milliseconds(2);
 
@@ -143,8 +148,10 @@ class Connection final : public Stream {
   /// When to call advance() without any event.
   Clock::time_point due() const {
     const std::scoped_lock lock(mutex_);
-    const bool waits = (state_ == State::kOpen && held_.empty()) || state_ == State::kListening;
-    const auto due = waits ? Clock::time_point::max() : due_;
+    auto due = due_;
+    if (state_ == State::kListening) due = Clock::time_point::max();
+    if (state_ == State::kOpen && held_.empty())
+      due = guarded() ? guard_silent_at_ : Clock::time_point::max();
     return line_full_ ? std::min(due, Clock::now() + kLineAgain) : due;
   }
 
@@ -167,6 +174,10 @@ class Connection final : public Stream {
         } else {
           connect(events, now, outcome);
         }
+      } else if (state_ == State::kOpen && guard_hangs(events, now)) {
+        outcome.closed = uri_ + ": its guard hung and was killed";
+        ::kill(guard_pid_, SIGKILL);
+        close_until(now + kReopenSoon);
       } else if (state_ == State::kOpen && ((events & POLLOUT) != 0 || line_full_)) {
         drain(now, outcome);
       }
@@ -225,6 +236,21 @@ class Connection final : public Stream {
   void reap() {
     if (guard_pid_ > 0 && ::waitpid(guard_pid_, nullptr, WNOHANG) == guard_pid_) guard_pid_ = 0;
   }
+  /// Nothing came from it for too long.
+  bool guard_hangs(short events, Clock::time_point now) {
+    if (!guarded() || now < guard_silent_at_) return false;
+    if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) return false;
+    if (now < guard_silent_at_ + kLate) return true;
+    guard_silent_at_ = now + kGuardSilence;
+    return false;
+  }
+  /// The former guard has ended, and with it its hold of the port; one that does not end is killed.
+  bool former_guard_gone(Clock::time_point now) {
+    reap();
+    if (guard_pid_ == 0) return true;
+    if (now >= guard_silent_at_) ::kill(guard_pid_, SIGKILL);
+    return false;
+  }
   void close_until(Clock::time_point due) {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
@@ -232,6 +258,7 @@ class Connection final : public Stream {
     line_full_ = false;
     state_ = State::kWaiting;
     due_ = due;
+    guard_silent_at_ = Clock::now() + kGuardSilence;
   }
   void begin(Clock::time_point now, Outcome& outcome) {
     if (!address_) {
@@ -242,7 +269,10 @@ class Connection final : public Stream {
     }
     const bool listens = address_->kind == StreamAddress::Kind::kListen;
     int& descriptor = listens && !guarded() ? listener_ : descriptor_;
-    if (guarded()) reap();
+    if (guarded() && !former_guard_gone(now)) {
+      due_ = now + kReopenSoon;
+      return;
+    }
     if (descriptor < 0)
       descriptor = guarded() ? start_guard(uri_, sink_.guard, guard_pid_) : open_port(*address_);
     if (descriptor < 0) {
@@ -281,6 +311,7 @@ class Connection final : public Stream {
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (count > 0 && answer[0] == '\0') {
       state_ = State::kOpen;
+      guard_silent_at_ = now + kGuardSilence;
       outcome.opened = true;
       return;
     }
@@ -310,6 +341,7 @@ class Connection final : public Stream {
   }
   /// Offers what the component refused last time, then at most one buffer more.
   void receive(Clock::time_point now) {
+    guard_silent_at_ = now + kGuardSilence;
     if (held_.empty()) {
       std::array<std::uint8_t, 16384> buffer;
       const ssize_t count = ::read(descriptor_, buffer.data(), buffer.size());
@@ -325,7 +357,9 @@ class Connection final : public Stream {
         sink_.closed(text);
         return;
       }
-      held_.assign(buffer.begin(), buffer.begin() + count);
+      // A guard's messages begin with an octet; one without more is a sign of life.
+      held_.assign(buffer.begin() + (guarded() ? 1 : 0), buffer.begin() + count);
+      if (held_.empty()) return;
     }
     if (sink_.received(held_)) {
       held_.clear();
@@ -342,9 +376,10 @@ class Connection final : public Stream {
   mutable std::mutex mutex_;
   State state_ = State::kWaiting;
   Clock::time_point due_ = Clock::time_point::min();
-  int descriptor_ = -1;  // changed by the I/O thread only
-  int listener_ = -1;    // I/O thread only
-  pid_t guard_pid_ = 0;  // I/O thread only
+  int descriptor_ = -1;                  // changed by the I/O thread only
+  int listener_ = -1;                    // I/O thread only
+  pid_t guard_pid_ = 0;                  // I/O thread only
+  Clock::time_point guard_silent_at_{};  // I/O thread only: from then on it hangs
   Outbox outbox_;
   Bytes message_;  // of the guard, reused
   bool line_full_ = false;

@@ -2,9 +2,10 @@
 //
 // Started by a driver's host with one end of a socket pair of whole messages. It opens the port and
 // answers with one message: a zero octet, or a one octet and why it could not. From then on it
-// passes messages both ways (guard.hpp); each of the driver's begins with one octet, its kind
-// (outbox.hpp), nothing but that is a sign of life. It ends when the driver's end of the pair is
-// closed, when the port fails, and by no signal that can be ignored.
+// passes messages both ways (guard.hpp). Each begins with one octet, the driver's with its kind
+// (outbox.hpp), its own with zero; nothing but that is a sign of life, and its own comes ten times
+// a second. It ends when the driver's end of the pair is closed, when the port fails, and by no
+// signal that can be ignored; a driver that sees no life kills it.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -32,6 +33,7 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = Guard::Time;
 constexpr int kConnectMs = 3000;
 constexpr auto kLineAgain = std::chrono::milliseconds(2);
+constexpr auto kLifeEvery = std::chrono::milliseconds(100);
 /// A port that takes nothing must not hold the guard, and with it the port, for ever.
 constexpr auto kLongestFarewell = std::chrono::milliseconds(200);
 
@@ -83,6 +85,7 @@ class Process {
       if (gone_at_ && now() - *gone_at_ > kLongestFarewell) return 1;
       wait();
       if (!from_driver() || !from_port()) return 1;
+      show_life();
       guard_.tick(now());
       if (!to_port()) return 1;
     }
@@ -94,19 +97,16 @@ class Process {
     entries_[0] = {gone_at_ ? -1 : driver_, POLLIN, 0};
     entries_[1] = {port_, static_cast<short>(guard_.output().empty() ? POLLIN : POLLIN | POLLOUT),
                    0};
-    timespec timeout{};
-    auto due = guard_.due();
+    Time due = gone_at_ ? *gone_at_ + kLongestFarewell : life_at_;
+    if (const auto tick = guard_.due()) due = std::min(due, *tick);
     if (line_full_) {
       entries_[1].events = POLLIN;
-      const Time again = now() + kLineAgain;
-      due = due ? std::min(*due, again) : again;
+      due = std::min<Time>(due, now() + kLineAgain);
     }
-    if (due) {
-      const auto rest = std::max<std::int64_t>(0, (*due - now()).count());
-      timeout = {static_cast<time_t>(rest / 1'000'000'000),
-                 static_cast<long>(rest % 1'000'000'000)};
-    }
-    if (::ppoll(entries_.data(), entries_.size(), due ? &timeout : nullptr, nullptr) < 0) {
+    const auto rest = std::max<std::int64_t>(0, (due - now()).count());
+    const timespec timeout{static_cast<time_t>(rest / 1'000'000'000),
+                           static_cast<long>(rest % 1'000'000'000)};
+    if (::ppoll(entries_.data(), entries_.size(), &timeout, nullptr) < 0) {
       entries_[0].revents = entries_[1].revents = 0;
     }
   }
@@ -132,16 +132,26 @@ class Process {
 
   bool from_port() {
     if ((entries_[1].revents & (POLLIN | POLLHUP | POLLERR)) == 0) return true;
-    const ssize_t count = ::read(port_, buffer_.data(), 4096);
+    buffer_[0] = 0;
+    const ssize_t count = ::read(port_, buffer_.data() + 1, 4096);
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
     if (count == 0) return complain("closed by the other side");
     if (count < 0) return complain(std::strerror(errno));
-    // A driver that does not read loses what it does not read; the port is never held up.
-    if (!gone_at_) {
-      static_cast<void>(!::send(driver_, buffer_.data(), static_cast<std::size_t>(count),
-                                MSG_DONTWAIT | MSG_NOSIGNAL));
-    }
+    tell_driver(static_cast<std::size_t>(count) + 1);
     return true;
+  }
+
+  void show_life() {
+    if (now() < life_at_) return;
+    buffer_[0] = 0;
+    tell_driver(1);
+  }
+
+  /// A driver that does not read loses what it does not read; the port is never held up.
+  void tell_driver(std::size_t size) {
+    life_at_ = now() + kLifeEvery;
+    if (gone_at_) return;
+    static_cast<void>(!::send(driver_, buffer_.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL));
   }
 
   bool to_port() {
@@ -167,6 +177,7 @@ class Process {
   const int port_;
   Guard guard_;
   std::optional<Time> gone_at_;
+  Time life_at_{};
   bool line_full_ = false;
   std::array<pollfd, 2> entries_{};
   std::array<std::uint8_t, Outbox::kMostBytes + 1> buffer_{};

@@ -4,10 +4,13 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <pty.h>
+#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <condition_variable>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 
 #include "runtime/dds/streams.hpp"
@@ -86,6 +89,11 @@ class Server {
   void drop() {
     if (connection_ >= 0) ::close(connection_);
     connection_ = -1;
+  }
+  /// It says nothing and stays.
+  bool stays(std::chrono::milliseconds so_long) const {
+    pollfd entry{connection_, POLLIN, 0};
+    return ::poll(&entry, 1, static_cast<int>(so_long.count())) == 0;
   }
   void stop() {
     if (listener_ >= 0) ::close(listener_);
@@ -394,6 +402,71 @@ TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
   std::string heard;
   while (heard.find("drive") == std::string::npos) heard += server.read(1);
   EXPECT_EQ(heard.find_first_not_of("[stop]drive"), std::string::npos) << heard;
+}
+
+/// The guard that this process started and that lives; 0 when there is none.
+pid_t guard_process() {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+    std::ifstream file(entry.path() / "stat");
+    pid_t pid = 0, parent = 0;
+    std::string name, state;
+    if (file >> pid >> name >> state >> parent && parent == ::getpid() && name == "(usher-guard)" &&
+        state != "Z")
+      return pid;
+  }
+  return 0;
+}
+
+TEST(GuardedStreams, ReplaceAGuardThatHangs) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  const pid_t guard = guard_process();
+  ASSERT_GT(guard, 0);
+  ::kill(guard, SIGSTOP);
+  ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
+  EXPECT_THAT(log.closed[0], HasSubstr("its guard hung and was killed"));
+  EXPECT_FALSE(stream.write(bytes("x")));
+  server.drop();
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 2; }));
+  EXPECT_EQ(::kill(guard, 0), -1) << "one owner of the port";
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  EXPECT_EQ(server.read(5), "drive");
+}
+
+TEST(GuardedStreams, EndAGuardThatHangsWhenTheyReopen) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  const pid_t guard = guard_process();
+  ::kill(guard, SIGSTOP);
+  stream.reopen({});
+  server.drop();
+  server.accept();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 2; }));
+  EXPECT_EQ(::kill(guard, 0), -1);
+}
+
+TEST(GuardedStreams, KeepAGuardWhenNobodySaysAnythingOrTheDriverDoesNotRead) {
+  Server server;
+  Log log;
+  log.refusals = 100;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+  server.accept();
+  EXPECT_TRUE(server.stays(1200ms));
+  server.send("moving");
+  ASSERT_TRUE(log.wait([&] { return log.received == "moving"; }));
+  EXPECT_TRUE(stream.open());
+  EXPECT_THAT(log.closed, testing::IsEmpty());
 }
 
 TEST(GuardedStreams, SayWhyThePortCannotBeOpened) {
