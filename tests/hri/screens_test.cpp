@@ -30,6 +30,7 @@ using std::chrono::milliseconds;
 
 const std::string kTexts = USHER_SOURCE_DIR "/config/dialogue";
 const std::vector<std::string> kLanguages{"en", "mi", "de", "fr"};
+constexpr double kMapShare = 0.28;  ///< of a page of 3:2; the building is 1.4 times as wide as high
 constexpr std::array<std::string_view, 3> kSpeechTexts{"did_you_say", "by_touch", "held"};
 
 /// The places of the office, with the longest names that a building might have among them.
@@ -288,6 +289,7 @@ class Screens : public testing::Test {
         EXPECT_GE(box.width(), tablet::Sizes::kButtonWidth * u - 1.0) << name;
         EXPECT_GE(box.height(), tablet::Sizes::kButtonHeight * u - 1.0) << name;
         EXPECT_FALSE(item->property("cut").toBool()) << name << " is too narrow for its label";
+        if (name == "button:languages") judge_globe(*item, u);
       }
     }
     for (std::size_t i = 0; i < solid.size(); ++i) {
@@ -297,11 +299,49 @@ class Screens : public testing::Test {
             << solid[i].first << " lies on " << solid[j].first;
       }
     }
-    if (auto* plan = view_->rootObject()->findChild<tablet::FloorPlanItem*>("floorPlan")) {
-      const auto& labels = plan->labels();
-      for (std::size_t i = 0; i < labels.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(labels[i].intersects(labels[j]));
-      }
+    for (const QQuickItem* item : items) {
+      if (const auto* plan = qobject_cast<const tablet::FloorPlanItem*>(item)) judge_map(*plan, u);
+    }
+  }
+
+  /// Drawn, and not on the word beside it.
+  void judge_globe(const QQuickItem& button, double u) {
+    const auto* globe = button.findChild<QQuickItem*>("globe");
+    ASSERT_TRUE(globe != nullptr && globe->isVisible());
+    const QRect box = scene(globe).toAlignedRect();
+    EXPECT_GE(box.width(), 80.0 * u);
+    const QImage sign = picture().copy(box);
+    int ink = 0;
+    for (int y = 0; y < sign.height(); ++y) {
+      for (int x = 0; x < sign.width(); ++x) ink += qGray(sign.pixel(x, y)) < 100 ? 1 : 0;
+    }
+    EXPECT_NEAR(ink, 0.35 * box.width() * box.height(), 0.2 * box.width() * box.height());
+    const QList<QQuickItem*> parts = button.childItems();
+    for (const QQuickItem* part : parts) {
+      if (!QString(part->metaObject()->className()).startsWith("QQuickText")) continue;
+      const double free = (part->width() - part->property("contentWidth").toDouble()) / 2;
+      EXPECT_GE(scene(part).left() + free, scene(globe).right());
+    }
+  }
+
+  /// The map is most of what the page has room for, and its names can be read.
+  void judge_map(const tablet::FloorPlanItem& plan, double u) {
+    EXPECT_GE(plan.width() * plan.height(),
+              kMapShare * tablet::Sizes::kWidth * u * tablet::Sizes::kHeight * u);
+    const auto* title = view_->rootObject()->findChild<QQuickItem*>("title");
+    EXPECT_LE(title->property("lineCount").toInt(), 2)
+        << title->property("text").toString().toStdString();
+    std::vector<QRectF> apart = plan.labels();
+    EXPECT_GE(apart.size(), model_.places().size() / 2) << "too few names find room";
+    for (const QRectF& label : apart) EXPECT_GE(label.height(), tablet::Sizes::kMapName * u - 1.0);
+    const auto* here = plan.findChild<QQuickItem*>("here");
+    if (here->isVisible()) {
+      apart.emplace_back(here->x(), here->y(), here->width(), here->height());
+      apart.push_back(plan.robot_area());
+    }
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      for (std::size_t j = 0; j < i && j < plan.labels().size(); ++j)
+        EXPECT_FALSE(apart[i].intersects(apart[j])) << "name " << j;
     }
   }
 
@@ -387,7 +427,24 @@ TEST_F(Screens, OfTheMeetingAssistantHaveRoomInEveryLanguage) {
   }
 }
 
-TEST_F(Screens, ReactToATouchWithinATenthOfASecond) {
+TEST_F(Screens, TitleTheMapInTwoLinesWhateverThePlace) {
+  const auto phrases = *phrases::PhraseBook::load(kTexts, kLanguages, "guide", guide::kTextKeys);
+  for (std::size_t language = 0; language < kLanguages.size(); ++language) {
+    for (const auto& place : office()) {
+      tablet::View view;
+      view.page = tablet::Page::kMap;
+      view.place = place.name;
+      view.title = phrases::filled(
+          phrases.phrase(language, static_cast<std::size_t>(guide::Text::kPlaceShow)),
+          {{"place", place.label(kLanguages[language])}});
+      draw(view);
+      judge(view.title);
+    }
+  }
+}
+
+/// How soon, `usher bench tablet` measures.
+TEST_F(Screens, ShowATouchAndPassItOn) {
   tablet::View view;
   view.page = tablet::Page::kButtons;
   view.title = "?";

@@ -48,6 +48,7 @@ struct Sizes {
   static constexpr double kTitle = 72.0 * kTextUnit;  ///< [px]
   static constexpr double kButtonText = 60.0 * kTextUnit;
   static constexpr double kStatus = 50.0 * kTextUnit;
+  static constexpr double kMapName = 56.0;  ///< [px] of places; small letters of 3.6 mm
 };
 
 }  // namespace usher::tablet

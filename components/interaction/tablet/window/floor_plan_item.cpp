@@ -1,11 +1,36 @@
 #include "interaction/tablet/window/floor_plan_item.hpp"
 
-#include <QFontMetricsF>
+#include <QLineF>
 #include <QPainter>
-#include <QPainterPath>
 #include <algorithm>
 
 namespace usher::tablet {
+
+namespace {
+
+constexpr double kRobotReach = 0.85;  ///< of the size of text
+
+bool crosses(const QRectF& box, const QLineF& line) {
+  if (box.contains(line.p1()) || box.contains(line.p2())) return true;
+  const QLineF sides[] = {{box.topLeft(), box.topRight()},
+                          {box.bottomLeft(), box.bottomRight()},
+                          {box.topLeft(), box.bottomLeft()},
+                          {box.topRight(), box.bottomRight()}};
+  return std::any_of(std::begin(sides), std::end(sides), [&](const QLineF& side) {
+    return side.intersects(line, nullptr) == QLineF::BoundedIntersection;
+  });
+}
+
+/// Parted at the space nearest to its middle; as it is without one.
+QString in_two_lines(QString name) {
+  const qsizetype middle = name.size() / 2;
+  const qsizetype before = name.lastIndexOf(' ', middle), after = name.indexOf(' ', middle);
+  const bool near = before >= 0 && (after < 0 || middle - before <= after - middle);
+  const qsizetype at = near ? before : after;
+  return at < 0 ? name : name.replace(at, 1, '\n');
+}
+
+}  // namespace
 
 FloorPlanItem::FloorPlanItem(QQuickItem* parent) : QQuickPaintedItem(parent) {
   setAntialiasing(true);
@@ -23,6 +48,16 @@ void FloorPlanItem::set_screen(ScreenModel* screen) {
   update();
 }
 
+/// A robot that stands sways a little; nothing is painted anew for that.
+void FloorPlanItem::keep_off(QRectF& area, const QRectF& now) {
+  const QPointF moved = now.topLeft() - area.topLeft(),
+                grown = now.bottomRight() - area.bottomRight();
+  if (moved.manhattanLength() + grown.manhattanLength() < text_size_ * 0.2) return;
+  area = now;
+  emit areasChanged();
+  update();
+}
+
 void FloorPlanItem::paint(QPainter* painter) {
   labels_.clear();
   if (screen_ == nullptr || screen_->plan().empty()) return;
@@ -30,29 +65,67 @@ void FloorPlanItem::paint(QPainter* painter) {
   painter->setRenderHint(QPainter::SmoothPixmapTransform, true);
   painter->setRenderHint(QPainter::Antialiasing, true);
   painter->drawImage(QRectF(0, 0, width(), height()), screen_->building());
-  if (screen_->view().page == Page::kJourney) paint_route(painter, scale);
-  paint_places(painter, scale);
+  const QPolygonF driven = route(scale);
+  paint_route(painter, driven);
+  paint_places(painter, scale, driven);
 }
 
-void FloorPlanItem::paint_route(QPainter* painter, double scale) const {
-  QPainterPath path;
-  bool first = true;
+QPolygonF FloorPlanItem::route(double scale) const {
+  QPolygonF points;
+  if (screen_->view().page != Page::kJourney) return points;
   for (const auto& point : screen_->route()) {
     const auto at = screen_->plan().to_pixels(point, scale);
-    if (first) {
-      path.moveTo(at.x(), at.y());
-    } else {
-      path.lineTo(at.x(), at.y());
-    }
-    first = false;
+    points.append(QPointF(at.x(), at.y()));
   }
-  QPen pen(Theme::qt(kPalette.route), text_size_ * 0.25);
-  pen.setCapStyle(Qt::RoundCap);
-  pen.setJoinStyle(Qt::RoundJoin);
-  painter->strokePath(path, pen);
+  return points;
 }
 
-void FloorPlanItem::paint_places(QPainter* painter, double scale) {
+void FloorPlanItem::paint_route(QPainter* painter, const QPolygonF& route) const {
+  QPen pen(Theme::qt(kPalette.route), text_size_ * 0.18);
+  pen.setCapStyle(Qt::RoundCap);
+  pen.setJoinStyle(Qt::RoundJoin);
+  painter->setPen(pen);
+  painter->drawPolyline(route);
+}
+
+bool FloorPlanItem::free(const QRectF& box, const QPolygonF& route) const {
+  if (!QRectF(0, 0, width(), height()).contains(box)) return false;
+  if (box.intersects(robot_area_) || box.intersects(here_area_)) return false;
+  const QRectF wide =
+      box.adjusted(-text_size_ * 0.2, -text_size_ * 0.2, text_size_ * 0.2, text_size_ * 0.2);
+  if (!route.isEmpty()) {  // where the robot is
+    const double reach = text_size_ * kRobotReach;
+    if (box.adjusted(-reach, -reach, reach, reach).contains(route.first())) return false;
+  }
+  for (qsizetype i = 1; i < route.size(); ++i) {
+    if (crosses(wide, QLineF(route[i - 1], route[i]))) return false;
+  }
+  return std::none_of(labels_.begin(), labels_.end(),
+                      [&](const QRectF& other) { return other.intersects(box); });
+}
+
+/// Below the place or above it, in one line or two; else beside it.
+std::optional<FloorPlanItem::Name> FloorPlanItem::room_for(const QString& name, const QPointF& at,
+                                                           double radius,
+                                                           const QFontMetricsF& metrics,
+                                                           const QPolygonF& route) const {
+  const QString parted = in_two_lines(name);
+  for (const bool beside : {false, true}) {
+    for (const QString& text : {beside ? parted : name, beside ? name : parted}) {
+      QRectF box = metrics.boundingRect(QRectF(), Qt::AlignCenter, text).adjusted(-4, 0, 4, 0);
+      const double most_left = std::max(0.0, width() - box.width());
+      for (const double side : {1.0, -1.0}) {
+        box.moveCenter(at + side * (beside ? QPointF(radius + box.width() / 2, 0)
+                                           : QPointF(0, radius + box.height() / 2)));
+        if (!beside) box.moveLeft(std::clamp(box.left(), 0.0, most_left));
+        if (free(box, route)) return Name{text, box};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+void FloorPlanItem::paint_places(QPainter* painter, double scale, const QPolygonF& route) {
   QFont font = painter->font();
   font.setPixelSize(std::max(8, static_cast<int>(text_size_)));
   painter->setFont(font);
@@ -66,25 +139,20 @@ void FloorPlanItem::paint_places(QPainter* painter, double scale) {
     const bool marked = place->name == screen_->view().place;
     const auto at = screen_->plan().to_pixels(place->at, scale);
     const QPointF point(at.x(), at.y());
-    const double radius = text_size_ * (marked ? 0.45 : 0.16);
+    const double radius = text_size_ * (marked ? 0.35 : 0.12);
     painter->setPen(Qt::NoPen);
     painter->setBrush(Theme::qt(marked ? kPalette.goal : kPalette.status));
     painter->drawEllipse(point, radius, radius);
-    const QString name = QString::fromStdString(place->title.empty() ? place->name : place->title);
-    QRectF box = metrics.boundingRect(name).adjusted(-4, -2, 4, 2);
-    box.moveCenter(point + QPointF(0, radius + box.height() / 2));
-    box.moveLeft(std::clamp(box.left(), 0.0, std::max(0.0, width() - box.width())));
-    if (box.bottom() > height()) box.moveBottom(at.y() - radius);
-    const bool free = std::none_of(labels_.begin(), labels_.end(),
-                                   [&](const QRectF& other) { return other.intersects(box); });
-    if (!free) continue;
-    labels_.push_back(box);
+    const QString title = QString::fromStdString(place->title.empty() ? place->name : place->title);
+    const auto name = room_for(title, point, radius, metrics, route);
+    if (!name) continue;
+    labels_.push_back(name->box);
     painter->setBrush(Theme::qt(kPalette.background));
-    painter->setOpacity(0.8);
-    painter->drawRoundedRect(box, 6, 6);
+    painter->setOpacity(0.85);
+    painter->drawRoundedRect(name->box, 6, 6);
     painter->setOpacity(1.0);
     painter->setPen(Theme::qt(marked ? kPalette.goal : kPalette.text));
-    painter->drawText(box, Qt::AlignCenter, name);
+    painter->drawText(name->box, Qt::AlignCenter, name->text);
   }
 }
 

@@ -37,6 +37,7 @@ class Theme : public QObject {
   Q_PROPERTY(double titleSize READ titleSize CONSTANT)
   Q_PROPERTY(double buttonTextSize READ buttonTextSize CONSTANT)
   Q_PROPERTY(double statusSize READ statusSize CONSTANT)
+  Q_PROPERTY(double mapNameSize READ mapNameSize CONSTANT)
 
  public:
   static QColor qt(const Color& color) { return {color.red, color.green, color.blue}; }
@@ -56,6 +57,7 @@ class Theme : public QObject {
   double titleSize() const { return Sizes::kTitle; }
   double buttonTextSize() const { return Sizes::kButtonText; }
   double statusSize() const { return Sizes::kStatus; }
+  double mapNameSize() const { return Sizes::kMapName; }
   /// Of a button, by its kind.
   Q_INVOKABLE QColor button(int kind) const;
 };

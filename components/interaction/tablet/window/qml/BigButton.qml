@@ -15,7 +15,10 @@ FocusScope {
     property double textSize: Theme.buttonTextSize * u
     // A stop must not wait for the finger to leave.
     property bool onPress: false
-    readonly property double wanted: Math.max(Theme.buttonWidth * u, caption.implicitWidth + 72 * u)
+    // Who chose the wrong language, or none, finds the way back without reading.
+    readonly property bool signed: buttonId === "languages"
+    readonly property double signRoom: signed ? globe.width + 18 * u : 0
+    readonly property double wanted: Math.max(Theme.buttonWidth * u, caption.implicitWidth + signRoom + 72 * u)
     readonly property bool cut: caption.truncated
     readonly property bool down: area.pressed || pending
 
@@ -40,10 +43,21 @@ FocusScope {
         border.color: Theme.focus
         scale: button.down ? 0.97 : 1
     }
+    GlobeItem {
+        id: globe
+        objectName: "globe"
+        visible: button.signed
+        x: (parent.width - caption.implicitWidth - button.signRoom) / 2
+        anchors.verticalCenter: parent.verticalCenter
+        width: 84 * button.u
+        height: width
+        color: caption.color
+    }
     Text {
         id: caption
         anchors.centerIn: parent
-        width: parent.width - 24 * button.u
+        anchors.horizontalCenterOffset: button.signRoom / 2
+        width: parent.width - button.signRoom - 24 * button.u
         horizontalAlignment: Text.AlignHCenter
         text: button.label
         color: button.active ? Theme.ink : Theme.title

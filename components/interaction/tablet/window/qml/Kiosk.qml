@@ -25,7 +25,7 @@ Item {
         anchors.top: parent.top
         anchors.leftMargin: kiosk.margin
         anchors.rightMargin: kiosk.margin
-        anchors.topMargin: 40 * kiosk.u
+        anchors.topMargin: (kiosk.mapPage ? 24 : 40) * kiosk.u
         text: kiosk.model.title
         color: Theme.title
         font.pixelSize: Theme.titleSize * kiosk.u
@@ -43,7 +43,7 @@ Item {
         anchors.top: title.bottom
         anchors.topMargin: 12 * kiosk.u
         text: kiosk.model.text
-        visible: text !== "" && text !== kiosk.model.title
+        visible: !kiosk.mapPage && text !== "" && text !== kiosk.model.title
         color: Theme.text
         font.pixelSize: Theme.statusSize * kiosk.u
         wrapMode: Text.WordWrap
@@ -56,9 +56,9 @@ Item {
         anchors.left: title.left
         anchors.right: title.right
         anchors.top: body.visible ? body.bottom : title.bottom
-        anchors.topMargin: 36 * kiosk.u
+        anchors.topMargin: (kiosk.mapPage ? 20 : 36) * kiosk.u
         anchors.bottom: bar.top
-        anchors.bottomMargin: 28 * kiosk.u
+        anchors.bottomMargin: (kiosk.mapPage ? 20 : 28) * kiosk.u
 
         Loader {
             anchors.fill: parent

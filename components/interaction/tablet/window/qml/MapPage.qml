@@ -1,7 +1,8 @@
 import QtQuick
 import Usher.Tablet
 
-// The map, beside it what can be done: the buttons, and on a journey the way that is left.
+// The map, as high as the page has room; beside it what is told and what can be done: on a journey
+// the way that is left, the text, the buttons.
 Item {
     id: page
 
@@ -32,16 +33,14 @@ Item {
         height: parent.height + page.below
 
         Column {
-            id: way
             anchors.top: parent.top
             width: parent.width
             spacing: 20 * page.u
-            visible: page.journey
             Text {
                 objectName: "way"
                 width: parent.width
                 text: page.model.wayText
-                visible: text !== ""
+                visible: page.journey && text !== ""
                 color: Theme.title
                 font.pixelSize: Theme.buttonTextSize * page.u
                 font.weight: Font.DemiBold
@@ -52,13 +51,25 @@ Item {
                 height: 28 * page.u
                 radius: height / 2
                 color: Theme.surface
-                visible: page.model.progress >= 0
+                visible: page.journey && page.model.progress >= 0
                 Rectangle {
                     width: Math.max(parent.height, parent.width * Math.min(1, page.model.progress))
                     height: parent.height
                     radius: height / 2
                     color: Theme.yes
                 }
+            }
+            Text {
+                objectName: "body"
+                width: parent.width
+                text: page.model.text
+                visible: text !== ""
+                color: Theme.text
+                font.pixelSize: Theme.statusSize * page.u
+                horizontalAlignment: Text.AlignHCenter
+                wrapMode: Text.WordWrap
+                Accessible.role: Accessible.StaticText
+                Accessible.name: text
             }
         }
         Column {
@@ -71,7 +82,7 @@ Item {
                 visible: buttons.count > 0
                 stacked: true
                 fill: page.side
-                buttonHeight: 300 * page.u
+                buttonHeight: 200 * page.u
                 textSize: 100 * page.u
                 onPressed: buttonId => page.model.press(buttonId)
             }

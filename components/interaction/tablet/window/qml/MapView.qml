@@ -27,7 +27,9 @@ Item {
         width: view.model.planWidth * view.fit
         height: view.model.planHeight * view.fit
         screen: view.model
-        textSize: 40 * view.u
+        textSize: Theme.mapNameSize * view.u
+        robotArea: here.visible ? robot.area : Qt.rect(0, 0, 0, 0)
+        hereArea: here.visible ? Qt.rect(here.x, here.y, here.width, here.height) : Qt.rect(0, 0, 0, 0)
 
         Item {
             id: robot
@@ -38,6 +40,7 @@ Item {
             property double planY: view.model.robotY
             x: planX * view.fit
             y: planY * view.fit
+            readonly property rect area: Qt.rect(x - halo.width / 2, y - halo.width / 2, halo.width, halo.width)
             Behavior on planX {
                 enabled: view.animate && robot.visible
                 NumberAnimation { duration: 200 }
@@ -92,7 +95,7 @@ Item {
                 anchors.centerIn: parent
                 text: view.model.hereLabel
                 color: Theme.ink
-                font.pixelSize: 50 * view.u
+                font.pixelSize: Theme.mapNameSize * view.u
                 font.weight: Font.DemiBold
             }
         }
