@@ -9,6 +9,7 @@
 #include "foundation/text/suggestion.hpp"
 #include "idl/topics.hpp"
 #include "operations/manifest/dialogue.hpp"
+#include "operations/manifest/places.hpp"
 #include "operations/manifest/wiring.hpp"
 #include "runtime/parameters/interpret.hpp"
 
@@ -334,6 +335,7 @@ Deployment resolve(const Manifest& manifest, const Contracts& contracts,
   Resolver(manifest, contracts, deployment).run(overrides);
   judge_wiring(manifest, contracts, deployment.findings);
   judge_dialogue(contracts, deployment);
+  judge_titles(deployment);
   for (const auto& component : manifest.components) {
     const auto contract = contracts.find(component.type);
     if (contract != contracts.end())

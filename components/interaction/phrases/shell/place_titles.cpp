@@ -1,5 +1,9 @@
 #include "interaction/phrases/shell/place_titles.hpp"
 
+#include <algorithm>
+
+#include "wire/site_locations.hpp"
+
 namespace usher::phrases {
 
 PlaceTitles read_place_titles(runtime::Host& host) {
@@ -10,9 +14,18 @@ PlaceTitles read_place_titles(runtime::Host& host) {
        {"language", ParameterKind::kText, "-", {}, "ISO 639-1."},
        {"title", ParameterKind::kText, "-", {}, "For people who chose that language."}},
       "Titles of places in single languages; else the location's own counts.");
+  const auto locations = wire::read_locations(host.parameters());
   PlaceTitles titles;
   for (const auto& record : records) {
     const auto& place = record.text("place");
+    const bool known = std::ranges::any_of(
+        locations, [&](const auto& location) { return location.name == place; });
+    if (!known) {
+      std::string names;
+      for (const auto& location : locations) names += (names.empty() ? "" : ", ") + location.name;
+      host.fault("site.titles must be of places among site.locations (" + names + "), got '" +
+                 place + "'");
+    }
     const auto& language = record.text("language");
     if (!titles[place].emplace(language, record.text("title")).second)
       host.fault("site.titles: '" + place + "' has two titles in '" + language + "'");

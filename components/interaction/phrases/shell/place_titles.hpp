@@ -10,8 +10,8 @@ namespace usher::phrases {
 /// By place, then by language: what people call it there.
 using PlaceTitles = std::map<std::string, std::map<std::string, std::string>>;
 
-/// The site's titles of places in other languages than that of its `locations` (`site.titles`). A
-/// place with two titles in one language is a fault.
+/// The site's titles of places in other languages than that of its `locations` (`site.titles`). One
+/// of no place among the `locations`, or a second one in a language, is a fault.
 PlaceTitles read_place_titles(runtime::Host& host);
 
 }  // namespace usher::phrases

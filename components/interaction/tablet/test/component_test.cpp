@@ -51,10 +51,28 @@ class Component : public testing::Test {
                            }},
                           "texts: " USHER_SOURCE_DIR
                           "/config/dialogue/en.yaml\n"
+                          "site.locations: [{name: kitchen, title: Kitchen, x: 0, y: 0, yaw: 0}]\n"
                           "site.titles: [{place: kitchen, language: de, title: Küche}]"};
   std::uint64_t request_seen_ = 0;
   bool serves_ = false;
 };
+
+TEST(ComponentWithTitles, RefusesOneOfAPlaceThatTheSiteDoesNotHave) {
+  NullWindow window;
+  const runtime::ComponentFactory factory{
+      "tablet", [&](runtime::Host& host) {
+        return std::unique_ptr<runtime::Component>(std::make_unique<TabletComponent>(host, window));
+      }};
+  const auto made = runtime::TestHost::try_make(
+      factory,
+      "site.locations: [{name: kitchen, title: Kitchen, x: 0, y: 0, yaw: 0}]\n"
+      "site.titles: [{place: kichen, language: de, title: Küche}]");
+  ASSERT_FALSE(made.ok());
+  EXPECT_NE(made.error().find("site.titles must be of places among site.locations (kitchen), "
+                              "got 'kichen'"),
+            std::string::npos)
+      << made.error();
+}
 
 TEST_F(Component, NamesThePlacesOnTheMapInTheLanguageOfTheDialogue) {
   usher_msgs::msg::Locations locations;

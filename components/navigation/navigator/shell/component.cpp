@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/site_locations.hpp"
 
 namespace usher::navigator {
 
 namespace {
 
 using runtime::HealthState;
-using runtime::ParameterKind;
 using std::chrono::milliseconds;
 namespace supervisor_state = usher_msgs::msg::SupervisorStatus_Constants;
 
@@ -72,20 +73,8 @@ NavigatorConfig NavigatorComponent::read_parameters(runtime::Parameters& paramet
 
 Locations NavigatorComponent::read_locations(runtime::Host& host) {
   std::vector<Location> locations;
-  const auto records = host.parameters().records(
-      "site.locations",
-      {{"name", ParameterKind::kText, "-", {}, "Identifier, unique."},
-       {"title", ParameterKind::kText, "-", {}, "For people."},
-       {"x", ParameterKind::kNumber, "m", {-1e4, 1e4}, "Where the robot stands, in map."},
-       {"y", ParameterKind::kNumber, "m", {-1e4, 1e4}, "The same."},
-       {"yaw", ParameterKind::kNumber, "rad", {-6.3, 6.3}, "Which way it looks."}},
-      "Known locations of the site.");
-  locations.reserve(records.size());
-  for (const auto& record : records) {
-    locations.push_back({record.text("name"),
-                         record.text("title"),
-                         {record.number("x"), record.number("y"), record.number("yaw")}});
-  }
+  for (auto& each : wire::read_locations(host.parameters()))
+    locations.push_back({std::move(each.name), std::move(each.title), each.pose});
   auto made = Locations::create(std::move(locations));
   if (!made) host.fault("site.locations: " + made.error());
   return std::move(made).value();
