@@ -16,7 +16,9 @@ using std::chrono::milliseconds;
 namespace state = usher_msgs::msg::SpeechStatus_Constants;
 constexpr std::size_t kTilt = 2;
 
-/// A microphone in a silent room; the loudspeaker takes what it gets.
+bool voice = false;  ///< of the visitor
+
+/// A microphone in a room that is silent but for the visitor; the loudspeaker takes what it gets.
 class QuietCard final : public speech::SoundCard {
  public:
   Status open_loudspeaker(const std::string&, int rate) override {
@@ -28,12 +30,15 @@ class QuietCard final : public speech::SoundCard {
   Status write(std::span<const std::int16_t>) override { return {}; }
   std::uint64_t unheard() override { return 0; }
   Status read(std::vector<std::int16_t>& samples) override {
-    samples.insert(samples.end(), 320, 0);
+    for (int i = 0; i < 320; ++i)
+      samples.push_back(voice ? static_cast<std::int16_t>(9600.0 * std::sin(0.1 * (at_ += 1.0)))
+                              : std::int16_t{0});
     return {};
   }
 
  private:
   std::size_t rate_ = 8000;
+  double at_ = 0.0;
 };
 
 class ReadyRecognizer final : public speech::Recognizer {
@@ -75,11 +80,11 @@ class ListeningTorso : public testing::Test {
                           [this](const auto& said, const auto&) { speech_state_ = said.state(); });
     run(2000);
   }
-  void show(std::uint64_t id, bool listens) {
+  void show(std::uint64_t id, bool listens, const std::string& spoken = "Go?") {
     usher_msgs::msg::DialogueScreen screen;
     screen.id(id);
     screen.language("en");
-    screen.spoken("Go?");
+    screen.spoken(spoken);
     screen.spoken_id(id);
     screen.listens(listens);
     screen.options().emplace_back().id("stop");
@@ -137,6 +142,25 @@ TEST_F(ListeningTorso, PosesWhileNoAnswerIsWaitedForAndIsStillWhileOneIs) {
   show(3, false);
   run(3000);
   EXPECT_NEAR(tilt(), 0.0, 1e-3);
+}
+
+TEST_F(ListeningTorso, IsStillAsSoonAsTheVisitorSpeaksThoughTheRobotDoes) {
+  show(1, true, std::string(300, 'a'));
+  run(1000);
+  bearing_ = 1.0;
+  run(200);
+  ASSERT_EQ(speech_state_, state::STATE_SPEAKING);
+  voice = true;
+  run(500);
+  const double held = tilt();
+  EXPECT_GT(held, 0.0);
+  EXPECT_LT(held, 0.15);
+  run(500);
+  EXPECT_EQ(speech_state_, state::STATE_SPEAKING);
+  EXPECT_EQ(tilt(), held);
+  voice = false;
+  run(3000);
+  EXPECT_NEAR(tilt(), 0.1745, 1e-3);
 }
 
 TEST_F(ListeningTorso, RestsOnTheWayAlthoughAStopIsHeard) {

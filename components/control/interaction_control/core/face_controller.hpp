@@ -32,6 +32,8 @@ class FaceController {
 
   /// It faces what it was told to.
   bool faces() const { return mode_ == Mode::kFace && !turning_; }
+  /// It turns to find somebody.
+  bool searches() const { return mode_ == Mode::kSearch; }
 
  private:
   enum class Mode : std::uint8_t { kStand, kFace, kSearch };

@@ -129,8 +129,14 @@ Occasion InteractionControlComponent::occasion() const {
 bool InteractionControlComponent::listens() const {
   namespace state = usher_msgs::msg::SpeechStatus_Constants;
   const auto* speech = speech_.fresh();
-  return speech != nullptr &&
-         (speech->state() == state::STATE_LISTENING || speech->state() == state::STATE_ASKING);
+  return speech != nullptr && (speech->hears() || speech->state() == state::STATE_LISTENING ||
+                               speech->state() == state::STATE_ASKING);
+}
+
+/// Somebody speaks, whose words the motors would drown.
+bool InteractionControlComponent::hears() const {
+  const auto* speech = speech_.fresh();
+  return speech != nullptr && speech->hears();
 }
 
 /// The guide has nobody to serve, and nobody is there either.
@@ -182,9 +188,11 @@ void InteractionControlComponent::drive(const std::optional<Pose2>& odom_T_base)
       face_.stand();
     }
   }
+  // Whoever talks somewhere in the room does not end the search.
+  const bool hushes = hears() && !face_.searches();
   const auto* enable = enable_.fresh();
   geometry::Twist2 twist;
-  if (odom_T_base && enable != nullptr && enable->interaction_control())
+  if (odom_T_base && enable != nullptr && enable->interaction_control() && !hushes)
     twist.w = face_.step(odom_T_base->yaw);
   auto message = wire::to_message(host_.now(), twist);
   message.header().frame_id(frames::kBaseFootprint);

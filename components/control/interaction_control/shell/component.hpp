@@ -24,6 +24,7 @@ class InteractionControlComponent final : public runtime::Component {
   std::vector<Sighting> people_around(const geometry::Pose2& odom_T_base);
   Occasion occasion() const;
   bool listens() const;
+  bool hears() const;
   bool seeks() const;
   std::optional<kinematics::TorsoPose> torso() const;
   void pose(const std::optional<geometry::Pose2>& odom_T_base);

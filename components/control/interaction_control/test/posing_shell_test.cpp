@@ -40,7 +40,8 @@ std::string parameters() {
 struct Bench {
   runtime::TestHost host{
       runtime::component_factory<InteractionControlComponent>("interaction_control"), parameters()};
-  bool interacts = true, drives = false, torso_speaks = true, people_known = true, hears = false;
+  bool interacts = true, drives = false, torso_speaks = true, people_known = true, listens = false,
+       hears = false;
   double x = 1.0, y = 0.0, yaw = 0.0;  // of the person, of the robot; in odom
   double level = 0.0;
   bool guide_speaks = false, seeks = false;
@@ -75,7 +76,8 @@ struct Bench {
       if (torso_speaks) host.publish(topics::kTorsoStatus, torso);
       usher_msgs::msg::SpeechStatus said;
       said.header(wire::header(host.now(), ""));
-      said.state(hears ? speech::STATE_LISTENING : speech::STATE_SPEAKING);
+      said.state(listens ? speech::STATE_LISTENING : speech::STATE_SPEAKING);
+      said.hears(hears);
       host.publish(topics::kSpeechStatus, said);
       usher_msgs::msg::SpeechLevel loud;
       loud.header(wire::header(host.now(), ""));
@@ -200,7 +202,7 @@ TEST(PosingShell, HoldsStillWhileItListensOrMayNotPoseAndRestsOnTheWay) {
   bench.run(1000);
   bench.yaw = -1.0;
   bench.run(400);
-  bench.hears = true;
+  bench.listens = true;
   bench.run(300);
   const double held = bench.tilt();
   EXPECT_GT(held, 0.0);
@@ -208,7 +210,7 @@ TEST(PosingShell, HoldsStillWhileItListensOrMayNotPoseAndRestsOnTheWay) {
   EXPECT_TRUE(bench.status().listens());
   bench.run(2000);
   EXPECT_EQ(bench.tilt(), held);
-  bench.hears = bench.interacts = false;
+  bench.listens = bench.interacts = false;
   bench.run(2000);
   EXPECT_EQ(bench.tilt(), held);
   EXPECT_FALSE(bench.status().enable_interaction());
@@ -220,6 +222,43 @@ TEST(PosingShell, HoldsStillWhileItListensOrMayNotPoseAndRestsOnTheWay) {
   bench.run(3000);
   EXPECT_EQ(bench.status().pose(), "nominal");
   EXPECT_EQ(bench.tilt(), 0.0);
+}
+
+TEST(PosingShell, HoldsTorsoAndBaseWhileSomebodySpeaksThoughTheRobotDoes) {
+  Bench bench;
+  bench.run(1000);
+  bench.yaw = -1.0;
+  bench.run(400);
+  bench.hears = true;
+  bench.run(300);
+  const double held = bench.tilt();
+  EXPECT_GT(held, 0.0);
+  EXPECT_LT(held, 0.17);
+  EXPECT_TRUE(bench.status().listens());
+  bench.run(2000);
+  EXPECT_EQ(bench.tilt(), held);
+  bench.hears = false;
+  bench.run(2000);
+  EXPECT_NEAR(bench.tilt(), 0.1745, 1e-3);
+
+  bench.yaw = 0.0;
+  bench.x = std::cos(0.5);
+  bench.y = std::sin(0.5);
+  bench.run(500);
+  EXPECT_GT(bench.w(), 0.0);
+  bench.hears = true;
+  bench.run(100);
+  EXPECT_EQ(bench.w(), 0.0);
+  bench.hears = false;
+  bench.run(100);
+  EXPECT_GT(bench.w(), 0.0);
+
+  bench.people_known = false;
+  bench.guide_speaks = bench.seeks = true;
+  bench.run(1500);
+  bench.hears = true;
+  bench.run(100);
+  EXPECT_EQ(bench.w(), 0.25) << "whoever talks somewhere in the room does not end the search";
 }
 
 TEST(PosingShell, TheEyesFollowTheVoice) {

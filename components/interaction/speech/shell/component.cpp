@@ -240,6 +240,7 @@ void SpeechComponent::hear() {
   in_.clear();
   if (const Status got = card_->read(in_); !got) {
     microphone_trouble_ = got.error();
+    activity_.restart();
     return;
   }
   // What nobody hears comes back to no microphone.
@@ -312,6 +313,7 @@ usher_msgs::msg::SpeechStatus SpeechComponent::status() {
   status.audible(loudspeaker_trouble_.empty() && voice_trouble_.empty());
   status.understands(conversation_.understands());
   status.listens(conversation_.listens());
+  status.hears(activity_.voice());
   status.spoken_id(spoken_id_);
   status.finished(finished_id_ >= spoken_id_);
   if (caption) {

@@ -315,6 +315,35 @@ TEST_F(Speech, BreaksOffItsSentenceWhenItUnderstoodSomebody) {
   EXPECT_NE(status().state(), state::STATE_SPEAKING);
 }
 
+TEST_F(Speech, TellsThatItHearsAVoiceWhileItSpeaks) {
+  start();
+  show(5, {"yes", "no"}, std::string(200, 'a'));
+  pass(1.0);
+  EXPECT_FALSE(status().hears());
+  room_.voice = 0.3;
+  pass(0.3);
+  EXPECT_EQ(status().state(), state::STATE_SPEAKING);
+  EXPECT_TRUE(status().hears());
+  room_.voice = 0.0;
+  pass(0.6);
+  EXPECT_FALSE(status().hears());
+  room_.voice = 0.3;
+  pass(0.3);
+  EXPECT_TRUE(status().hears());
+  room_.microphone = false;
+  pass(0.1);
+  EXPECT_FALSE(status().hears()) << "nobody is heard any more";
+}
+
+TEST_F(Speech, TellsOfNoVoiceWhereItDoesNotListen) {
+  start();
+  show(5, {"yes", "no"}, "Los?", "de");
+  room_.voice = 0.3;
+  pass(1.0);
+  EXPECT_FALSE(status().listens());
+  EXPECT_FALSE(status().hears());
+}
+
 TEST_F(Speech, StopsThroughTheSupervisorWhenTheGuideIsGone) {
   start();
   show(5, {"stop"}, "Go.");
