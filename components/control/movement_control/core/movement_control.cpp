@@ -213,6 +213,12 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     const double angular_share = share(limits.limit.angular, wish.twist.w);
     const double factor = std::min(linear_share, angular_share);
     geometry::Twist2 wanted{wish.twist.v * factor, wish.twist.w * factor};
+    // A base that is still faster than it may be rolls on with its speed: so does its turn.
+    if (!guards(wish.source) && inputs.measured && inputs.measured->v * wish.twist.v > 0.0) {
+      const double rolls = std::min(1.0, inputs.measured->v / wish.twist.v);
+      wanted.w = std::clamp(wish.twist.w * std::max(factor, rolls), -limits.limit.angular,
+                            limits.limit.angular);
+    }
     if (factor < 1.0) {
       decision.limit = linear_share <= angular_share ? limits.linear_by : limits.angular_by;
     }

@@ -45,6 +45,30 @@ struct Case {
   Limit limit;
 };
 
+TEST(MovementControl, KeepsTheArcWhileTheBaseIsFasterThanItMayBe) {
+  MovementControl control;
+  Inputs inputs = all_well();
+  inputs.navigation = Twist2{0.6, 0.4};
+  inputs.measured = inputs.navigation;
+  Time now{};
+  const auto decide = [&] {
+    Decision decision;
+    for (int i = 0; i < 50; ++i) decision = control.decide(inputs, now += milliseconds(20));
+    return decision.twist;
+  };
+  EXPECT_EQ(decide(), (Twist2{0.6, 0.4}));
+  inputs.enables->speed_factor = 0.25;  // 0.35 m/s and 0.25 rad/s in open space
+  inputs.navigation = Twist2{0.7, 0.2};
+  inputs.measured = Twist2{0.7, 0.2};
+  EXPECT_NEAR(decide().v, 0.35, 1e-9);
+  EXPECT_NEAR(decide().w, 0.2, 1e-9) << "it rolls on";
+  inputs.measured = Twist2{0.35, 0.2};
+  EXPECT_NEAR(decide().w, 0.1, 1e-9) << "now it is as slow as it may be";
+  inputs.navigation = Twist2{0.7, 0.4};
+  inputs.measured = Twist2{0.7, 0.2};
+  EXPECT_NEAR(decide().w, 0.25, 1e-9) << "no limit of the turn rate is passed";
+}
+
 TEST(MovementControl, DecidesByTheTable) {
   using enum Limit;
   const Case cases[] = {

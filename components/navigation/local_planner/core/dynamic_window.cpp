@@ -23,20 +23,19 @@ constexpr double kDetourSight = 2.0;  // [m] of path: what stands on it nearer t
 constexpr double kAligned = 0.15;     // [rad] a turn towards the path ends here
 constexpr double kSweep =
     0.05;  // [rad] and [m] between tested poses of a turn or a recovery motion
-constexpr double kLaneGap = 0.05;     // [m] beside the clearance, to what stands on its side
-constexpr double kMeeting = 1.2;      // [m] of path within which somebody is met
-constexpr double kWalksOn = 0.2;      // [m/s] the same way: no meeting
-constexpr double kWalks = 0.3;        // [m/s] slower, the costs say all
-constexpr double kAtTheRobot = 0.8;   // [m] from its middle
-constexpr double kArmsLength = 0.4;   // [m] between robot and person
-constexpr double kPolite = 6.0;       // [s] that it gives way
-constexpr double kMetAnew = 3.0;      // [s] without anybody, until it does so again
-constexpr double kSamePlace = 0.3;    // [m]
-constexpr int kMostToAndFro = 3;      // moves that free one corner and touch with the other
-constexpr double kWayOut = 1.0;       // [m] that arcs may take to turn it by kGain
-constexpr double kGain = 0.3;         // [rad]
-constexpr double kWorthADodge = 1.5;  // times as long free as the arc that it is on
-constexpr double kSoon = 0.65;        // [rad] of a turn whose room bounds its rate now
+constexpr double kLaneGap = 0.05;    // [m] beside the clearance, to what stands on its side
+constexpr double kMeeting = 1.2;     // [m] of path within which somebody is met
+constexpr double kWalksOn = 0.2;     // [m/s] the same way: no meeting
+constexpr double kWalks = 0.3;       // [m/s] slower, the costs say all
+constexpr double kAtTheRobot = 0.8;  // [m] from its middle
+constexpr double kArmsLength = 0.4;  // [m] between robot and person
+constexpr double kPolite = 6.0;      // [s] that it gives way
+constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
+constexpr double kSamePlace = 0.3;   // [m]
+constexpr int kMostToAndFro = 3;     // moves that free one corner and touch with the other
+constexpr double kWayOut = 1.0;      // [m] that arcs may take to turn it by kGain
+constexpr double kGain = 0.3;        // [rad]
+constexpr double kSoon = 0.65;       // [rad] of a turn whose room bounds its rate now
 
 Status check(const DynamicWindowConfig& c) {
   const CriticWeights& w = c.weights;
@@ -250,42 +249,30 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
   return decision;
 }
 
-/// Along the one of the slowest arcs just tried that stays free until it stands, of equal ones the
-/// one that bends least from now. Where none does it dodges only for what is much longer free: near
-/// a door's posts, which the costs know to a cell, a hard turn for a little more meets one of them
-/// where the old arc would have passed. Nobody is dodged: who walks can step aside, a wall cannot.
+/// Along the slowest of the arcs that stays free, with half of the clearance, for longest; of equal
+/// ones the one that bends least from now. With the bare outline a hard turn past a door's post,
+/// which the costs know to a cell, seemed free. Nobody is dodged: who walks can step aside, a wall
+/// cannot.
 Decision DynamicWindow::brake(const Input& input) {
   const bool standing = std::abs(input.measured.v) < kStanding;
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
   if (standing) return decision;
-  if (!input.walkers.empty()) {
-    Input alone = input;
-    alone.walkers = {};
-    drive(alone, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
-  }
-  const double speed = std::abs(input.measured.v);
-  const double stands_after = config_.response.time_constant + speed / config_.braking;
-  const int enough = static_cast<int>(std::ceil(stands_after / rollout_.settings().step));
-  const Trajectory *best = nullptr, *in_flight = nullptr;
-  double best_bend = 0.0, least_bend = 0.0;
+  Input alone = input;
+  alone.walkers = {};
+  drive(alone, {&narrow_, &roomy_}, config_.slowest, config_.tight_speed);
+  const Trajectory* best = nullptr;
+  double best_bend = 0.0;
   for (const Trajectory& trajectory : rollout_.trajectories()) {
     if (trajectory.speed != 0) continue;
     const double turn = turns_[static_cast<std::size_t>(trajectory.turn)].target;
     const double bend = std::abs(turn - decision.command.w);
-    if (in_flight == nullptr || bend < least_bend) {
-      in_flight = &trajectory;
-      least_bend = bend;
-    }
-    const int free = std::min(trajectory.free_steps, enough);
-    const int most = best != nullptr ? std::min(best->free_steps, enough) : -1;
-    if (free < most || (free == most && bend >= best_bend)) continue;
+    if (best != nullptr && (trajectory.free_steps < best->free_steps ||
+                            (trajectory.free_steps == best->free_steps && bend >= best_bend)))
+      continue;
     best = &trajectory;
     best_bend = bend;
   }
-  if (best != nullptr && best->free_steps < enough &&
-      best->free_steps < kWorthADodge * in_flight->free_steps)
-    best = in_flight;
   if (best != nullptr && decision.command.v > 0.0) {
     const double turn = turns_[static_cast<std::size_t>(best->turn)].target;
     decision.command.w = ramped(input, {0.0, turn}, config_.braking).w;
