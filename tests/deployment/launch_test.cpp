@@ -125,6 +125,40 @@ TEST(Measuring, HandsItsOptionsToTheProgramThatMeasures) {
   EXPECT_EQ(bench.errors().find("not expected"), std::string::npos) << bench.errors();
 }
 
+// The first start of map_server hangs before it could say anything.
+TEST_F(Launch, KillsAndRestartsWhatDoesNotComeAlive) {
+  namespace fs = std::filesystem;
+  const std::string install = folder_.path() + "/install", built = std::string(USHER_BINARY_DIR);
+  fs::create_directories(install + "/bin");
+  fs::create_directories(install + "/share");
+  fs::create_directory_symlink(built + "/share/usher", install + "/share/usher");
+  for (const auto& program : fs::directory_iterator(built + "/bin"))
+    fs::create_symlink(program, install + "/bin/" + program.path().filename().string());
+  for (const auto* own : {"/bin/usher", "/bin/usher-map_server"}) fs::remove(install + own);
+  fs::copy_file(usher_program(), install + "/bin/usher");
+  fs::permissions(folder_.file("install/bin/usher-map_server",
+                               "#!/bin/sh\nmkdir " + install + "/hung && exec sleep 1000\nexec " +
+                                   built + "/bin/usher-map_server \"$@\"\n"),
+                  fs::perms::owner_all);
+  Process launch({install + "/bin/usher", "launch",
+                  manifest("components:\n  map_server: {start_patience: 6}\n")});
+  const auto says = [&](const std::string& text) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(40);
+    while (!contains(launch.output(), text) && std::chrono::steady_clock::now() < until &&
+           launch.pid() > 0)
+      launch.wait(std::chrono::milliseconds(100));
+    return contains(launch.output(), text);
+  };
+  EXPECT_TRUE(says("map_server: has not come alive within 6 s of its start, killed"))
+      << launch.output() << launch.errors();
+  EXPECT_TRUE(says("map_server: started again")) << launch.output();
+  launch.wait(std::chrono::seconds(8));
+  launch.signal(SIGTERM);
+  EXPECT_EQ(launch.wait(), 0) << launch.output();
+  const std::string told = launch.output();
+  EXPECT_EQ(told.find("has not come alive"), told.rfind("has not come alive")) << told;
+}
+
 TEST(SecondLaunch, IsRefusedAndTheFirstGoesOn) {
   RunningRobot robot;
   ASSERT_TRUE(robot.wait_for([&] { return robot.may_drive(); }, Seconds(60)))

@@ -135,6 +135,27 @@ class Heartbeats {
   std::map<std::string, Entry> newest_;
 };
 
+/// Whom the supervisor hears.
+class Roll {
+ public:
+  void take(const usher_msgs::msg::SupervisorStatus& message) {
+    using usher_msgs::msg::SupervisorStatus_Constants::HEALTH_MISSING;
+    const auto now = std::chrono::steady_clock::now();
+    const std::lock_guard lock(mutex_);
+    for (const auto& component : message.components()) {
+      if (component.health() != HEALTH_MISSING) heard_at_[component.name()] = now;
+    }
+  }
+  void vouch(Launcher& launcher) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [component, at] : heard_at_) launcher.vouched(component, at);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, std::chrono::steady_clock::time_point> heard_at_;
+};
+
 /// Whether the base was last heard to stand.
 class Standing {
  public:
@@ -265,6 +286,10 @@ int launch(const LaunchArguments& arguments) {
   const auto reader = (*observer)->reader(
       topics::kHeartbeat, [&](const auto& message, const auto&) { heartbeats.take(message); });
   if (!reader) return fail(reader.error());
+  Roll roll;
+  const auto statuses = (*observer)->reader(
+      topics::kSupervisorStatus, [&](const auto& message, const auto&) { roll.take(message); });
+  if (!statuses) return fail(statuses.error());
   Standing standing;
   const auto base = (*observer)->reader(
       topics::kBaseStatus, [&](const auto& message, const auto&) { standing.take(message); });
@@ -281,6 +306,7 @@ int launch(const LaunchArguments& arguments) {
   while (!stop_asked && !launcher->broken()) {
     for (const auto& [component, entry] : heartbeats.entries())
       launcher->heard(component, entry.at);
+    roll.vouch(*launcher);
     launcher->poll();
     service.alive(launcher->healthy(), launcher->summary());
     auto events = launcher->events();

@@ -294,6 +294,9 @@ Status Launcher::prepare(const Deployment& deployment) {
       std::filesystem::rename(process->log, process->log + ".1", ignored);
     }
     process->criticality = std::min(process->criticality, component.criticality);
+    process->start_patience = std::max(
+        process->start_patience, std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(component.start_patience)));
     if (const auto found = deployment.movement.find(component.name);
         found != deployment.movement.end())
       process->movement = std::max(process->movement, found->second);
@@ -375,7 +378,8 @@ void Launcher::start(Process& process) {
   process.state = Process::State::kRunning;
   ++process.starts;
   process.heard_at.clear();
-  process.recent_starts.push_back(Clock::now());
+  process.started_at = Clock::now();
+  process.recent_starts.push_back(process.started_at);
   events_.push_back(process.name + (process.starts == 1 ? ": started" : ": started again"));
 }
 
@@ -422,14 +426,43 @@ bool Launcher::reap(Process& process) {
 }
 
 void Launcher::heard(const std::string& component, Clock::time_point at) {
+  anybody_heard_at_ = std::max(anybody_heard_at_, at);
   for (auto& process : processes_) {
-    if (process.state != Process::State::kRunning || process.recent_starts.empty() ||
-        at < process.recent_starts.back())
+    if (process.state != Process::State::kRunning || at < process.started_at)
       continue;  // a word of its former life
     const auto& names = process.components;
     if (std::find(names.begin(), names.end(), component) != names.end())
       process.heard_at[component] = at;
   }
+}
+
+void Launcher::vouched(const std::string& component, Clock::time_point at) {
+  for (auto& process : processes_) {
+    const auto& names = process.components;
+    if (std::find(names.begin(), names.end(), component) != names.end())
+      process.vouched_at[component] = at;
+  }
+}
+
+std::string Launcher::hang_of(const Process& process, Clock::time_point now) const {
+  for (const auto& [component, at] : process.heard_at) {
+    if (now - at > kHang) return component + ": hangs, killed";
+  }
+  const auto patience = process.start_patience;
+  if (patience == Clock::duration::zero() || now - anybody_heard_at_ > kHang ||
+      now - std::max(process.started_at, trusted_from_) <= patience)
+    return {};
+  for (const auto& component : process.components) {
+    const auto vouched = process.vouched_at.find(component);
+    if (process.heard_at.contains(component) ||
+        (vouched != process.vouched_at.end() && now - vouched->second <= kHang))
+      continue;
+    std::ostringstream text;
+    text << component << ": has not come alive within "
+         << std::chrono::duration<double>(patience).count() << " s of its start, killed";
+    return text.str();
+  }
+  return {};
 }
 
 void Launcher::kill_what_hangs() {
@@ -440,13 +473,12 @@ void Launcher::kill_what_hangs() {
   if (now - trusted_from_ <= kHang) return;
   for (auto& process : processes_) {
     if (process.state != Process::State::kRunning) continue;
-    for (const auto& [component, at] : process.heard_at) {
-      if (now - at <= kHang) continue;
-      events_.push_back(component + ": hangs, killed");
-      kill(process.pid, SIGKILL);
-      process.heard_at.clear();
-      break;
-    }
+    const std::string hang = hang_of(process, now);
+    if (hang.empty()) continue;
+    events_.push_back(hang);
+    kill(process.pid, SIGKILL);
+    process.heard_at.clear();
+    process.started_at = now;  // it is said and done once
   }
 }
 

@@ -40,6 +40,8 @@ struct Process {
   int budget = 0;                                  ///< starts within a minute
   Criticality criticality = Criticality::kNotify;  ///< the highest of its components
   Movement movement = Movement::kNone;
+  /// For each of its components to be heard after a start; zero: it is not waited for.
+  std::chrono::steady_clock::duration start_patience{};
   std::string log;
   bool goes_first = false;  ///< before all other programs of this machine, where that is permitted
 
@@ -49,9 +51,12 @@ struct Process {
   std::string last_end;  ///< how it ended the last time, in words; empty before the first
   std::chrono::steady_clock::time_point start_at{};
   std::chrono::steady_clock::time_point kill_at{};  ///< while it is stopping
+  std::chrono::steady_clock::time_point started_at{};
   std::deque<std::chrono::steady_clock::time_point> recent_starts;
   /// When its components were last heard, since this start; by name.
   std::map<std::string, std::chrono::steady_clock::time_point> heard_at;
+  /// When somebody else last said that they live, by name.
+  std::map<std::string, std::chrono::steady_clock::time_point> vouched_at;
 };
 
 /// Runs one host's part of a deployment as child processes: starts them in the manifest's order,
@@ -73,6 +78,10 @@ class Launcher {
   /// and its restart policy decides.
   void heard(const std::string& component, std::chrono::steady_clock::time_point at);
   static constexpr auto kHang = std::chrono::seconds(5);
+  /// The supervisor hears a component, though it may not be heard here. One for which nobody has
+  /// vouched for `kHang`, and that was not heard since its start for its start patience, is killed
+  /// too, as long as anybody is heard at all: a launcher that hears nobody knows nothing.
+  void vouched(const std::string& component, std::chrono::steady_clock::time_point at);
 
   /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.
   /// What happened since the last call is in events().
@@ -110,6 +119,8 @@ class Launcher {
   void ended(Process& process, int status);
   bool reap(Process& process);
   void kill_what_hangs();
+  /// Empty when it does not.
+  std::string hang_of(const Process& process, std::chrono::steady_clock::time_point now) const;
   void bound_logs();
   void watch_disk();
   void end(Process& process);
@@ -124,6 +135,7 @@ class Launcher {
   std::vector<int> locks_;     ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
+  std::chrono::steady_clock::time_point anybody_heard_at_{};
   std::chrono::steady_clock::time_point logs_bounded_{};
   bool disk_full_ = false;  ///< said
 };

@@ -196,6 +196,7 @@ ManifestComponent read_component(const std::string& name, const Tree& tree,
                 component.restart);
   fields.number("restart_budget", 0, 1000, component.restart_budget);
   fields.number("heartbeat_timeout", 0.05, 60.0, component.heartbeat_timeout);
+  fields.number("start_patience", 1.0, 600.0, component.start_patience);
   if (const Tree* parameters = fields.map("parameters"); parameters != nullptr) {
     for (const auto& [key, value] : parameters->entries)
       component.parameters.push_back({key, value.yaml(), value.origin});

@@ -25,6 +25,7 @@ struct ManifestComponent {
   RestartPolicy restart = RestartPolicy::kAlways;
   int restart_budget = 10;          ///< starts within a minute before the launcher gives up
   double heartbeat_timeout = 0.12;  ///< [s] six heartbeats of a critical component
+  double start_patience = 30.0;     ///< [s] from its start to its first sign of life
   std::string group;                ///< components of one group share a process; empty = its own
   std::vector<runtime::ParameterValue> parameters;
   std::string origin;

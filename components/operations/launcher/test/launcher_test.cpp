@@ -436,6 +436,37 @@ TEST_F(Launching, KillsWhatWasHeardAndFallsSilent) {
   EXPECT_THAT(events_, Contains("legs: hangs, killed"));
 }
 
+TEST_F(Launching, KillsWhatDoesNotComeAlive) {
+  for (const auto* name : {"legs", "arms", "screen", "map"})
+    component(name, "sleeper").start_patience = 6.0;
+  component("patient", "sleeper");
+  auto launcher = this->launcher();
+  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("patient")->pid != 0; }));
+  const auto begin = std::chrono::steady_clock::now();
+  launcher.heard("map", begin);
+  ASSERT_TRUE(wait_for(launcher, [&] {
+    const auto now = std::chrono::steady_clock::now();
+    launcher.heard("arms", now);
+    launcher.heard("map", now);
+    launcher.vouched("screen", now);
+    return launcher.find("legs")->starts == 2;
+  }));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  for (const auto* name : {"arms", "screen", "map", "patient"})
+    EXPECT_EQ(launcher.find(name)->starts, 1) << name;
+  EXPECT_THAT(events_, Contains("legs: has not come alive within 6 s of its start, killed"));
+}
+
+TEST_F(Launching, KillsNobodyWhenItHearsNobody) {
+  component("legs", "sleeper").start_patience = 1.0;
+  auto launcher = this->launcher();
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(wait_for(launcher, [&] {
+    return std::chrono::steady_clock::now() - begin > Launcher::kHang + std::chrono::seconds(2);
+  }));
+  EXPECT_EQ(launcher.find("legs")->starts, 1);
+}
+
 TEST_F(Launching, BelievesNoSilenceWhenItWasStoppedItself) {
   component("legs", "sleeper");
   auto launcher = this->launcher();

@@ -42,12 +42,13 @@ class ManifestFile : public testing::Test {
 };
 
 TEST_F(ManifestFile, SaysWhatRunsWhere) {
-  const auto manifest = read(std::string(kHead) +
-                             "domain: 7\nseed: 9\ncomponents:\n"
-                             "  amcl: {host: nuc, criticality: degrade, restart: on_failure,\n"
-                             "         restart_budget: 3, heartbeat_timeout: 0.5, group: g,\n"
-                             "         parameters: {max_beams: 60, list: [1, 2]}}\n"
-                             "  eyes: {type: kinect, host: tablet}\n");
+  const auto manifest =
+      read(std::string(kHead) +
+           "domain: 7\nseed: 9\ncomponents:\n"
+           "  amcl: {host: nuc, criticality: degrade, restart: on_failure,\n"
+           "         restart_budget: 3, heartbeat_timeout: 0.5, start_patience: 4, group: g,\n"
+           "         parameters: {max_beams: 60, list: [1, 2]}}\n"
+           "  eyes: {type: kinect, host: tablet}\n");
   ASSERT_TRUE(manifest) << manifest.error();
   EXPECT_THAT(manifest->findings, IsEmpty());
   EXPECT_EQ(manifest->name, "m");
@@ -63,6 +64,7 @@ TEST_F(ManifestFile, SaysWhatRunsWhere) {
   EXPECT_EQ(amcl->restart, RestartPolicy::kOnFailure);
   EXPECT_EQ(amcl->restart_budget, 3);
   EXPECT_EQ(amcl->heartbeat_timeout, 0.5);
+  EXPECT_EQ(amcl->start_patience, 4.0);
   EXPECT_EQ(amcl->group, "g");
   ASSERT_EQ(amcl->parameters.size(), 2U);
   EXPECT_EQ(amcl->parameters[1].yaml, "[1, 2]");
@@ -79,6 +81,7 @@ TEST_F(ManifestFile, IsSafeWhereNothingIsSaid) {
   EXPECT_EQ(amcl.criticality, Criticality::kStop);
   EXPECT_EQ(amcl.restart, RestartPolicy::kAlways);
   EXPECT_EQ(amcl.heartbeat_timeout, 0.12);
+  EXPECT_EQ(amcl.start_patience, 30.0);
 }
 
 TEST_F(ManifestFile, NamesTheLineOfEachKey) {
