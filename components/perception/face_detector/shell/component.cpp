@@ -3,6 +3,7 @@
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 #include "wire/images.hpp"
+#include "wire/tilt_servo.hpp"
 
 namespace usher::face_detector {
 
@@ -59,11 +60,7 @@ geometry::Pose3 read_mount(runtime::Parameters& p) {
   const double z = p.number("robot.kinect.mount_z", "m", {0, 3}, "Kinect above the axle's middle.");
   const double axle = p.number("robot.wheel_radius", "m", {0.05, 0.5},
                                "Of the driven wheels; also the axle's height.");
-  const double gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
-                               "Equation 4.1: servo = gain times angle + offset.");
-  const double offset = p.number("robot.kinect.servo_offset", "rad", {-0.3, 0.3}, 0.0,
-                                 "Equation 4.1: what the servo is set to for a level camera.");
-  return fixed_camera(x, z + axle, -offset / gain);
+  return fixed_camera(x, z + axle, wire::read_tilt_servo(p).angle_of(0.0));
 }
 
 }  // namespace

@@ -188,8 +188,10 @@ Result<KinectCalibration> fit_calibration(const std::vector<TiltSample>& samples
   }
   calibration.angle_residual = std::sqrt(calibration.angle_residual / static_cast<double>(count));
   calibration.mount_residual = std::sqrt(calibration.mount_residual / static_cast<double>(count));
-  if (!(calibration.servo.gain >= 0.5 && calibration.servo.gain <= 2.0) ||
-      !(std::abs(calibration.servo.offset) <= 0.3)) {
+  using Servo = kinematics::TiltServo;
+  if (!(calibration.servo.gain >= Servo::kLeastGain &&
+        calibration.servo.gain <= Servo::kMostGain) ||
+      !(std::abs(calibration.servo.offset) <= Servo::kMostOffset)) {
     return Error{"no servo has a gain of " + std::to_string(calibration.servo.gain) +
                  " and an offset of " + degrees(calibration.servo.offset)};
   }

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "foundation/kinematics/tilt_servo.hpp"
 #include "foundation/result/result.hpp"
 #include "sensing/depth_pipeline/core/camera.hpp"
-#include "sensing/depth_pipeline/core/tilt_servo.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -35,7 +35,7 @@ struct TiltSample {
 
 /// What the sweep says of the mount.
 struct KinectCalibration {
-  TiltServo servo;              ///< equation 4.1
+  kinematics::TiltServo servo;  ///< equation 4.1
   double mount_z = 0.0;         ///< [m] above the axle when the camera is level
   double mount_z_slope = 0.0;   ///< [m/rad] rise with the angle
   double angle_residual = 0.0;  ///< [rad] root mean square over the positions used

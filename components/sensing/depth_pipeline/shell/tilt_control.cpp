@@ -2,6 +2,7 @@
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/tilt_servo.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -31,10 +32,7 @@ float angle_for(const usher_msgs::msg::SupervisorStatus& status) {
 
 TiltControl::TiltControl(runtime::Host& host) : host_(host) {
   auto& p = host.parameters();
-  servo_.gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
-                         "Equation 4.1: servo = gain times angle + offset.");
-  servo_.offset = p.number("robot.kinect.servo_offset", "rad", {-0.3, 0.3}, 0.0,
-                           "Equation 4.1: what the servo is set to for a level camera.");
+  servo_ = wire::read_tilt_servo(p);
   wanted_ = servo_.servo_for(
       p.number("angle_at_start", "rad", {-0.35, 0.35}, -0.0873,
                "Of the camera, positive up, until the supervisor says how the robot is."));
@@ -44,13 +42,14 @@ TiltControl::TiltControl(runtime::Host& host) : host_(host) {
       [this](const auto& status, const auto&) {
         wanted_ = servo_.servo_for(static_cast<double>(angle_for(status)));
       });
-  request_ = host.input(
-      topics::kKinectTiltRequest, {.optional = true}, [this](const auto& request, const auto&) {
-        if (!std::isfinite(request.servo())) return;
-        held_ = std::clamp(request.servo(), -TiltServo::kLimit, TiltServo::kLimit);
-        held_until_ = host_.now() + kHold;
-        command();
-      });
+  request_ = host.input(topics::kKinectTiltRequest, {.optional = true},
+                        [this](const auto& request, const auto&) {
+                          if (!std::isfinite(request.servo())) return;
+                          held_ = std::clamp(request.servo(), -kinematics::TiltServo::kLimit,
+                                             kinematics::TiltServo::kLimit);
+                          held_until_ = host_.now() + kHold;
+                          command();
+                        });
   command_ = host.output(topics::kKinectTiltCommand);
   timer_ = host.timer("tilt", kPeriod, [this](auto) { command(); });
 }

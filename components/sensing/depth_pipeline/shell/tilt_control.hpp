@@ -1,8 +1,8 @@
 #pragma once
 
+#include "foundation/kinematics/tilt_servo.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
-#include "sensing/depth_pipeline/core/tilt_servo.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -12,13 +12,13 @@ class TiltControl {
  public:
   explicit TiltControl(runtime::Host& host);
 
-  const TiltServo& servo() const { return servo_; }
+  const kinematics::TiltServo& servo() const { return servo_; }
 
  private:
   void command();
 
   runtime::Host& host_;
-  TiltServo servo_;
+  kinematics::TiltServo servo_;
   double wanted_ = 0.0;  // [rad] servo
   double held_ = 0.0;
   runtime::Time held_until_{};

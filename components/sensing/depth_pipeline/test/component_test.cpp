@@ -314,7 +314,7 @@ TEST_F(DepthPipelineComponentTest, TiltFollowsTheRobotsStateAndAnOperatorMayHold
   request.servo(9.0);
   host_.publish(topics::kKinectTiltRequest, request);
   live(1500);
-  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), TiltServo::kLimit, 1e-9);
+  EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), kinematics::TiltServo::kLimit, 1e-9);
   live(900);
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
 }

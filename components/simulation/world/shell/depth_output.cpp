@@ -3,6 +3,7 @@
 #include "simulation/rendering/core/face_pictures.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
+#include "wire/tilt_servo.hpp"
 
 namespace usher::world {
 
@@ -47,13 +48,11 @@ DepthCameraConfig DepthOutput::read_kinect(runtime::Parameters& p) {
       p.number("robot.kinect.mount_z", "m", {0, 3}, 0.665, "Kinect above the axle's middle.") +
       p.number("kinect_height_error", "m", {-0.1, 0.1}, 0.0,
                "How much higher the Kinect really sits than the robot's file says.");
-  const double gain = p.number("robot.kinect.servo_gain", "-", {0.5, 2.0}, 1.0,
-                               "Equation 4.1: servo = gain times angle + offset.");
-  const double offset = p.number("robot.kinect.servo_offset", "rad", {-0.3, 0.3}, 0.0,
-                                 "Equation 4.1: what the servo is set to for a level camera.");
-  config.servo_gain = 1.0 / gain;
-  config.servo_offset = -offset / gain + p.number("kinect_angle_error", "rad", {-0.1, 0.1}, 0.0,
-                                                  "How much higher the Kinect really looks.");
+  const auto servo = wire::read_tilt_servo(p);
+  config.servo_gain = 1.0 / servo.gain;
+  config.servo_offset =
+      servo.angle_of(0.0) + p.number("kinect_angle_error", "rad", {-0.1, 0.1}, 0.0,
+                                     "How much higher the Kinect really looks.");
   return config;
 }
 

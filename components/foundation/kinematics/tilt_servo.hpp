@@ -5,14 +5,18 @@
 
 #include "foundation/geometry/angle.hpp"
 
-namespace usher::depth_pipeline {
+namespace usher::kinematics {
 
-/// Equation 4.1 with the constants of the calibration: T = gain * angle + offset.
+/// The servo that tilts the Kinect: equation 4.1 with the constants of the calibration: T = gain *
+/// angle + offset.
 struct TiltServo {
   static constexpr double kLimit = geometry::radians(20.0);  ///< [rad] of angle and servo
 
-  double gain = 1.0;    ///< [-] {0.5..2}
-  double offset = 0.0;  ///< [rad] {-0.3..0.3}
+  static constexpr double kLeastGain = 0.5, kMostGain = 2.0;
+  static constexpr double kMostOffset = 0.3;  ///< [rad]
+
+  double gain = 1.0;    ///< [-] {kLeastGain..kMostGain}
+  double offset = 0.0;  ///< [rad] {-kMostOffset..kMostOffset}
 
   /// What the servo must be set to for an angle of the camera on the body (positive up), both
   /// clipped to the limit.
@@ -23,4 +27,4 @@ struct TiltServo {
   double angle_of(double servo) const { return (servo - offset) / gain; }
 };
 
-}  // namespace usher::depth_pipeline
+}  // namespace usher::kinematics
