@@ -17,6 +17,14 @@ std::string word(const Tree& record, const std::string& field) {
   return found != nullptr ? found->scalar : std::string();
 }
 
+std::string unknown(const std::string& place, const std::string& known) {
+  return "'titles' must be of places among the locations (" + known + "), got '" + place + "'";
+}
+
+std::string repeated(const std::string& place, const std::string& language) {
+  return "'titles' gives '" + place + "' two titles in '" + language + "'";
+}
+
 }  // namespace
 
 void judge_titles(Deployment& deployment) {
@@ -40,9 +48,9 @@ void judge_titles(Deployment& deployment) {
       deployment.findings.push_back({Verdict::kWrongValue, std::move(text), title.origin});
     };
     if (!known.contains(place)) {
-      found("'titles' must be of places among the locations (" + names + "), got '" + place + "'");
+      found(unknown(place, names));
     } else if (!given.emplace(place, language).second) {
-      found("'titles' gives '" + place + "' two titles in '" + language + "'");
+      found(repeated(place, language));
     }
   }
 }

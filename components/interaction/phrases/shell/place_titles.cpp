@@ -6,6 +6,23 @@
 
 namespace usher::phrases {
 
+namespace {
+
+std::string unknown(const std::string& place, const std::vector<wire::SiteLocation>& locations) {
+  std::string names;
+  for (const auto& location : locations) {
+    if (!names.empty()) names += ", ";
+    names += location.name;
+  }
+  return "site.titles must be of places among site.locations (" + names + "), got '" + place + "'";
+}
+
+std::string repeated(const std::string& place, const std::string& language) {
+  return "site.titles: '" + place + "' has two titles in '" + language + "'";
+}
+
+}  // namespace
+
 PlaceTitles read_place_titles(runtime::Host& host) {
   using runtime::ParameterKind;
   const auto records = host.parameters().records(
@@ -20,15 +37,10 @@ PlaceTitles read_place_titles(runtime::Host& host) {
     const auto& place = record.text("place");
     const bool known = std::ranges::any_of(
         locations, [&](const auto& location) { return location.name == place; });
-    if (!known) {
-      std::string names;
-      for (const auto& location : locations) names += (names.empty() ? "" : ", ") + location.name;
-      host.fault("site.titles must be of places among site.locations (" + names + "), got '" +
-                 place + "'");
-    }
+    if (!known) host.fault(unknown(place, locations));
     const auto& language = record.text("language");
     if (!titles[place].emplace(language, record.text("title")).second)
-      host.fault("site.titles: '" + place + "' has two titles in '" + language + "'");
+      host.fault(repeated(place, language));
   }
   return titles;
 }
