@@ -152,6 +152,8 @@ Status AttackedRobot::listen() {
        screen_reader_);
   keep(observer_->writer(topics::kJoy), joy_);
   keep(observer_->writer(topics::kSupervisorRequest), request_);
+  keep(observer_->writer(topics::kNavigateGoal), goal_);
+  keep(observer_->writer(topics::kNavigateCancel), cancel_);
   return status;
 }
 
@@ -204,6 +206,27 @@ Status AttackedRobot::touch(const std::string& button) {
   ::close(finger_);
   finger_ = -1;
   return Error{"the tablet's line for fingers broke"};
+}
+
+bool AttackedRobot::set_out(const std::string& place, milliseconds patience) {
+  constexpr double kDriving = 0.2;  // [m/s]
+  const Instant until = Clock::now() + patience;
+  NavigateGoal goal;
+  goal.id(goal_id_ = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count() / 1000));
+  goal.client(kOperator);
+  goal.location(place);
+  while (Clock::now() < until) {
+    goal_->write(goal);
+    if (wait_for([&] { return drives(kDriving); }, milliseconds(200))) return true;
+  }
+  return false;
+}
+
+void AttackedRobot::call_off() {
+  GoalCancel cancel;
+  cancel.id(goal_id_);
+  cancel.client(kOperator);
+  cancel_->write(cancel);
 }
 
 bool AttackedRobot::ask(std::uint8_t command, milliseconds patience) {

@@ -51,6 +51,9 @@ class AttackedRobot {
   void release();
   /// Puts a finger on a button of the tablet, if it is drawn; returns at once.
   Status touch(const std::string& button);
+  /// Sends it to a place while the supervisor lets the navigation drive; true once it drives.
+  bool set_out(const std::string& place, std::chrono::milliseconds patience);
+  void call_off();
   /// Asks the supervisor until it agrees.
   bool ask(std::uint8_t command, std::chrono::milliseconds patience);
 
@@ -123,6 +126,9 @@ class AttackedRobot {
   std::optional<runtime::Observer::Reader<usher_msgs::msg::DialogueScreen>> screen_reader_;
   std::optional<runtime::Observer::Writer<sensor_msgs::msg::Joy>> joy_;
   std::optional<runtime::Observer::Writer<usher_msgs::msg::SupervisorRequest>> request_;
+  std::optional<runtime::Observer::Writer<usher_msgs::msg::NavigateGoal>> goal_;
+  std::optional<runtime::Observer::Writer<usher_msgs::msg::GoalCancel>> cancel_;
+  std::uint64_t goal_id_ = 0;
   int finger_ = -1;  ///< the line to the tablet; under the mutex
   std::atomic<bool> ends_{false};
   std::thread hand_;  ///< launches, and moves the sticks
