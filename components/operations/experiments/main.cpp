@@ -83,7 +83,8 @@ const std::vector<Experiment>& experiments() {
        run_human_detection_experiment},
       {"obstacle-course",
        "Thesis 8.2.3: MARVIN drives round the objects of table 8.2, lock-step: five trials with "
-       "rendered images, --seeds N with the depth model; --only SERIES",
+       "rendered images, with and without pitch correction, --seeds N with the depth model; --only "
+       "trials, seeds or no-pitch",
        run_obstacle_course_experiment},
       {"corridor",
        "MARVIN drives along a corridor, lock-step; --glass: with panes in it that the map does not "
