@@ -120,7 +120,7 @@ std::optional<Choice> Visitor::choice(double now) {
   const std::string& state = screen_.state;
   const std::string language = "language:" + character_.language;
   if (state == "inactive") {
-    return ended_ || character_.waits_for_greeting ? std::nullopt : press(language);
+    return ended_ || satisfied() || character_.waits_for_greeting ? std::nullopt : press(language);
   }
   if (state == "introduction") {
     return screen_.language == character_.language ? std::nullopt : press(language);

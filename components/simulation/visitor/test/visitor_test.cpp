@@ -138,6 +138,16 @@ TEST(Visitor, WhoseStartWasTakenForACancelBeginsAgainAFewTimes) {
   EXPECT_EQ(chosen(cancels, 6.0), "no") << "that was his wish";
 }
 
+TEST(Visitor, WhoWasTakenThereBeginsNoOtherVisit) {
+  Visitor visitor(kitchen());
+  visitor.see(screen(1, "inactive", {"language:en"}), 0.0);
+  EXPECT_EQ(chosen(visitor, 0.0), "language:en");
+  visitor.see(about(2, "guide_success", {}, "kitchen"), 1.0);
+  visitor.see(screen(3, "end", {"again"}), 2.0);
+  visitor.see(screen(4, "inactive", {"language:en"}), 3.0);
+  EXPECT_EQ(chosen(visitor, 3.0), "");
+}
+
 TEST(Visitor, WhoMissedTheLanguagesAsksForThem) {
   Character french = kitchen();
   french.language = "fr";

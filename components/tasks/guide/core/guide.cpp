@@ -481,6 +481,9 @@ void Guide::watch_encounter(Time now) {
     near_since_ = now;
     near_person_ = visitor.person;
   }
+  // Who was lost on the way, or on arrival, comes back by another identity.
+  const bool lost = nobody_since_ && visit_.started > 0;
+  if (lost && there(visitor) && another(visitor)) remember(visitor.person);
   if (there(visitor)) nobody_since_.reset();
   if (!there(visitor) && !nobody_since_) nobody_since_ = now;
   // Who walks away on the way and comes back is not greeted for it.
@@ -494,11 +497,15 @@ void Guide::watch_encounter(Time now) {
     begin_visit(true, now);
     enter(State::kIntroduction, Cause::kVisitor, now);
   }
-  // On the way he may come by another identity.
-  if (serves() && there(visitor) && (another(visitor) || greeted_persons_.empty())) {
-    if (greeted_persons_.size() == kMostGreeted) greeted_persons_.erase(greeted_persons_.begin());
-    if (visitor.person != 0) greeted_persons_.push_back(visitor.person);
-  }
+  // On the way he may come by one, too.
+  if (serves() && there(visitor) && (another(visitor) || greeted_persons_.empty()))
+    remember(visitor.person);
+}
+
+void Guide::remember(std::uint64_t person) {
+  if (person == 0) return;
+  if (greeted_persons_.size() == kMostGreeted) greeted_persons_.erase(greeted_persons_.begin());
+  greeted_persons_.push_back(person);
 }
 
 /// Somebody who was not greeted yet, beside one who was.

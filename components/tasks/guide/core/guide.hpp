@@ -247,6 +247,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void watch_turns(Time now);
   void watch_encounter(Time now);
   bool another(const VisitorSighting& visitor) const;
+  void remember(std::uint64_t person);
   bool speaks() const;
   void refresh_journey(Time now);
   void say_on_the_way(Text text, Tone tone, Time now);

@@ -621,6 +621,21 @@ TEST(Guide, LetsItselfFinishBeforeTheNextScreen) {
   EXPECT_EQ(mute.state(), "location_ask") << "whatever the voice says";
 }
 
+TEST(Guide, GreetsNobodyAnewWhoWasLostOnArrivalAndComesBackByAnotherIdentity) {
+  for (const bool lost : {true, false}) {
+    Rig rig;
+    rig.meet(1), rig.wait(1100);
+    ASSERT_EQ(rig.state(), "introduction");
+    rig.to_end_ask();
+    rig.around.supervisor = Supervisor::kAvailable;
+    if (lost) rig.see_nobody(), rig.wait(5000);
+    rig.press("no");
+    ASSERT_EQ(rig.state(), "end");
+    rig.wait(1000), rig.meet(13), rig.wait(60000);
+    EXPECT_EQ(rig.guide.funnel().greeted, lost ? 1U : 2U) << "who came beside him is another";
+  }
+}
+
 TEST(Guide, GreetsEverybodyOnce) {
   Rig rig;
   rig.meet(1), rig.wait(1100);
