@@ -25,8 +25,8 @@ TEST(Guide, NamesTheButtonThatItWaitsFor) {
   const auto texts = book();
   for (std::size_t language = 0; language < texts.languages().size(); ++language) {
     for (const auto& [sentence, button] : kNames) {
-      const auto said = texts.phrase(language, static_cast<std::size_t>(sentence));
-      const auto label = texts.phrase(language, static_cast<std::size_t>(button));
+      const auto& said = texts.phrase(language, static_cast<std::size_t>(sentence));
+      const auto& label = texts.phrase(language, static_cast<std::size_t>(button));
       EXPECT_NE(said.find(label), std::string::npos) << said << " does not name " << label;
     }
   }
