@@ -151,6 +151,7 @@ std::optional<Choice> Visitor::choice(double now) {
     return press(character_.leads && !led_at_ && offers("follow_me") ? "follow_me" : "yes");
   }
   if (state == "follow_me") {
+    if (!character_.leads) return press("done");  // the robot misunderstood
     return led_at_ && now - *led_at_ >= kComesUp ? press("done") : std::nullopt;
   }
   if (state == "feedback") return rate();
@@ -178,7 +179,9 @@ bool Visitor::crowded(double now) const {
 
 Walk Visitor::walk(double now) const {
   if (!departed_at_) return Walk::kStand;
-  if (screen_.state == "follow_me") return led_at_ ? Walk::kStand : Walk::kLead;
+  if (screen_.state == "follow_me") {
+    return character_.leads && !led_at_ ? Walk::kLead : Walk::kStand;
+  }
   const double since = now - *departed_at_;
   const double away = since - character_.walks_away_at;
   const bool back = character_.walks_away_for >= 0.0 && away >= character_.walks_away_for;

@@ -254,6 +254,14 @@ TEST(Visitor, SaysThatHeIsThereToARobotThatWaitsForHim) {
   EXPECT_EQ(chosen(visitor, 56.0), "stay");
 }
 
+TEST(Visitor, WhoIsFollowedByMistakeSaysSoAndStays) {
+  Visitor visitor{Character{}};
+  visitor.see(screen(1, "guide_ask", {"yes", "no", "follow_me"}), 0.0);
+  visitor.see(screen(2, "follow_me", {"done", "stop"}), 1.0);
+  EXPECT_EQ(visitor.walk(3.0), Walk::kStand);
+  EXPECT_EQ(chosen(visitor, 3.0), "done");
+}
+
 TEST(Visitor, LeadsTheRobotAndSaysWhenTheyAreThere) {
   Character leader = kitchen();
   leader.leads = true;
