@@ -333,7 +333,12 @@ class Screens : public testing::Test {
         << title->property("text").toString().toStdString();
     std::vector<QRectF> apart = plan.labels();
     EXPECT_GE(apart.size(), model_.places().size() / 2) << "too few names find room";
-    for (const QRectF& label : apart) EXPECT_GE(label.height(), tablet::Sizes::kMapName * u - 1.0);
+    for (const QRectF& label : apart) {
+      EXPECT_GE(label.height(), tablet::Sizes::kMapName * u - 1.0);
+      EXPECT_TRUE(std::none_of(plan.places().begin(), plan.places().end(),
+                               [&](const QPointF& place) { return label.contains(place); }))
+          << "a name on another place";
+    }
     const auto* here = plan.findChild<QQuickItem*>("here");
     if (here->isVisible()) {
       apart.emplace_back(here->x(), here->y(), here->width(), here->height());

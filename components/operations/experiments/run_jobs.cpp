@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <mutex>
 #include <thread>
@@ -13,7 +14,15 @@
 namespace usher::operations {
 
 void show_progress(const std::string& line) {
-  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  if (isatty(STDERR_FILENO) != 0) {
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    return;
+  }
+  using Clock = std::chrono::steady_clock;
+  static Clock::time_point due = Clock::now() + std::chrono::minutes(1);
+  if (line.empty() || Clock::now() < due) return;
+  due = Clock::now() + std::chrono::minutes(1);
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 Status run_jobs(std::size_t count, const std::string& what,

@@ -60,6 +60,7 @@ void FloorPlanItem::keep_off(QRectF& area, const QRectF& now) {
 
 void FloorPlanItem::paint(QPainter* painter) {
   labels_.clear();
+  places_.clear();
   if (screen_ == nullptr || screen_->plan().empty()) return;
   const double scale = width() / screen_->plan().width;
   painter->setRenderHint(QPainter::SmoothPixmapTransform, true);
@@ -100,7 +101,10 @@ bool FloorPlanItem::free(const QRectF& box, const QPolygonF& route) const {
   for (qsizetype i = 1; i < route.size(); ++i) {
     if (crosses(wide, QLineF(route[i - 1], route[i]))) return false;
   }
-  return std::none_of(labels_.begin(), labels_.end(),
+  // A name on another place would be taken for that one's.
+  return std::none_of(places_.begin(), places_.end(),
+                      [&](const QPointF& place) { return box.contains(place); }) &&
+         std::none_of(labels_.begin(), labels_.end(),
                       [&](const QRectF& other) { return other.intersects(box); });
 }
 
@@ -132,7 +136,11 @@ void FloorPlanItem::paint_places(QPainter* painter, double scale, const QPolygon
   const QFontMetricsF metrics(font);
   // The marked place is named first; of the others those whose names find room.
   std::vector<const Place*> order;
-  for (const auto& place : screen_->places()) order.push_back(&place);
+  for (const auto& place : screen_->places()) {
+    order.push_back(&place);
+    const auto at = screen_->plan().to_pixels(place.at, scale);
+    places_.emplace_back(at.x(), at.y());
+  }
   std::stable_partition(order.begin(), order.end(),
                         [&](const Place* place) { return place->name == screen_->view().place; });
   for (const Place* place : order) {

@@ -31,8 +31,9 @@ class FloorPlanItem : public QQuickPaintedItem {
   QRectF here_area() const { return here_area_; }
   void set_here_area(const QRectF& area) { keep_off(here_area_, area); }
   void paint(QPainter* painter) override;
-  /// Where names of places were written last; they do not overlap.
+  /// Where names of places were written last; they do not overlap, and cover no place.
   const std::vector<QRectF>& labels() const { return labels_; }
+  const std::vector<QPointF>& places() const { return places_; }
 
  signals:
   void screenChanged();
@@ -56,6 +57,7 @@ class FloorPlanItem : public QQuickPaintedItem {
   double text_size_ = 20.0;
   QRectF robot_area_, here_area_;
   std::vector<QRectF> labels_;
+  std::vector<QPointF> places_;
 };
 
 }  // namespace usher::tablet
