@@ -123,6 +123,10 @@ void FollowerComponent::take_goal(const usher_msgs::msg::FollowGoal& goal) {
     ++rejected_;
     return;
   }
+  const double pace =
+      goal.max_speed() > 0.0F ? static_cast<double>(goal.max_speed()) : default_pace_;
+  // Slower than the base can follow is as slow as it can. The pace may change along the same path.
+  if (!follower_->set_pace(std::clamp(pace, slowest_, default_pace_))) ++rejected_;
   const bool recovering = goal.mode() == MODE_ROTATE || goal.mode() == MODE_BACK_OFF;
   const bool repeated = goal.id() == goal_id_ && goal.client() == client_ && goal.mode() == mode_;
   if (repeated && (recovering || *path == path_in_map_))
@@ -136,10 +140,6 @@ void FollowerComponent::take_goal(const usher_msgs::msg::FollowGoal& goal) {
   path_placed_by_.reset();
   blocked_since_.reset();
   if (!wants_path) follower_->clear_path();
-  const double pace =
-      goal.max_speed() > 0.0F ? static_cast<double>(goal.max_speed()) : default_pace_;
-  // Slower than the base can follow is as slow as it can.
-  if (!follower_->set_pace(std::clamp(pace, slowest_, default_pace_))) ++rejected_;
   state_ = mode_ == MODE_STOP ? STATE_IDLE : STATE_ACTIVE;
 }
 

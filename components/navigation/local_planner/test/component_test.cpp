@@ -58,11 +58,16 @@ class Component : public testing::TestWithParam<const char*> {
     }
   }
   void tell(std::uint8_t mode, float amount = 0.0F) {
+    ++goal_id;
+    repeat(mode, amount, 0.0F);
+  }
+  void repeat(std::uint8_t mode, float amount, float max_speed) {
     usher_msgs::msg::FollowGoal goal;
-    goal.id(++goal_id);
+    goal.id(goal_id);
     goal.client("navigator");
     goal.mode(mode);
     goal.amount(amount);
+    goal.max_speed(max_speed);
     std::vector<geometry::Pose2> path;
     if (mode == MODE_PATH) path = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
     goal.path(wire::to_message(host.now(), frames::kMap, path));
@@ -92,6 +97,19 @@ TEST_P(Component, DrivesAlongAPath) {
   EXPECT_GT(commanded().v, 0.3);
   EXPECT_EQ(status().id(), goal_id);
   EXPECT_EQ(status().state(), STATE_ACTIVE) << status().reason();
+}
+
+TEST_P(Component, TakesAnotherPaceOnTheSamePath) {
+  run(500);
+  tell(MODE_PATH);
+  run(1500);
+  ASSERT_GT(commanded().v, 0.3);
+  repeat(MODE_PATH, 0.0F, 0.2F);
+  run(1500);
+  EXPECT_NEAR(commanded().v, 0.2, 0.02);
+  repeat(MODE_PATH, 0.0F, 0.0F);
+  run(1500);
+  EXPECT_GT(commanded().v, 0.3) << "0 is the planner's own limit";
 }
 
 TEST_P(Component, StandsAndForgetsItsGoalWithoutTheNavigator) {
