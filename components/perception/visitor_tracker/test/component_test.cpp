@@ -51,7 +51,7 @@ struct Bench {
       person.y(y);
       person.age(100.0F);
       person.unseen(unseen);
-      person.rear_appearance(wire::to_message({{shirt, 5}, {}}));
+      person.rear_appearance(wire::to_message(imaging::Appearance{{shirt, 5}, {}}));
       if (people) host.publish(topics::kPeople, message);
       host.run_for(milliseconds(45));
     }
