@@ -68,11 +68,18 @@ inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
 inline constexpr Topic<sensor_msgs::msg::Image> kKinectDepth{
     "kinect/depth", Kind::kStream, 2, 30, "kinect", "Depth as measured, 16UC1 in mm, 0 = none."};
 inline constexpr Topic<sensor_msgs::msg::Image> kKinectColor{
-    "kinect/color", Kind::kStream, 2, 30, "kinect", "Colour image, rgb8."};
+    "kinect/color",
+    Kind::kStream,
+    2,
+    30,
+    "kinect",
+    "Colour image, rgb8; its pixels are those of the depth image of that time."};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kKinectInfo{
     "kinect/depth/camera_info", Kind::kLatched, 1, 0, "kinect", "Intrinsics of the depth image."};
 inline constexpr Topic<sensor_msgs::msg::Image> kRearDepth{
     "rear_camera/depth", Kind::kStream, 2, 15, "kinect", "The same of the camera that looks back."};
+inline constexpr Topic<sensor_msgs::msg::Image> kRearColor{
+    "rear_camera/color", Kind::kStream, 2, 15, "kinect", "Its colour image, likewise."};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kRearInfo{
     "rear_camera/depth/camera_info", Kind::kLatched, 1, 0, "kinect",
     "Intrinsics of its depth image."};
@@ -371,6 +378,8 @@ inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimKinectInfo{
     "sim/kinect/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its depth image."};
 inline constexpr Topic<sensor_msgs::msg::Image> kSimRearDepth{
     "sim/rear_camera/depth", Kind::kStream, 2, 15, "world", "From the simulated rear camera."};
+inline constexpr Topic<sensor_msgs::msg::Image> kSimRearColor{
+    "sim/rear_camera/color", Kind::kStream, 2, 15, "world", "From its colour camera, rgb8."};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kSimRearInfo{
     "sim/rear_camera/camera_info", Kind::kLatched, 1, 0, "world", "Intrinsics of its image."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScan{
@@ -384,14 +393,14 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimKinectScanLow{
     "sim/kinect/scan/low", Kind::kStream, 2, 30, "world", "Its low obstacles."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kSimRearScan{
     "sim/rear_camera/scan", Kind::kStream, 2, 15, "world", "The same of the rear camera."};
-inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimKinectPeople{
+inline constexpr Topic<usher_sim_msgs::msg::Sightings> kSimKinectPeople{
     "sim/kinect/people",
     Kind::kStream,
     2,
     15,
     "world",
-    "Whom the people detector would find in the Kinect's image, by the fitted model; z = height."};
-inline constexpr Topic<geometry_msgs::msg::PoseArray> kSimRearPeople{
+    "Whom the people detector would find in the Kinect's image, by the fitted model."};
+inline constexpr Topic<usher_sim_msgs::msg::Sightings> kSimRearPeople{
     "sim/rear_camera/people", Kind::kStream, 2, 15, "world", "The same of the rear camera."};
 inline constexpr Topic<usher_msgs::msg::Faces> kSimKinectFaces{
     "sim/kinect/faces",
@@ -437,22 +446,22 @@ inline constexpr Topic<usher_sim_msgs::msg::FleetPersonGoal> kFleetSimPersonGoal
 
 inline constexpr auto kAll = std::tie(
     kHeartbeat, kDiagnostics, kScan, kScanFiltered, kUltrasonic, kUltrasonicFiltered, kWhiskers,
-    kBattery, kTf, kTfStatic, kKinectDepth, kKinectColor, kKinectInfo, kRearDepth, kRearInfo,
-    kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan, kKinectTilt,
-    kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest, kCmdVelManual,
-    kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant, kMovementEnable,
-    kMovementStatus, kPeople, kPersonAhead, kFaces, kJoy, kInteractionTarget, kInteractionStatus,
-    kTorsoFrame, kTorsoStatus, kSupervisorStatus, kSupervisorRequest, kMap, kInitialPose, kAmclPose,
-    kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts, kLocalCostmap, kGlobalCostmap,
-    kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal, kFollowCancel, kFollowStatus,
-    kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel, kNavigateStatus, kNavigatePace,
-    kLocations, kExploreGoal, kExploreCancel, kExploreStatus, kExploreCoverage, kDialogueScreen,
-    kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor, kSpeechStatus, kSpeechLevel,
-    kMeetingRequest, kMeetingCancel, kMeetingStatus, kMeetingReport, kSimKinectFaces,
-    kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard, kSimSensorBoardCommand, kSimTorso,
-    kSimTorsoCommand, kSimKinectDepth, kSimKinectColor, kSimKinectInfo, kSimRearDepth, kSimRearInfo,
-    kSimKinectScan, kSimKinectScanLow, kSimRearScan, kSimKinectPeople, kSimRearPeople,
-    kSimGroundTruth, kSimPersonGoal, kExploreShare, kFleetMeeting, kFleetLook, kFleetSimBody,
-    kFleetSimPeople, kFleetSimPersonGoal);
+    kBattery, kTf, kTfStatic, kKinectDepth, kKinectColor, kKinectInfo, kRearDepth, kRearColor,
+    kRearInfo, kKinectProcessed, kRearProcessed, kKinectScan, kKinectScanLow, kRearScan,
+    kKinectTilt, kKinectTiltCommand, kKinectTiltRequest, kBaseStatus, kOdom, kBaseRequest,
+    kCmdVelManual, kCmdVelInteraction, kCmdVelNavigation, kDriveCommand, kDriveGrant,
+    kMovementEnable, kMovementStatus, kPeople, kPersonAhead, kFaces, kJoy, kInteractionTarget,
+    kInteractionStatus, kTorsoFrame, kTorsoStatus, kSupervisorStatus, kSupervisorRequest, kMap,
+    kInitialPose, kAmclPose, kParticleCloud, kLocalizationStatus, kLocalCosts, kGlobalCosts,
+    kLocalCostmap, kGlobalCostmap, kCostmapRequest, kPlanRequest, kPlanReply, kPlan, kFollowGoal,
+    kFollowCancel, kFollowStatus, kLocalPlan, kNavigateGoal, kGoalPose, kNavigateCancel,
+    kNavigateStatus, kNavigatePace, kLocations, kExploreGoal, kExploreCancel, kExploreStatus,
+    kExploreCoverage, kDialogueScreen, kDialogueAnswer, kGuideStatus, kGuideVisit, kVisitor,
+    kSpeechStatus, kSpeechLevel, kMeetingRequest, kMeetingCancel, kMeetingStatus, kMeetingReport,
+    kSimKinectFaces, kSimBaseCommand, kSimBaseFeedback, kSimScan, kSimSensorBoard,
+    kSimSensorBoardCommand, kSimTorso, kSimTorsoCommand, kSimKinectDepth, kSimKinectColor,
+    kSimKinectInfo, kSimRearDepth, kSimRearColor, kSimRearInfo, kSimKinectScan, kSimKinectScanLow,
+    kSimRearScan, kSimKinectPeople, kSimRearPeople, kSimGroundTruth, kSimPersonGoal, kExploreShare,
+    kFleetMeeting, kFleetLook, kFleetSimBody, kFleetSimPeople, kFleetSimPersonGoal);
 
 }  // namespace usher::topics

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <optional>
 
+#include "perception/people_detector/core/clothes.hpp"
 #include "perception/people_detector/core/depth_detector.hpp"
 #include "sensing/depth_pipeline/core/depth_pipeline.hpp"
+#include "simulation/rendering/core/painter.hpp"
 #include "simulation/world/core/people_model.hpp"
 
 namespace usher::world {
@@ -61,6 +63,38 @@ struct Found {
   }
 };
 
+/// How the two show the clothes of those whom both found.
+struct Colors {
+  int people = 0, by_pixels = 0, by_model = 0, both = 0, agree = 0;
+  std::array<double, 3> off{};  // of the model from the pixels: L*, a*, b*
+
+  void take(const imaging::ClothesColor& pixels, const imaging::ClothesColor& model) {
+    ++people;
+    by_pixels += pixels.known();
+    by_model += model.known();
+    if (!pixels.known() || !model.known()) return;
+    ++both;
+    const std::array<double, 3> away{model.color.lightness - pixels.color.lightness,
+                                     model.color.a - pixels.color.a,
+                                     model.color.b - pixels.color.b};
+    for (std::size_t k = 0; k < 3; ++k) off[k] += away[k];
+    agree += std::abs(away[0]) < 8.0 && std::abs(away[1]) < 4.0 && std::abs(away[2]) < 4.0;
+  }
+  double bias(std::size_t k) const { return off[k] / both; }
+};
+
+/// Of those found, the one nearest to a place, seen from the same one.
+template <class Findings>
+const imaging::Appearance* nearest(const Findings& findings, const Point2& place, double ahead) {
+  const imaging::Appearance* best = nullptr;
+  double least = kSame;
+  for (const auto& one : findings) {
+    const double away = (Point2(one.forward + ahead, one.left) - place).norm();
+    if (away < least) least = away, best = &one.appearance;
+  }
+  return best;
+}
+
 /// A robot somewhere in the office, people around it.
 std::optional<World> somewhere(Random& random, const Building& building, bool behind) {
   const std::vector<Pose2> places{{3.0, 5.0, 0.2},   {12.0, 10.0, 0.0}, {26.0, 4.5, 0.5},
@@ -100,6 +134,11 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
     auto pipeline = DepthPipeline::make(intrinsics, {.origin = 0.2}).value();
     auto detector = DepthDetector::make(intrinsics, {}).value();
     Random random(7);
+    people_detector::Clothes clothes(intrinsics);
+    rendering::Painter painter({});
+    std::vector<rendering::Gains> gains;
+    std::vector<std::uint8_t> rgb;
+    Colors upper, legs;
     Found pixels, modelled;
     int images = 0, same = 0, either = 0;
     for (int place = 0; place < kPlaces;) {
@@ -128,10 +167,27 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
         const auto found =
             detector.find({lens.width, lens.height, view.processed}, {pose.height, pose.down, 0.0})
                 .value();
-        model.find(*world, camera, sightings);
+        model.find(*world, camera, true, sightings);
         const Pose2 base = world->base().truth().pose;
         const Pose2 origin = Pose2{base.x, base.y, backward ? base.yaw + geometry::kPi : base.yaw} *
                              Pose2{0.2, 0.0, 0.0};
+        gains.clear();
+        for (const Person& person : world->people())
+          gains.push_back(camera.gains(*world, person.position));
+        painter.paint(camera.truth(), lens, camera.pose(*world), renderer.bodies(), gains, rgb);
+        std::vector<people_detector::Sighting> dressed(found.begin(), found.end());
+        for (auto& one : dressed)
+          one.appearance =
+              clothes.look({lens.width, lens.height, view.processed},
+                           {lens.width, lens.height, rgb}, {pose.height, pose.down, 0.0}, one);
+        for (const Person& person : world->people()) {
+          const Point2 where = inverse(origin) * person.position;
+          const auto* by_pixels = nearest(dressed, where, pose.forward - 0.2);
+          const auto* by_model = nearest(sightings, where, 0.0);
+          if (by_pixels == nullptr || by_model == nullptr) continue;
+          upper.take(by_pixels->upper, by_model->upper);
+          legs.take(by_pixels->legs, by_model->legs);
+        }
         std::vector<Point2> truths, others, seen, said;
         for (const Person& person : world->people()) {
           const Point2 where = inverse(origin) * person.position;
@@ -160,11 +216,72 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
           one->recall(), one->false_alarms, images, one->bias(), one->along_sigma(),
           one->across_sigma());
     std::printf("same %d of %d\n", same, either);
+    for (const Colors* part : {&upper, &legs}) {
+      std::printf(
+          "%s: known of %d by pixels %d, by the model %d, both %d, who agree %d; off by %.1f, "
+          "%.1f, "
+          "%.1f\n",
+          part == &upper ? "upper" : "legs", part->people, part->by_pixels, part->by_model,
+          part->both, part->agree, part->bias(0), part->bias(1), part->bias(2));
+      EXPECT_NEAR(part->by_model, part->by_pixels, 0.1 * part->people);
+      EXPECT_GT(part->both, 8 * std::min(part->by_pixels, part->by_model) / 10);
+      EXPECT_GT(part->agree, 9 * part->both / 10);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(std::abs(part->bias(k)), 2.0);
+    }
     EXPECT_NEAR(modelled.recall(), pixels.recall(), 0.05);
     EXPECT_GT(same, 85 * either / 100);
     EXPECT_NEAR(modelled.bias(), pixels.bias(), 0.05);
     EXPECT_NEAR(modelled.along_sigma(), pixels.along_sigma(), 0.04);
     EXPECT_NEAR(modelled.across_sigma(), pixels.across_sigma(), 0.03);
+  }
+}
+
+/// How unlike somebody looks to himself and to others in the light of a building, to the camera
+/// that learnt him and to another one: what imaging::kAlike and kAnother are made for.
+TEST(PeopleModel, PeopleLookLikeThemselvesInAnyLight) {
+  constexpr int kPeople = 400;
+  Random random(11);
+  std::array<int, 2> alike{}, another{}, others_alike{}, others_another{};
+  for (int i = 0; i < kPeople; ++i) {
+    const rendering::Lighting light(random.next());
+    std::array<rendering::ColorCamera, 2> cameras{rendering::ColorCamera(random.next()),
+                                                  rendering::ColorCamera(random.next())};
+    const auto anywhere = [&] { return Point2(random.uniform(0, 30), random.uniform(0, 20)); };
+    const auto seen = [&](const rendering::Clothes& clothes, std::size_t camera) {
+      const Point2 place = anywhere();
+      const Point2 robot = place + Point2(random.uniform(-3, 3), random.uniform(-3, 3));
+      const auto gains = cameras[camera].gains(light, place, robot);
+      const auto color = [&](const rendering::Clothes::Color& part) {
+        std::array<double, 3> linear{};
+        for (std::size_t k = 0; k < 3; ++k)
+          linear[k] = std::min(1.0, 0.85 * gains[k] * imaging::to_linear(part[k]));
+        return imaging::ClothesColor{imaging::to_lab(linear), 5};
+      };
+      imaging::Appearances appearances;
+      appearances[camera] = {color(clothes.upper), color(clothes.legs)};
+      return appearances;
+    };
+    const auto one = rendering::draw_clothes(random), other = rendering::draw_clothes(random);
+    const auto learnt = seen(one, 0);
+    for (const std::size_t camera : {0U, 1U}) {
+      cameras[camera].advance(60.0);
+      const double own = imaging::unlikeness(learnt, seen(one, camera)).value();
+      const double of_others = imaging::unlikeness(learnt, seen(other, camera)).value();
+      alike[camera] += own < imaging::kAlike;
+      another[camera] += own > imaging::kAnother;
+      others_alike[camera] += of_others < imaging::kAlike;
+      others_another[camera] += of_others > imaging::kAnother;
+    }
+  }
+  for (const std::size_t camera : {0U, 1U}) {
+    std::printf("%s camera: himself alike %.3f, another %.3f; others alike %.3f, another %.3f\n",
+                camera == 0 ? "the same" : "the other", double(alike[camera]) / kPeople,
+                double(another[camera]) / kPeople, double(others_alike[camera]) / kPeople,
+                double(others_another[camera]) / kPeople);
+    EXPECT_GT(alike[camera], 0.9 * kPeople);
+    EXPECT_LE(another[camera], 0.01 * kPeople);
+    EXPECT_LT(others_alike[camera], 0.3 * kPeople);
+    EXPECT_GT(others_another[camera], 0.5 * kPeople);
   }
 }
 

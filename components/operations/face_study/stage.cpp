@@ -74,7 +74,7 @@ const Stage::Shot& Stage::shoot(const std::vector<rendering::Body>& bodies) {
   renderer_.place(bodies);
   sensor_.measure(renderer_, room_T_camera_, 0.0, shot_.millimeters);
   const rendering::Lens& lens = sensor_.config().lens;
-  painter_.paint(sensor_.truth(), lens, room_T_camera_, bodies, shot_.rgb);
+  painter_.paint(sensor_.truth(), lens, room_T_camera_, bodies, {}, shot_.rgb);
   shot_.width = lens.width;
   shot_.height = lens.height;
   return shot_;

@@ -92,6 +92,7 @@
   TYPE(usher_sim_msgs::msg::SensorBoardCommand)       \
   TYPE(usher_sim_msgs::msg::GroundTruth)              \
   TYPE(usher_sim_msgs::msg::PersonGoal)               \
+  TYPE(usher_sim_msgs::msg::Sightings)                \
   TYPE(usher_sim_msgs::msg::FleetBody)                \
   TYPE(usher_sim_msgs::msg::FleetPeople)              \
   TYPE(usher_sim_msgs::msg::FleetPersonGoal)

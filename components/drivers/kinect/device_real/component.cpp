@@ -132,8 +132,9 @@ void KinectComponent::take_frame() {
   }
   // A read waits for two images; what it delivers was measured when it began rather than now.
   const runtime::Time stamp = live_ ? read_at_ : host_.now();
-  publisher_.publish(stamp, job_->rectified);
+  // Whoever has the depths of a moment has its colors, too.
   if (!job_->color.rgb.empty()) publisher_.publish(stamp, job_->color);
+  publisher_.publish(stamp, job_->rectified);
   host_.health().set(HealthState::kOk);
 }
 

@@ -27,6 +27,7 @@ KinectSimComponent::KinectSimComponent(runtime::Host& host) : host_(host) {
   pass(host, color_, topics::kSimKinectColor, topics::kKinectColor);
   pass(host, info_, topics::kSimKinectInfo, topics::kKinectInfo);
   pass(host, rear_depth_, topics::kSimRearDepth, topics::kRearDepth);
+  pass(host, rear_color_, topics::kSimRearColor, topics::kRearColor);
   pass(host, rear_info_, topics::kSimRearInfo, topics::kRearInfo);
 }
 

@@ -22,7 +22,7 @@ class KinectSimComponent final : public runtime::Component {
   };
 
   runtime::Host& host_;
-  Pass<Image> depth_, color_, rear_depth_;
+  Pass<Image> depth_, color_, rear_depth_, rear_color_;
   Pass<Info> info_, rear_info_;
 };
 

@@ -6,6 +6,7 @@
 #include "operations/people_study/scene.hpp"
 #include "perception/people_detector/shell/component.hpp"
 #include "runtime/testing/test_host.hpp"
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 #include "wire/images.hpp"
@@ -54,6 +55,16 @@ class Cameras : public testing::Test {
     Image message;
     wire::to_message(host.now(), frame,
                      {studio.intrinsics().width, studio.intrinsics().height, pixels}, message);
+    return message;
+  }
+  /// Of one color, as if the whole image were.
+  Image color(const char* frame, std::array<std::uint8_t, 3> rgb, int ms_ago = 0) const {
+    const int width = studio.intrinsics().width;
+    std::vector<std::uint8_t> bytes;
+    for (int i = 0; i < width * studio.intrinsics().height; ++i)
+      bytes.insert(bytes.end(), rgb.begin(), rgb.end());
+    Image message;
+    wire::to_color_message(host.now() - milliseconds(ms_ago), frame, width, bytes, message);
     return message;
   }
   /// `write` at 30 Hz beside a laser that sees nothing.
@@ -126,6 +137,52 @@ TEST_F(Cameras, FindWhoStandsBehindTheRobot) {
   EXPECT_TRUE(host.last(topics::kPeople)->rear_looks());
   EXPECT_FALSE(host.last(topics::kPeople)->kinect_looks());
   EXPECT_TRUE(host.last(topics::kPersonAhead)->clear()) << "nobody is ahead";
+}
+
+TEST_F(Cameras, TellHowPeopleAreDressedWhereTheyHaveColors) {
+  tell_cameras();
+  look(1000);
+  ASSERT_EQ(people().size(), 1U);
+  EXPECT_FALSE(wire::from_message(people()[0].kinect_appearance()).known());
+  run(1000, [this] {
+    host.publish(topics::kKinectColor, color(kKinectFrame, {165, 35, 40}, 33));
+    host.publish(topics::kKinectProcessed, image(kKinectFrame));
+  });
+  const auto seen = wire::from_message(people()[0].kinect_appearance());
+  ASSERT_TRUE(seen.upper.known() && seen.legs.known());
+  EXPECT_NEAR(seen.upper.color.a, 51.9, 1.0);
+  EXPECT_FALSE(wire::from_message(people()[0].rear_appearance()).known());
+  EXPECT_EQ(reason(), "");
+  run(1500, [this] {
+    host.publish(topics::kRearColor, color(kRearFrame, {48, 66, 100}));
+    host.publish(topics::kRearProcessed, image(kRearFrame));
+  });
+  bool by_rear = false;
+  for (const auto& person : people())
+    by_rear = by_rear || wire::from_message(person.rear_appearance()).known();
+  EXPECT_TRUE(by_rear);
+}
+
+TEST_F(Cameras, ColorsOfAnotherTimeOrThatDoNotFitAreNone) {
+  tell_cameras();
+  run(1000, [this] {
+    host.publish(topics::kKinectColor, color(kKinectFrame, {165, 35, 40}, 100));
+    host.publish(topics::kKinectProcessed, image(kKinectFrame));
+  });
+  ASSERT_EQ(people().size(), 1U);
+  EXPECT_FALSE(wire::from_message(people()[0].kinect_appearance()).known());
+  EXPECT_EQ(host.counter("color images: rejected"), 0U);
+  run(1000, [this] {
+    Image wrong = color(kKinectFrame, {165, 35, 40});
+    wrong.height(wrong.height() / 2);
+    wrong.data().resize(wrong.data().size() / 2);
+    host.publish(topics::kKinectColor, wrong);
+    host.publish(topics::kKinectProcessed, image(kKinectFrame));
+  });
+  ASSERT_EQ(people().size(), 1U) << "found all the same";
+  EXPECT_FALSE(wire::from_message(people()[0].kinect_appearance()).known());
+  EXPECT_GT(host.counter("color images: rejected"), 5U);
+  EXPECT_EQ(reason(), "");
 }
 
 TEST_F(Cameras, TakeNobodyForAPersonWhoIsAWall) {

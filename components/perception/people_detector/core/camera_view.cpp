@@ -34,7 +34,7 @@ void place_sightings(std::span<const Sighting> sightings, const geometry::Pose2&
                             covariance_along(odom_T_foot.yaw + std::atan2(one.left, one.forward),
                                              errors.along + errors.along_growth * range,
                                              errors.across + errors.across_growth * range),
-                            one.height});
+                            one.height, one.appearance});
   }
 }
 

@@ -93,9 +93,11 @@ Sighting DepthDetector::settle(const Vote& best, float score) const {
     forward += weight * static_cast<double>(one.forward);
   }
   left /= weights, forward /= weights;
-  return {forward, left,
+  return {forward,
+          left,
           windows_.top({static_cast<float>(forward - kBodyDepth), static_cast<float>(left), 0.0F}),
-          static_cast<double>(score)};
+          static_cast<double>(score),
+          {}};
 }
 
 Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage& image,

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "foundation/imaging/appearance.hpp"
 #include "foundation/result/result.hpp"
 #include "perception/people_detector/core/network.hpp"
 #include "perception/people_detector/core/windows.hpp"
@@ -11,10 +12,11 @@ namespace usher::people_detector {
 
 /// Somebody in a depth image, seen from the camera's foot.
 struct Sighting {
-  double forward = 0.0;  ///< [m] the middle of the body, in the camera's direction
-  double left = 0.0;     ///< [m]
-  double height = 0.0;   ///< [m] of the highest visible point; 0: it leaves the image
-  double score = 0.0;    ///< log odds, over the threshold
+  double forward = 0.0;            ///< [m] the middle of the body, in the camera's direction
+  double left = 0.0;               ///< [m]
+  double height = 0.0;             ///< [m] of the highest visible point; 0: it leaves the image
+  double score = 0.0;              ///< log odds, over the threshold
+  imaging::Appearance appearance;  ///< not known without a color image
 };
 
 struct DetectorConfig {

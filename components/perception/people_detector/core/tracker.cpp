@@ -16,17 +16,33 @@ using geometry::Point2;
 constexpr double kForbidden = 1e6;
 constexpr double kSitsDown = 9.0;  // most that another height costs: who sits down is the same ...
 constexpr double kWatched = 0.3;   // [s] ... if he was seen so lately
-constexpr double kNewcomer = 4.0;  // what a track costs that is not confirmed
+constexpr double kOtherLight = 9.0;  // and other colors: he stepped into other light
+constexpr double kNewcomer = 4.0;    // what a track costs that is not confirmed
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kFirstSpeed = 0.8;  // [m/s] standard deviation of somebody new
 constexpr double kLongest = 1.0;     // [s] of one prediction; a gap of the sensors is no time
 constexpr int kHeights = 10;         // sightings that a mean height is of
+constexpr double kColors = 0.5;      // what a unit of imaging::unlikeness() costs ...
+constexpr double kAsUsual = 3.0;     // ... from that on by which somebody looks unlike himself
 constexpr double kPosture = 0.03;    // [m] by which it changes while somebody is hidden
 constexpr double kReach = 6.0;       // what the farthest place costs where he can be ...
 constexpr double kAnother = 9.0;     // ... and all together if he is another one
 constexpr double kDoubt = 1.5;       // by so little more he is the second one
 constexpr double kStrays = 0.3;      // [m/s] how far from where he is expected
 constexpr double kSure = 0.5;        // [s] after which that is settled all the same
+
+/// What other colors of clothes cost; whoever looks alike is the likelier for it.
+double cost_of_colors(std::optional<double> unlikeness) {
+  return unlikeness ? kColors * (*unlikeness - kAsUsual) : 0.0;
+}
+
+/// As the camera of that source shows somebody; as nothing, from other sensors.
+imaging::Appearances seen_by(Source source, const imaging::Appearance& appearance) {
+  imaging::Appearances seen;
+  const auto camera = static_cast<std::size_t>(source);
+  if (camera < seen.size()) seen[camera] = appearance;
+  return seen;
+}
 
 bool usable(const Observation& one) {
   const Eigen::Matrix2d& c = one.covariance;
@@ -81,18 +97,28 @@ Tracker::Gain Tracker::seen_at(double late) const {
   return look;
 }
 
-double Tracker::cost(const Track& track, const Observation& observation, const Gain& look) const {
+double Tracker::cost(const Track& track, const Observation& observation, const Gain& look,
+                     Source source) const {
   const Point2 away = observation.position - look * track.state;
   if (away.norm() > config_.reach) return kForbidden;
   const Eigen::Matrix2d spread =
       look * track.covariance * look.transpose() + observation.covariance;
   double distance = away.dot(spread.inverse() * away);
+  const bool watched = now_ - track.last_seen() <= kWatched;
   if (observation.height > 0.0 && track.height > 0.0) {
     const double higher = (observation.height - track.height) / config_.height_sigma;
-    const bool watched = now_ - track.last_seen() <= kWatched;
     distance += watched ? std::min(kSitsDown, higher * higher) : higher * higher;
   }
-  if (distance > config_.gate) return kForbidden;
+  double colors = 0.0;
+  if (observation.appearance.known()) {
+    const auto seen = seen_by(source, observation.appearance);
+    colors = std::max(0.0, cost_of_colors(imaging::unlikeness(track.appearances, seen)));
+  }
+  // Whom a camera watches may step into other light: no reason to take him for somebody new.
+  const double shown = std::max(track.seen[static_cast<std::size_t>(Source::kKinect)],
+                                track.seen[static_cast<std::size_t>(Source::kRearCamera)]);
+  if (distance + (now_ - shown <= kWatched ? 0.0 : colors) > config_.gate) return kForbidden;
+  distance += std::min(kOtherLight, colors);
   return distance + std::log(spread.determinant()) + (track.confirmed ? 0.0 : kNewcomer);
 }
 
@@ -108,6 +134,8 @@ void Tracker::correct(Track& track, const Observation& observation, const Gain& 
     track.heights = std::min(track.heights + 1, kHeights);
     track.height += (observation.height - track.height) / track.heights;
   }
+  if (const auto camera = static_cast<std::size_t>(source); camera < track.appearances.size())
+    imaging::learn(track.appearances[camera], observation.appearance);
   if (source != Source::kLaser) ++track.sightings;
   if (track.confirmed) return;
   track.fresh = track.sightings >= config_.confirmations ||
@@ -125,6 +153,7 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
   track.height = observation.height;
   track.heights = observation.height > 0.0;
+  track.appearances = seen_by(source, observation.appearance);
   track.born = time;
   track.seen.fill(kNever);
   track.seen[static_cast<std::size_t>(source)] = time;
@@ -133,19 +162,22 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   tracks_.push_back(track);
 }
 
-/// How little somebody new is like somebody hidden {0..}, who may be: near enough to have walked
-/// here since, and of the same height. Of whom no height is known only the place speaks.
+/// How little somebody new is like somebody hidden, who may be: near enough to have walked here
+/// since, of the same height and in the same clothes. Of whom neither height nor clothes are known
+/// only the place speaks.
 double Tracker::unlikeness(const Track& hidden, const Track& track) const {
   if (hidden.last_seen() >= track.born) return kForbidden;
   const bool measured = hidden.heights > 0 && track.heights > 0;
-  const double range = (measured ? config_.walk : kStrays) * (now_ - hidden.last_seen());
+  const auto colors = imaging::unlikeness(hidden.appearances, track.appearances);
+  const double range = (measured || colors ? config_.walk : kStrays) * (now_ - hidden.last_seen());
   const double away = (hidden.position() - track.position()).norm() / (config_.reach + range);
   if (away > 1.0) return kForbidden;
-  if (!measured) return kReach * away * away;
+  double unlike = kReach * away * away + cost_of_colors(colors);
+  if (!measured) return unlike < kAnother ? unlike : kForbidden;
   const double noise = config_.height_sigma * config_.height_sigma;
   const double spread = 2.0 * kPosture * kPosture + noise / track.heights + noise / hidden.heights;
   const double higher = hidden.height - track.height;
-  const double unlike = kReach * away * away + higher * higher / spread;
+  unlike += higher * higher / spread;
   return unlike < kAnother ? unlike : kForbidden;
 }
 
@@ -187,6 +219,9 @@ void Tracker::recognize() {
     track.born = hidden.born;
     if (hidden.heights > track.heights)
       track.height = hidden.height, track.heights = hidden.heights;
+    for (std::size_t camera = 0; camera < track.appearances.size(); ++camera)
+      if (!track.appearances[camera].known())
+        track.appearances[camera] = hidden.appearances[camera];
     hidden.seen.fill(kNever);  // is forgotten
   }
 }
@@ -211,7 +246,7 @@ bool Tracker::update(double time, Source source, std::span<const Observation> ob
   costs_.clear();
   for (const Track& track : tracks_) {
     for (const Observation& one : observations_) {
-      costs_.push_back(cost(track, one, look));
+      costs_.push_back(cost(track, one, look, source));
     }
   }
   const auto count = static_cast<int>(tracks_.size());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/imaging/appearance.hpp"
 #include "foundation/result/result.hpp"
 #include "perception/people_detector/core/assignment.hpp"
 
@@ -21,7 +22,8 @@ inline constexpr std::size_t kSources = 4;
 struct Observation {
   geometry::Point2 position = geometry::Point2::Zero();               ///< [m]
   Eigen::Matrix2d covariance = 0.0064 * Eigen::Matrix2d::Identity();  ///< [m^2] of the position
-  double height = 0.0;  ///< [m] of the highest point; 0: not known
+  double height = 0.0;             ///< [m] of the highest point; 0: not known
+  imaging::Appearance appearance;  ///< only a camera with a color image knows it
 };
 
 /// The covariance of a position that is `along` uncertain on the line of sight, at `bearing` [rad],
@@ -39,7 +41,8 @@ struct Track {
   geometry::Point2 birthplace = geometry::Point2::Zero();
   int sightings = 0;
   bool confirmed = false;
-  bool fresh = false;  ///< not confirmed yet: may be somebody who was hidden
+  imaging::Appearances appearances;  ///< as Kinect and rear camera showed them lately
+  bool fresh = false;                ///< not confirmed yet: may be somebody who was hidden
 
   geometry::Point2 position() const { return state.head<2>(); }
   geometry::Point2 velocity() const { return state.tail<2>(); }
@@ -61,9 +64,10 @@ struct TrackerConfig {
 Status check(const TrackerConfig& config);
 
 /// Follows people over time and sensors: a Kalman filter of constant velocity for each, global
-/// nearest neighbours by position and height. Who is hidden is kept for some seconds where the
-/// person would have walked on, more and more uncertain, and found again there. Only cameras make
-/// people; legs in the laser must walk before they count.
+/// nearest neighbours by position, height and the colors of clothes. Who is hidden is kept for some
+/// seconds where the person would have walked on, more and more uncertain, and found again there;
+/// whose clothes have clearly other colors is another one. Only cameras make people; legs in the
+/// laser must walk before they count.
 class Tracker {
  public:
   static constexpr std::size_t kMost = 64;
@@ -87,7 +91,8 @@ class Tracker {
   void predict(Track& track, double seconds) const;
   using Gain = Eigen::Matrix<double, 2, 4>;
   Gain seen_at(double late) const;
-  double cost(const Track& track, const Observation& observation, const Gain& look) const;
+  double cost(const Track& track, const Observation& observation, const Gain& look,
+              Source source) const;
   void correct(Track& track, const Observation& observation, const Gain& look, Source source);
   void add(const Observation& observation, Source source, double time);
   double unlikeness(const Track& hidden, const Track& track) const;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -53,10 +54,9 @@ void PeopleDetectorSimComponent::look(Camera& camera, const Sightings& message, 
     return;
   }
   found_.clear();
-  for (const auto& pose : message.poses()) {
-    const auto& place = pose.position();
-    found_.push_back({place.x(), place.y(), place.z(), 0.0});
-  }
+  for (const auto& one : message.sightings())
+    found_.push_back(
+        {one.forward(), one.left(), one.height(), 0.0, wire::from_message(one.appearance())});
   following_.see(camera.source, stamp, found_, *odom_T_base, inverse(*odom_T_base) * odom_T_foot);
 }
 

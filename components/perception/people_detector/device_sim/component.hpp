@@ -14,7 +14,7 @@ class PeopleDetectorSimComponent final : public runtime::Component {
   explicit PeopleDetectorSimComponent(runtime::Host& host);
 
  private:
-  using Sightings = geometry_msgs::msg::PoseArray;
+  using Sightings = usher_sim_msgs::msg::Sightings;
   struct Camera {
     const char* name = "";
     Source source = Source::kKinect;

@@ -1,5 +1,7 @@
 #include "perception/people_detector/shell/camera_input.hpp"
 
+#include <cmath>
+
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 #include "wire/images.hpp"
@@ -31,7 +33,9 @@ CameraInput::CameraInput(runtime::Host& host, Following& following, const Port& 
       following_(following),
       port_(port),
       config_(config),
-      rejected_(host.health().counter("images: rejected")) {
+      rejected_(host.health().counter("images: rejected")),
+      rejected_colors_(host.health().counter("color images: rejected")) {
+  colors_ = host.input(*port.colors, {.optional = true});
   info_ = host.input(*port.info, {.optional = true},
                      [this](const auto& info, const auto&) { take_info(info); });
   images_ = host.input(
@@ -53,6 +57,7 @@ void CameraInput::take_info(const sensor_msgs::msg::CameraInfo& info) {
   auto made = DepthDetector::make(*intrinsics, config_);
   if (!made) host_.fault(std::string(port_.name) + ": " + made.error());
   detector_.emplace(std::move(made).value());
+  clothes_.emplace(*intrinsics);
 }
 
 void CameraInput::take_image(std::shared_ptr<const Image> image) {
@@ -97,7 +102,23 @@ void CameraInput::look(const Image& image, runtime::Time stamp, const geometry::
     return;
   }
   refusal_.clear();
-  following_.see(port_.source, stamp, *sightings, odom_T_base, camera.base_T_foot);
+  seen_.assign(sightings->begin(), sightings->end());
+  dress(*depth, camera.view, stamp);
+  following_.see(port_.source, stamp, seen_, odom_T_base, camera.base_T_foot);
+}
+
+/// By the newest color image, if it is of the depth image's time.
+void CameraInput::dress(const imaging::DepthImage& depth, const View& view, runtime::Time stamp) {
+  const Image* message = colors_.latest();
+  if (message == nullptr || seen_.empty()) return;
+  const runtime::Time taken = wire::from_message(message->header().stamp());
+  if (std::abs(runtime::seconds(taken - stamp)) > Clothes::kApart) return;
+  const auto color = wire::color_image(*message, rgb_);
+  if (!color || color->width != depth.width || color->height != depth.height) {
+    ++rejected_colors_;
+    return;
+  }
+  for (Sighting& one : seen_) one.appearance = clothes_->look(depth, *color, view, one);
 }
 
 void CameraInput::refuse(const std::string& reason) {

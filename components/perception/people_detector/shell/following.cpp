@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -103,6 +104,10 @@ usher_msgs::msg::Person to_message(const Track& track, double now) {
   person.by_rear(by(Source::kRearCamera));
   person.by_laser(by(Source::kLaser));
   person.by_face(by(Source::kFace));
+  person.kinect_appearance(
+      wire::to_message(track.appearances[static_cast<std::size_t>(Source::kKinect)]));
+  person.rear_appearance(
+      wire::to_message(track.appearances[static_cast<std::size_t>(Source::kRearCamera)]));
   return person;
 }
 
@@ -205,8 +210,11 @@ void Following::see_faces(const usher_msgs::msg::Faces& message, runtime::Time s
       continue;
     }
     const double range = face.range() + kNape, bearing = face.bearing();
-    faced_.push_back({range * std::cos(bearing), range * std::sin(bearing),
-                      face.elevation() / kFaceHeight, 0.0});
+    faced_.push_back({range * std::cos(bearing),
+                      range * std::sin(bearing),
+                      face.elevation() / kFaceHeight,
+                      0.0,
+                      {}});
   }
   see(Source::kFace, stamp, faced_, odom_T_base, {});
 }

@@ -7,6 +7,7 @@
 #include "perception/people_detector/device_sim/component.hpp"
 #include "room_scan.hpp"
 #include "runtime/testing/test_host.hpp"
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -213,16 +214,18 @@ class SimComponent : public testing::Test {
       places.transforms().push_back(wire::transform(
           host.now(), frames::kBaseFootprint, "kinect_level", geometry::to_space({0.2, 0.0, 0.0})));
       host.publish(topics::kTf, places);
-      geometry_msgs::msg::PoseArray seen;
+      usher_sim_msgs::msg::Sightings seen;
       seen.header(wire::header(host.now(), frame));
-      seen.poses().resize(2);
-      seen.poses()[0].position().x(2.5);
-      seen.poses()[0].position().z(1.7);
-      seen.poses()[1].position().x(std::nan(""));
+      seen.sightings().resize(2);
+      seen.sightings()[0].forward(2.5);
+      seen.sightings()[0].height(1.7);
+      seen.sightings()[0].appearance(wire::to_message(clothes));
+      seen.sightings()[1].forward(std::nan(""));
       if (people) host.publish(topics::kSimKinectPeople, seen);
       host.run_for(milliseconds(33));
     }
   }
+  imaging::Appearance clothes;
   runtime::TestHost host{
       runtime::component_factory<PeopleDetectorSimComponent>("people_detector_sim"),
       "robot.half_width: 0.33 m"};
@@ -238,6 +241,19 @@ TEST_F(SimComponent, FollowsWhomTheModelFinds) {
   const Point2 place = Pose2{1.0, 2.0, 0.5} * Point2(2.7, 0.0);
   EXPECT_LT((place - Point2(person.x(), person.y())).norm(), 0.01);
   EXPECT_EQ(host.heartbeat().reason(), "no scan");
+}
+
+TEST_F(SimComponent, TellsHowThoseWhomTheModelFindsAreDressed) {
+  run(1000, true);
+  EXPECT_FALSE(
+      wire::from_message(host.last(topics::kPeople)->people()[0].kinect_appearance()).known());
+  clothes = {{{40.0, 50.0, 25.0}, 1}, {}};
+  run(1000, true);
+  const auto person = host.last(topics::kPeople)->people()[0];
+  EXPECT_NEAR(person.kinect_appearance().upper().a(), 50.0, 1e-3);
+  EXPECT_GE(person.kinect_appearance().upper().images(), 5);
+  EXPECT_EQ(person.kinect_appearance().legs().images(), 0);
+  EXPECT_EQ(person.rear_appearance().upper().images(), 0) << "it did not look";
 }
 
 /// A wall on the map where the person of run() is, in odom.

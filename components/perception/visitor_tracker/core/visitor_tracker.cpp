@@ -20,9 +20,11 @@ constexpr double kAhead = 0.5;         // [m] who is farther ahead does not foll
 constexpr double kFollowWithin = 6.0;  // [m]
 constexpr double kWaitsWithin =
     2.0;  // [m] who stands so near behind a robot that stands, waits for it
-constexpr double kBlindWithin = 2.5;  // [m] farther somebody would have been seen on the way there
-constexpr double kWaits = 3.0;        // [s] so long, for a visitor who was lost near the robot
-constexpr double kWaitsLong = 5.0;    // [s] elsewhere: longer than somebody who cannot pass
+constexpr double kBlindWithin = 2.5;   // [m] farther somebody would have been seen on the way there
+constexpr double kWaits = 3.0;         // [s] so long, for a visitor who was lost near the robot
+constexpr double kWaitsLong = 5.0;     // [s] elsewhere: longer than somebody who cannot pass
+constexpr double kWaitsAlike = 1.0;    // [s] who wears the visitor's clothes
+constexpr double kAlikeFollows = 0.5;  // of the time that others must follow, likewise
 constexpr double kStrangerWaits = 6.0;  // [s] who came from ahead or was seen beside the visitor
 constexpr double kStaysPut = 0.6;       // [m]
 constexpr double kCameraEnds = 0.6;  // [rad] to either side: from here on only who walks is noticed
@@ -30,6 +32,8 @@ constexpr double kStepsAside = 0.4;  // [m/s] by which somebody moves about wher
 constexpr double kAside = 0.3;       // [m] at once
 constexpr double kFarAside = 1.0;    // [m] at most
 constexpr double kWalksOff = 0.6;    // [m/s] away from the robot
+constexpr double kUnlike = 0.5;      // [s] a number whose person looks like another one is not his
+constexpr double kAdapts = 10.0;     // [s] of being seen until other light is the usual one
 constexpr double kHidden = 0.7;      // [s] a number that shows up elsewhere after that ...
 constexpr double kElsewhere = 1.5;   // [m] ... is not his
 constexpr std::uint64_t kLost = std::numeric_limits<std::uint64_t>::max();  // nobody's number
@@ -102,7 +106,7 @@ const Estimate& VisitorTracker::update(const Moment& moment) {
       keep_leader(broke ? 0.0 : passed);
       break;
   }
-  report(moment);
+  report(moment, broke ? 0.0 : passed);
   return estimate_;
 }
 
@@ -180,6 +184,9 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
     } else {
       habit.before = 0.0;
     }
+    const bool sighted = look.person->unseen <= kSighted;
+    habit.unlike =
+        !on_the_way() || !is_another(*look.person) ? 0.0 : habit.unlike + (sighted ? passed : 0.0);
     look.habit = habit;
   }
 }
@@ -210,6 +217,37 @@ bool VisitorTracker::as_tall(const Look& look) const {
   if (!(height > 0.0) || height_ <= 0.0) return true;
   if (height < height_ - kSameHeight) return false;
   return height < height_ + kSameHeight || time_ - last_.time > kMayHaveBent;
+}
+
+/// Clothes of clearly other colors than the visitor's.
+bool VisitorTracker::is_another(const Person& person) const {
+  const auto unlike = imaging::unlikeness(worn_, person.appearances);
+  return unlike && *unlike > imaging::kAnother;
+}
+
+/// By height and clothes.
+bool VisitorTracker::may_be(const Look& look) const {
+  return as_tall(look) && !is_another(*look.person);
+}
+
+/// Shirt and trousers are both like the visitor's: few others' are.
+bool VisitorTracker::looks_like_him(const Person& person) const {
+  const auto whole = [](const imaging::Appearance& seen) {
+    return seen.upper.known() && seen.legs.known();
+  };
+  const auto unlike = imaging::unlikeness(worn_, person.appearances);
+  return unlike && *unlike < imaging::kAlike && std::ranges::any_of(worn_, whole) &&
+         std::ranges::any_of(person.appearances, whole);
+}
+
+/// What the visitor wears: before a journey as he is seen there, on it slowly, as the light
+/// changes, and never from somebody who may be another one.
+void VisitorTracker::learn(const Person& person, double passed) {
+  const auto unlike = imaging::unlikeness(worn_, person.appearances);
+  if (on_the_way() && unlike && *unlike > imaging::kAlike) return;
+  const double share = on_the_way() ? std::min(1.0, passed / kAdapts) : 1.0;
+  for (std::size_t camera = 0; camera < worn_.size(); ++camera)
+    imaging::blend(worn_[camera], person.appearances[camera], share);
 }
 
 bool VisitorTracker::before(const Look& look) const {
@@ -283,12 +321,29 @@ void VisitorTracker::distrust(const Pose2& odom_T_base) {
     if (!hidden || (id != first_ && id != held_) || look.person->unseen > kSighted) continue;
     const double gone = time_ - look.person->unseen - last_.time;
     if (gone < kHidden || (look.person->position - last_.place).norm() <= kElsewhere) continue;
-    habits_[id].beside = look.person->position;
-    held_ = first_ = kLost;
+    take_from(look);
   }
 }
 
+/// Whoever has the visitor's number, or is taken for him, wears something else: another one.
+void VisitorTracker::distrust_clothes() {
+  for (const Look& look : looks_) {
+    const auto id = look.person->id;
+    if ((id == first_ || id == held_) && look.habit.unlike >= kUnlike) take_from(look);
+  }
+}
+
+/// Somebody is not the visitor, who is where he himself was last seen.
+void VisitorTracker::take_from(const Look& look) {
+  const auto id = look.person->id;
+  habits_[id].beside = look.person->position;
+  if (id == held_ && id != first_) last_ = last_of_first_;
+  if (id == first_) first_ = kLost;
+  if (id == held_) held_ = first_;
+}
+
 void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
+  distrust_clothes();
   distrust(odom_T_base);
   if (const Look* first = find(first_); seen(first)) return hold(*first, time_);
   if (const Look* held = find(held_); seen(held)) {
@@ -297,9 +352,7 @@ void VisitorTracker::keep_follower(const Pose2& odom_T_base) {
     const Look* other = follower(kMistaken * config_.follows, kFollowWithin, true);
     if (other && other->range < held->range) return hold(*other, time_);
     if (held->place.x() > kGoneAhead && held_ != first_) {
-      habits_[held_].beside = held->person->position;
-      held_ = first_;
-      last_ = last_of_first_;
+      take_from(*held);
     }
     return;
   }
@@ -324,7 +377,10 @@ const VisitorTracker::Look* VisitorTracker::waits(const Pose2& odom_T_base) cons
   const Look* best = nullptr;
   for (const Look& look : looks_) {
     const bool stranger = look.habit.beside || look.habit.from_ahead;
-    if (look.habit.stays < (stranger ? kStrangerWaits : least) || !as_tall(look)) continue;
+    const double needed = stranger                       ? kStrangerWaits
+                          : looks_like_him(*look.person) ? kWaitsAlike
+                                                         : least;
+    if (look.habit.stays < needed || !may_be(look)) continue;
     if (!best || look.range < best->range) best = &look;
   }
   return best;
@@ -332,6 +388,7 @@ const VisitorTracker::Look* VisitorTracker::waits(const Pose2& odom_T_base) cons
 
 /// The robot follows: the same one, else who took the place or came back.
 void VisitorTracker::keep_leader(double passed) {
+  distrust_clothes();
   if (const Look* first = find(first_); seen(first)) hold(*first, time_);
   if (!seen(find(held_))) {
     const Look* found = held_ == 0 ? nearest_before() : come_from_there();
@@ -368,7 +425,7 @@ const VisitorTracker::Look* VisitorTracker::come_from_there() const {
   for (const Look& look : looks_) {
     const bool new_here = look.habit.since > last_.time;
     const double gone = (new_here ? look.habit.since : time_) - last_.time;
-    if (!seen(&look) || look.habit.beside || gone > kLeaderHidden || !as_tall(look)) continue;
+    if (!seen(&look) || look.habit.beside || gone > kLeaderHidden || !may_be(look)) continue;
     const bool likewise =
         look.speed < kStops || (look.person->velocity - last_.velocity).norm() <= kSameVelocity;
     const Point2 place = new_here ? look.habit.from : look.person->position;
@@ -386,7 +443,7 @@ const VisitorTracker::Look* VisitorTracker::come_back() const {
   for (const Look& look : looks_) {
     const bool stood_there =
         look.habit.beside && (look.person->position - *look.habit.beside).norm() < kComes;
-    if (look.habit.stands < config_.returns || stood_there || !as_tall(look)) continue;
+    if (look.habit.stands < config_.returns || stood_there || !may_be(look)) continue;
     if (!best || look.range < best->range) best = &look;
   }
   return best;
@@ -402,7 +459,7 @@ const VisitorTracker::Look* VisitorTracker::same_place(const Pose2& odom_T_base)
   double least = hidden ? kFarAside : kSamePlace;
   for (const Look& look : looks_) {
     const double off = (look.person->position - there).norm();
-    if (!seen(&look) || look.habit.beside || off > least || !as_tall(look)) continue;
+    if (!seen(&look) || look.habit.beside || off > least || !may_be(look)) continue;
     if ((look.person->velocity - last_.velocity).norm() > kSameVelocity) continue;
     best = &look;
     least = off;
@@ -420,7 +477,8 @@ const VisitorTracker::Look* VisitorTracker::follower(double least, double neares
     const bool passes = !drives && look.place.x() > 0.0;
     const bool new_one =
         look.person->id != held_ && seen(&look) && !passes && (any || !look.habit.beside);
-    if (!new_one || look.habit.follows < least || off > nearest || !as_tall(look)) continue;
+    const double needed = looks_like_him(*look.person) ? kAlikeFollows * least : least;
+    if (!new_one || look.habit.follows < needed || off > nearest || !may_be(look)) continue;
     best = &look;
     nearest = off;
   }
@@ -448,17 +506,18 @@ bool VisitorTracker::looks_there(const Moment& moment) const {
   return behind ? moment.looks_behind : moment.looks_ahead;
 }
 
-void VisitorTracker::report(const Moment& moment) {
+void VisitorTracker::report(const Moment& moment, double passed) {
   estimate_ = {};
   estimate_.person = held_ == kLost ? 0 : held_;
   const Look* held = find(held_);
   const bool guides = service_ == Service::kGuides;
-  if (held && held->person->unseen <= kSighted) {
+  if (held && held->person->unseen <= kSighted && held->habit.unlike == 0.0) {
     last_ = {moment.time - held->person->unseen, held->person->position, held->person->velocity};
     if (held_ == first_) last_of_first_ = last_;
-    if (!on_the_way() && held_ != measured_) measured_ = held_, height_ = 0.0;
+    if (!on_the_way() && held_ != measured_) measured_ = held_, height_ = 0.0, worn_ = {};
     if (held_ == measured_ && held->person->height > 0.0)
       height_ = std::max(height_, held->person->height);
+    learn(*held->person, passed);
   }
   // Ahead, the laser shows who follows only now and then: without eyes behind nothing is known.
   if (guides && !moment.looks_behind) return;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/imaging/appearance.hpp"
 
 namespace usher::visitor_tracker {
 
@@ -29,6 +30,7 @@ struct Person {
   double age = std::numeric_limits<double>::infinity();      ///< [s] since the first sighting
   double unseen = 0.0;                                       ///< [s] since the last one
   double height = std::numeric_limits<double>::quiet_NaN();  ///< [m] NaN: not known
+  imaging::Appearances appearances{};                        ///< to Kinect and rear camera
 };
 
 struct Moment {
@@ -72,7 +74,8 @@ struct Estimate {
 /// crosses, comes from ahead or stands beside the way is not taken for him. When the first identity
 /// turns up again, it counts. When the robot follows the visitor: the same one, wherever he goes;
 /// when the identity broke, whoever first turned up where he was going to be, or comes to stand at
-/// the robot for a while. Who was there beside him is another one.
+/// the robot for a while. Who was there beside him is another one, and so is whose clothes have
+/// clearly other colors, whatever number the people tracker gives him.
 ///
 /// Nobody is there only where a camera looks; else it is not known. Deterministic; up to 64 people.
 class VisitorTracker {
@@ -104,6 +107,7 @@ class VisitorTracker {
     geometry::Point2 anchor = geometry::Point2::Zero();
     double stays = 0.0;   ///< [s] near `anchor` and the robot, which stands
     double stands = 0.0;  ///< [s] at the robot without a break
+    double unlike = 0.0;  ///< [s] clearly, without a break
   };
   struct Look {
     const Person* person = nullptr;
@@ -128,6 +132,8 @@ class VisitorTracker {
   void keep_follower(const geometry::Pose2& odom_T_base);
   const Look* waits(const geometry::Pose2& odom_T_base) const;
   void distrust(const geometry::Pose2& odom_T_base);
+  void distrust_clothes();
+  void take_from(const Look& look);
   void keep_leader(double passed);
   void note_others(double passed);
   const Look* come_from_there() const;
@@ -139,10 +145,14 @@ class VisitorTracker {
   bool looks_there(const Moment& moment) const;
   bool seen(const Look* look) const;
   bool as_tall(const Look& look) const;
+  bool is_another(const Person& person) const;
+  bool may_be(const Look& look) const;
+  bool looks_like_him(const Person& person) const;
+  void learn(const Person& person, double passed);
   bool blind_at(const geometry::Point2& place, double from, double around) const;
   void hold(const Look& look, double time);
   bool out_of_view(const geometry::Pose2& odom_T_base) const;
-  void report(const Moment& moment);
+  void report(const Moment& moment, double passed);
 
   Config config_;
   std::deque<std::pair<double, geometry::Point2>>
@@ -159,6 +169,7 @@ class VisitorTracker {
   Sighting last_of_first_;
   std::uint64_t measured_ = 0;  ///< whose height it is; 0: nobody's yet
   double height_ = 0.0;         ///< [m] his greatest; 0: not known
+  imaging::Appearances worn_;   ///< his clothes, as each camera shows them
   Estimate estimate_;
 };
 

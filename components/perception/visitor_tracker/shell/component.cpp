@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -94,7 +95,9 @@ void VisitorTrackerComponent::take(const usher_msgs::msg::People& message) {
                        {person.vx(), person.vy()},
                        person.age(),
                        person.unseen(),
-                       static_cast<double>(person.height())});
+                       static_cast<double>(person.height()),
+                       {wire::from_message(person.kinect_appearance()),
+                        wire::from_message(person.rear_appearance())}});
   }
   const runtime::Time stamp = wire::from_message(message.header().stamp());
   const auto* odometry = odom_.fresh();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runtime/testing/test_host.hpp"
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -23,6 +24,7 @@ struct Bench {
        guide = true;
   bool ahead = true, behind = true;
   float unseen = 0.0F;
+  imaging::LabColor shirt{37.0, 52.0, 30.0};
 
   void run(int ms) {
     for (int i = 0; i < ms; i += 50) {
@@ -49,6 +51,7 @@ struct Bench {
       person.y(y);
       person.age(100.0F);
       person.unseen(unseen);
+      person.rear_appearance(wire::to_message(imaging::Appearance{{shirt, 5}, {}}));
       if (people) host.publish(topics::kPeople, message);
       host.run_for(milliseconds(45));
     }
@@ -131,6 +134,18 @@ TEST(VisitorTrackerShell, WithoutPeopleOrOdometryTheVisitorIsUnknown) {
   bench.odometry = true;
   bench.run(1000);
   EXPECT_EQ(bench.last().presence(), presence::PRESENCE_SEEN);
+}
+
+TEST(VisitorTrackerShell, WhoHasHisNumberInOtherClothesIsAnother) {
+  Bench bench;
+  bench.run(1000);
+  bench.serves = bench.guides = true;
+  bench.odom_T_base.yaw = geometry::kPi;
+  bench.run(1000);
+  ASSERT_EQ(bench.last().presence(), presence::PRESENCE_SEEN);
+  bench.shirt = {18.0, 4.0, -20.0};
+  bench.run(1000);
+  EXPECT_EQ(bench.last().person(), 0U);
 }
 
 TEST(VisitorTrackerShell, WithoutTheGuideItLooksForWhoStandsBeforeTheRobot) {

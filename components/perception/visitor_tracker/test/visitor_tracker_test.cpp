@@ -18,8 +18,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class Scene : public testing::Test {
  protected:
   Person& add(std::uint64_t id, const Point2& at, const Point2& velocity = {0, 0}) {
-    return people.emplace_back(
-        Person{.id = id, .position = at, .velocity = velocity, .height = height});
+    return people.emplace_back(Person{
+        .id = id, .position = at, .velocity = velocity, .height = height, .appearances = worn});
   }
   Person& person(std::uint64_t id) {
     for (Person& each : people) {
@@ -94,9 +94,16 @@ class Scene : public testing::Test {
   Service service = Service::kNobody;
   bool ahead = true, behind = true;
   double time = 100.0, drives = 0.0;
-  double height = kNan;  ///< of whoever is added
+  double height = kNan;       ///< of whoever is added
+  imaging::Appearances worn;  ///< likewise
   Estimate estimate;
 };
+
+/// As a camera shows a shirt of that color over jeans.
+imaging::Appearance in(const imaging::LabColor& shirt) {
+  return {{shirt, 5}, {{28.0, 2.0, -21.0}, 5}};
+}
+constexpr imaging::LabColor kRed{37.0, 52.0, 30.0}, kNavy{18.0, 4.0, -20.0};
 
 class BeforeTheRobot : public Scene {};
 class OnTheWay : public Scene {};
@@ -441,6 +448,113 @@ TEST_F(OnTheWay, WhoIsClearlyShorterIsNotAndWhoIsTallerOnlyAfterAWhile) {
   EXPECT_TRUE(found(1.95, 9.0)) << "he may have bent over the tablet all the time";
 }
 
+TEST_F(OnTheWay, WhoWearsSomethingElseIsNotHoweverHeFollowsOrWaits) {
+  const auto found = [this](const imaging::Appearances& other, bool waits) {
+    tracker = VisitorTracker({});
+    people.clear();
+    robot = {};
+    service = Service::kNobody;
+    drives = 0.0;
+    worn = {in(kRed), in(kRed)};
+    guide();
+    hide(1);
+    run(2.5);
+    worn = other;
+    if (waits) drives = 0.0;
+    add(6, robot.position() + Point2(waits ? 1.5 : 2.0, 0.4), {waits ? 0.0 : -1.1, 0.0});
+    run(waits ? 10.0 : 1.0);
+    return sees(6);
+  };
+  for (const bool waits : {false, true}) {
+    EXPECT_TRUE(found({in(kRed), in(kRed)}, waits));
+    EXPECT_TRUE(found({}, waits)) << "nothing is known of his clothes";
+    EXPECT_FALSE(found({imaging::Appearance{}, in(kNavy)}, waits));
+  }
+}
+
+TEST_F(OnTheWay, WhoWearsTheSameIsFoundAgainSooner) {
+  const auto found_after = [this](const imaging::Appearances& clothes, bool waits) {
+    tracker = VisitorTracker({});
+    people.clear();
+    robot = {};
+    service = Service::kNobody;
+    drives = 0.0;
+    worn = {in(kRed), in(kRed)};
+    guide();
+    hide(1);
+    run(2.5);
+    worn = clothes;
+    if (waits) drives = 0.0;
+    add(6, robot.position() + Point2(waits ? 1.5 : 2.0, 0.4), {waits ? 0.0 : -1.1, 0.0});
+    const double since = time;
+    while (!sees(6) && time < since + 10.0) run(kStep);
+    return time - since;
+  };
+  for (const bool waits : {false, true}) {
+    const double unknown = found_after({}, waits);
+    EXPECT_LT(found_after({imaging::Appearance{}, in(kRed)}, waits), 0.7 * unknown);
+    imaging::Appearance legs = in(kRed);
+    legs.upper = {};
+    EXPECT_NEAR(found_after({imaging::Appearance{}, legs}, waits), unknown, 1e-6)
+        << "many wear jeans";
+  }
+}
+
+TEST_F(OnTheWay, WhoWasSeenByTheKinectIsKnownByTheRearCameraToo) {
+  worn = {in(kRed), {}};
+  guide();
+  hide(1);
+  run(2.5);
+  worn = {imaging::Appearance{}, in(kNavy)};
+  add(6, robot.position() + Point2(2.0, 0.4), {-1.1, 0.0});
+  run(1.0);
+  EXPECT_FALSE(sees(6));
+  worn = {imaging::Appearance{}, in({45.0, 45.0, 24.0})};  // red in another camera's colors
+  add(7, robot.position() + Point2(2.0, -0.4), {-1.1, 0.0});
+  run(1.0);
+  EXPECT_TRUE(sees(7));
+}
+
+TEST_F(OnTheWay, HisNumberGivenToSomebodyInOtherClothesIsNotHis) {
+  worn = {in(kRed), in(kRed)};
+  guide();
+  const Point2 there = person(1).position;
+  person(1).appearances[1] = in(kNavy);
+  run(0.3);
+  EXPECT_TRUE(sees(1)) << "a moment says little";
+  run(1.5);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+  EXPECT_EQ(estimate.person, 0U);
+  add(6, there + Point2(-2.0, 0.3), {-1.1, 0.0});
+  run(1.0);
+  EXPECT_TRUE(sees(6)) << "he himself";
+}
+
+TEST_F(OnTheWay, OtherLightMakesNobodyElseOfHim) {
+  worn = {in(kRed), in(kRed)};
+  guide();
+  for (int i = 0; i < 60; ++i) {
+    person(1).appearances[1].upper.color.lightness += 0.5;
+    person(1).appearances[1].upper.color.a += 0.3;
+    run(0.5);
+    ASSERT_TRUE(sees(1)) << i;
+  }
+}
+
+TEST_F(OnTheWay, SomebodyMistakenForTheVisitorIsLeftWhenHisClothesAreSeen) {
+  worn = {in(kRed), in(kRed)};
+  guide();
+  hide(1);
+  run(2.0);
+  worn = {};
+  add(6, robot.position() + Point2(2.0, 0.4), {-1.0, 0.0});
+  run(1.0);
+  ASSERT_TRUE(sees(6));
+  person(6).appearances[1] = in(kNavy);
+  run(1.0);
+  EXPECT_FALSE(sees(6));
+}
+
 TEST_F(OnTheWay, SomebodyTooFarFromWhereTheVisitorWasIsNot) {
   guide();
   hide(1);
@@ -721,6 +835,18 @@ TEST_F(Following, WhoWalkedBesideHimOrCameFromElsewhereIsNot) {
     run(0.1);
     EXPECT_NE(estimate.presence, Presence::kSeen) << i;
   }
+}
+
+TEST_F(Following, WhoWearsSomethingElseIsNotHe) {
+  worn = {in(kRed), {}};
+  follow();
+  person(1).appearances[0] = in(kNavy);
+  run(1.0);
+  EXPECT_FALSE(sees(1)) << "his number was given to somebody else";
+  worn = {in(kRed), {}};
+  add(6, person(1).position + Point2(0.3, 0.3), {1.0, 0.0});
+  run(0.5);
+  EXPECT_TRUE(sees(6));
 }
 
 TEST_F(Following, LongAfterALossWhoWalksThereIsNot) {

@@ -96,7 +96,19 @@ double hip_height(const Body& body, const Pose& pose) {
   return highest * body.height;
 }
 
+// Order in which make_limbs() adds the trunk's limb of each side.
+constexpr std::size_t kTrunk = 5, kLimbsOfASide = 7;
+constexpr double kBelt = 0.055;  // of the height, above the hips: over the thighs of who sits
+
 }  // namespace
+
+Waist waist_of(const Body& body, const std::vector<Limb>& limbs) {
+  const Limb& left = limbs[kTrunk];
+  const Limb& right = limbs[kTrunk + kLimbsOfASide];
+  const Eigen::Vector3f up = (left.to + right.to - left.from - right.from).normalized();
+  const auto belt = static_cast<float>(kBelt * body.height);
+  return {0.5F * (left.from + right.from) + belt * up, up};
+}
 
 void make_limbs(const Body& body, std::vector<Limb>& limbs) {
   limbs.clear();

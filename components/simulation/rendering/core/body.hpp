@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "simulation/rendering/core/clothes.hpp"
 
 namespace usher::rendering {
 
@@ -23,7 +25,8 @@ struct Body {
   double height = 1.75;  ///< [m] {0.8..2.2} when standing upright
   double width = 1.0;    ///< {0.7..1.5} girth, times the usual one
   Posture posture = Posture::kStanding;
-  double phase = 0.0;  ///< [rad] of the stride while walking
+  double phase = 0.0;                             ///< [rad] of the stride while walking
+  std::optional<Clothes> clothes = std::nullopt;  ///< none: a color by its number
 };
 
 /// A limb: the hull of two balls.
@@ -34,5 +37,12 @@ struct Limb {
 
 /// Head, trunk, arms and legs of a body by usual proportions; `limbs` is cleared first.
 void make_limbs(const Body& body, std::vector<Limb>& limbs);
+
+/// Where the clothes of trunk and arms begin and those of the legs end: on the plane through
+/// `middle`, `up` is the side of the trunk.
+struct Waist {
+  Eigen::Vector3f middle, up;
+};
+Waist waist_of(const Body& body, const std::vector<Limb>& limbs);
 
 }  // namespace usher::rendering

@@ -6,10 +6,13 @@
 #include <limits>
 
 #include "simulation/rendering/core/depth_sensor.hpp"
+#include "simulation/rendering/core/light.hpp"
+#include "simulation/rendering/core/painter.hpp"
 
 namespace usher::rendering {
 namespace {
 
+using geometry::Point2;
 using geometry::Pose3;
 
 Prism slab(double x0, double y0, double x1, double y1, double bottom, double top,
@@ -138,6 +141,80 @@ TEST(Bodies, AreSeenWhereTheyAreAndByNumber) {
   EXPECT_GT(counts[0], 5000);
   EXPECT_GT(counts[1], 2000);
   EXPECT_GT(counts[0], counts[1]);
+}
+
+/// The color of the pixel that shows somebody 3 m ahead at a height [m], standing or as told.
+std::array<int, 3> color_at(const Body& body, double height, const Gains& gains = {1, 1, 1}) {
+  const Hits hits = seen({}, camera(1.0, 0.0), {&body, 1});
+  Painter painter({});
+  std::vector<std::uint8_t> rgb;
+  painter.paint(hits, {}, camera(1.0, 0.0), {&body, 1}, {&gains, 1}, rgb);
+  const auto row = static_cast<int>(211.5 + 365.46 * (1.0 - height) / 2.9);
+  int column = 256;  // legs stand beside the middle
+  while (column < 300 && hits.body[pixel(column, row)] < 0) ++column;
+  EXPECT_EQ(hits.body[pixel(column, row)], 0);
+  const auto i = 3 * pixel(column, row);
+  return {rgb[i], rgb[i + 1], rgb[i + 2]};
+}
+
+TEST(Painter, DressesPeopleFromTheHipsUpAndBelow) {
+  Body body{.pose = {3.0, 0.0, geometry::kPi}, .height = 1.8};
+  body.clothes = Clothes{{200, 40, 40}, {40, 60, 160}};
+  const auto shirt = color_at(body, 1.3), trousers = color_at(body, 0.6);
+  EXPECT_GT(shirt[0], 130);
+  EXPECT_LT(shirt[2], 60);
+  EXPECT_GT(trousers[2], 90);
+  EXPECT_LT(trousers[0], 60);
+  body.posture = Posture::kSitting;
+  const auto knees = color_at(body, 0.5);
+  EXPECT_GT(knees[2], knees[0]) << "the trousers of who sits";
+  body.posture = Posture::kStanding;
+  const auto dark = color_at(body, 1.3, {0.3, 0.3, 0.3}), warm = color_at(body, 1.3, {1.2, 1, 0.8});
+  EXPECT_LT(dark[0], shirt[0] - 40);
+  EXPECT_GT(warm[0], shirt[0]);
+  EXPECT_LE(warm[2], shirt[2]);
+}
+
+TEST(Lighting, IsOfThePlaceAndChangesSmoothly) {
+  const Lighting light(3), same(3), other(4);
+  double darkest = 9.0, brightest = 0.0, step = 0.0;
+  for (double x = -30.0; x < 30.0; x += 0.1) {
+    const Gains here = light.at({x, 5.0});
+    EXPECT_EQ(here, same.at({x, 5.0}));
+    step = std::max(step, std::abs(here[1] / light.at({x + 0.1, 5.0})[1] - 1.0));
+    darkest = std::min(darkest, here[1]), brightest = std::max(brightest, here[1]);
+  }
+  EXPECT_GT(brightest / darkest, 1.8) << "a window and a corridor";
+  EXPECT_LT(step, 0.1);
+  EXPECT_NE(light.at({1.0, 1.0}), other.at({1.0, 1.0}));
+  EXPECT_EQ(light.at({HUGE_VAL, 0.0}), (Gains{1.0, 1.0, 1.0}));
+}
+
+TEST(ColorCamera, MakesUpForMostOfTheLightAndDrifts) {
+  const Lighting light(3);
+  ColorCamera camera(1), same(1);
+  const Point2 place(4.0, 4.0), dark(8.0, 0.0);
+  const double bare = light.at(place)[1] / light.at(dark)[1];
+  const double seen = camera.gains(light, place, place)[1] / camera.gains(light, dark, dark)[1];
+  EXPECT_LT(std::abs(std::log(seen)), 0.5 * std::abs(std::log(bare)));
+  const Gains before = camera.gains(light, place, place);
+  for (int i = 0; i < 100; ++i) camera.advance(0.2), same.advance(0.2);
+  EXPECT_NE(camera.gains(light, place, place), before);
+  EXPECT_EQ(camera.gains(light, place, place), same.gains(light, place, place));
+}
+
+TEST(Clothes, AreMostlyDarkAndOftenOfTheSameColor) {
+  Random random(1);
+  int dark = 0, colored = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Clothes clothes = draw_clothes(random);
+    const auto [least, most] = std::ranges::minmax(clothes.upper);
+    dark += most < 90;
+    colored += most - least > 60;
+  }
+  EXPECT_GT(dark, 350);
+  EXPECT_GT(colored, 120);
+  EXPECT_LT(colored, 400);
 }
 
 TEST(DepthSensor, NoiseGrowsAsTheModelsSay) {

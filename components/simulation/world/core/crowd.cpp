@@ -52,6 +52,8 @@ Crowd::Crowd(const CrowdConfig& config, std::span<const PersonPlan> plans, const
     Random looks(stream_seed(seed, plan.name.c_str()));
     person.height =
         plan.height > 0.0 ? plan.height : std::clamp(looks.gaussian(1.72, 0.09), 1.5, 1.98);
+    Random wardrobe(stream_seed(seed, (plan.name + "'s clothes").c_str()));
+    person.clothes = rendering::draw_clothes(wardrobe);
     Mind mind{.at_rest = plan.posture,
               .watches = plan.watches,
               .speed = plan.speed,

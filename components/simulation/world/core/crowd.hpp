@@ -32,6 +32,7 @@ struct Person {
   double height = 1.75;              ///< [m] when standing upright
   rendering::Posture posture = rendering::Posture::kStanding;
   double stride = 0.0;  ///< [rad] phase of walking
+  rendering::Clothes clothes{};
 };
 
 /// Constants of the people; accelerations are those of a person of unit mass.

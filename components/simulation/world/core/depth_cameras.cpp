@@ -14,6 +14,7 @@ constexpr double kTiltLimit = geometry::radians(20.0);
 constexpr double kCalm = 4.0;
 constexpr double kWild = 14.0;
 constexpr double kBurstFade = 0.05;  // [s]
+constexpr int kAdaptEvery = 20;      // steps until exposure and white balance have changed
 
 std::vector<Point2> rectangle(const Point2& lower, const Point2& upper) {
   return {lower, {upper.x(), lower.y()}, upper, {lower.x(), upper.y()}};
@@ -65,7 +66,8 @@ void bodies_of(std::span<const Person> people, std::vector<rendering::Body>& bod
     bodies.push_back({.pose = {person.position.x(), person.position.y(), person.yaw},
                       .height = person.height,
                       .posture = person.posture,
-                      .phase = person.stride});
+                      .phase = person.stride,
+                      .clothes = person.clothes});
   }
 }
 
@@ -79,7 +81,7 @@ bool in_rows(const rendering::Lens& lens, double forward, double rise, double do
 }
 
 DepthCamera::DepthCamera(const DepthCameraConfig& config, std::uint64_t seed)
-    : config_(config), sensor_(config.sensor, seed) {}
+    : config_(config), sensor_(config.sensor, seed), colors_(seed) {}
 
 void DepthCamera::set_tilt(double servo) {
   if (std::isfinite(servo)) wanted_ = std::clamp(servo, -kTiltLimit, kTiltLimit);
@@ -93,12 +95,17 @@ void DepthCamera::step(const BaseTruth& base) {
   const double jump = std::clamp((acceleration - kCalm) / (kWild - kCalm), 0.0, 1.0);
   burst_ = std::max(jump, burst_ * (1.0 - kStep / kBurstFade));
   if (burst_ < 0.02) burst_ = 0.0;
+  if (++steps_ % kAdaptEvery == 0) colors_.advance(kAdaptEvery * kStep);
 }
 
 geometry::Pose3 DepthCamera::pose(const World& world) const {
   Mount mount = config_.mount;
   mount.pitch -= config_.servo_gain * servo_ + config_.servo_offset;
   return world.base_in_world() * mount.base_T_sensor();
+}
+
+rendering::Gains DepthCamera::gains(const World& world, const Point2& place) const {
+  return colors_.gains(world.lighting(), place, pose(world).translation.head<2>());
 }
 
 void DepthCamera::measure(const World& world, rendering::Renderer& renderer,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/rendering/core/depth_sensor.hpp"
+#include "simulation/rendering/core/light.hpp"
 #include "simulation/world/core/world.hpp"
 
 namespace usher::world {
@@ -33,7 +34,8 @@ struct DepthCameraConfig {
 };
 
 /// One camera in a world: renders, adds the errors of the device, follows the tilt servo. A sudden
-/// change of the pitch rate spoils images, as on the robot (thesis 4.21a).
+/// change of the pitch rate spoils images, as on the robot (thesis 4.21a). The color camera beside
+/// it sees the same pixels.
 class DepthCamera {
  public:
   DepthCamera(const DepthCameraConfig& config, std::uint64_t seed);
@@ -50,15 +52,19 @@ class DepthCamera {
   /// An image of the world now, in millimetres.
   void measure(const World& world, rendering::Renderer& renderer,
                std::vector<std::uint16_t>& millimeters);
+  /// What its color camera makes of the light at a place now.
+  rendering::Gains gains(const World& world, const Point2& place) const;
   const rendering::Hits& truth() const { return sensor_.truth(); }
 
  private:
   DepthCameraConfig config_;
   rendering::DepthSensor sensor_;
+  rendering::ColorCamera colors_;
   double wanted_ = 0.0;
   double servo_ = 0.0;
   std::optional<double> pitch_rate_;
   double burst_ = 0.0;
+  std::uint64_t steps_ = 0;
 };
 
 /// The renderer of a world, kept up with its doors, things and people.

@@ -12,6 +12,10 @@ constexpr double kSlice = 0.2;       // [m] of a body that a fan stands for
 constexpr double kTallest = 2.0;     // [m]
 constexpr double kBurstBlind = 0.3;  // a burst of noise from which nobody is found
 constexpr double kSeated = 0.75;     // share of the standing height
+// Parts of a body whose colors the detector takes for those of the clothes, likewise.
+constexpr double kUpperFrom = 0.55, kUpperTo = 0.82;
+constexpr double kLegsFrom = 0.10, kLegsTo = 0.46;
+constexpr std::uint8_t kOverexposed = 252, kUnderexposed = 4;  // colors that it leaves out
 
 Fan fan_for(const rendering::Lens& lens) {
   const double right = std::atan((lens.width - 0.5 - lens.cx) / lens.fx);
@@ -20,17 +24,21 @@ Fan fan_for(const rendering::Lens& lens) {
   return {-right, increment, static_cast<int>((left + right) / increment) + 1};
 }
 
-double top_of(const Person& person) {
-  const bool upright = person.posture == rendering::Posture::kStanding ||
-                       person.posture == rendering::Posture::kWalking ||
-                       person.posture == rendering::Posture::kArmsOut;
-  return (upright ? 1.0 : kSeated) * person.height;
+bool is_upright(const Person& person) {
+  return person.posture == rendering::Posture::kStanding ||
+         person.posture == rendering::Posture::kWalking ||
+         person.posture == rendering::Posture::kArmsOut;
 }
+
+double top_of(const Person& person) { return (is_upright(person) ? 1.0 : kSeated) * person.height; }
 
 }  // namespace
 
 PeopleModel::PeopleModel(const PeopleModelConfig& config, std::uint64_t seed)
-    : config_(config), random_(stream_seed(seed, "people model")), fan_(fan_for(config.lens)) {
+    : config_(config),
+      random_(stream_seed(seed, "people model")),
+      color_random_(stream_seed(seed, "colors of the people model")),
+      fan_(fan_for(config.lens)) {
   see_through_.assign(static_cast<std::size_t>(fan_.count()), 0);
 }
 
@@ -70,13 +78,38 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
       const auto range = static_cast<double>(hits_.range[i]);
       if (!in_view(range * static_cast<double>(fan_.cosines()[i]) - ahead_, height)) continue;
       Visible& visible = visible_[static_cast<std::size_t>(who)];
-      visible.area += config_.filled * kSlice * range * fan_.increment();
+      const Person& person = people[static_cast<std::size_t>(who)];
+      const double share = height / person.height;
+      const double area = config_.filled * kSlice * range * fan_.increment();
+      visible.area += area;
+      if (share > kUpperFrom && share < kUpperTo) visible.upper += area;
+      if (share > kLegsFrom && share < kLegsTo && is_upright(person)) visible.legs += area;
       visible.top = std::min(height + 0.5 * kSlice, movers_[static_cast<std::size_t>(who)].top);
     }
   }
 }
 
-void PeopleModel::find(const World& world, const DepthCamera& camera,
+/// As a color camera shows clothes in that light; not known when too little of them is seen.
+imaging::ClothesColor PeopleModel::color_of(const rendering::Clothes::Color& clothes,
+                                            double visible, const rendering::Gains& gains) {
+  const double lighter = color_random_.gaussian(0.0, config_.lightness);
+  const double redder = color_random_.gaussian(0.0, config_.chromaticity);
+  const double yellower = color_random_.gaussian(0.0, config_.chromaticity);
+  if (visible < config_.least_clothes) return {};
+  std::array<double, 3> linear{};
+  std::uint8_t brightest = 0;
+  for (std::size_t k = 0; k < linear.size(); ++k) {
+    linear[k] = config_.shade * gains[k] * imaging::to_linear(clothes[k]);
+    brightest = std::max(brightest, imaging::to_srgb(linear[k]));
+  }
+  if (brightest >= kOverexposed || brightest <= kUnderexposed) return {};
+  imaging::LabColor color = imaging::to_lab(linear);
+  color.lightness = std::clamp(color.lightness + lighter, 0.0, 100.0);
+  color.a += redder, color.b += yellower;
+  return {color, 1};
+}
+
+void PeopleModel::find(const World& world, const DepthCamera& camera, bool colors,
                        std::vector<ModelledSighting>& sightings) {
   sightings.clear();
   const Pose2 base = world.base().truth().pose;
@@ -103,6 +136,11 @@ void PeopleModel::find(const World& world, const DepthCamera& camera,
     const Point2 seen = place + along * sight + across * Point2(-sight.y(), sight.x());
     const bool cut = !in_view(place.x() - ahead_, movers_[i].top);
     sightings.push_back({seen.x(), seen.y(), cut ? 0.0 : std::max(0.1, visible.top + higher)});
+    if (!colors) continue;
+    const auto gains = camera.gains(world, people[i].position);
+    const rendering::Clothes& clothes = people[i].clothes;
+    sightings.back().appearance = {color_of(clothes.upper, visible.upper, gains),
+                                   color_of(clothes.legs, visible.legs, gains)};
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "foundation/grid/grid.hpp"
 #include "foundation/result/result.hpp"
+#include "simulation/rendering/core/light.hpp"
 #include "simulation/world/core/base.hpp"
 #include "simulation/world/core/crowd.hpp"
 #include "simulation/world/core/pioneer.hpp"
@@ -115,6 +116,7 @@ class World {
   Status remove_thing(const std::string& name);
 
   const GroundTruth& truth() const { return truth_; }
+  const rendering::Lighting& lighting() const { return lighting_; }
   const Scene& scene() const { return *scene_; }
   /// Grows when doors or things change.
   std::uint64_t scene_version() const { return scene_version_; }
@@ -140,6 +142,7 @@ class World {
   WorldConfig config_;
   std::optional<Building> building_;
   std::optional<grid::OccupancyGrid> map_;
+  rendering::Lighting lighting_;
   std::vector<Thing> extra_;
   std::unique_ptr<Base> base_;
   std::unique_ptr<Scene> scene_;

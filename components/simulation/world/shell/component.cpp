@@ -60,6 +60,8 @@ usher_sim_msgs::msg::Person to_message(const world::Person& person, std::uint32_
   entry.v(person.velocity.norm());
   entry.height(person.height);
   entry.posture(static_cast<std::uint8_t>(person.posture));
+  entry.upper(person.clothes.upper);
+  entry.legs(person.clothes.legs);
   return entry;
 }
 
@@ -276,6 +278,7 @@ void WorldComponent::take_people(const FleetPeople& message) {
     person.posture = static_cast<rendering::Posture>(
         std::min<std::uint8_t>(entry.person().posture(), Person_Constants::POSTURE_ARMS_OUT));
     person.stride = entry.stride();
+    person.clothes = {entry.person().upper(), entry.person().legs()};
     bodies.push_back({person.position, person.radius, entry.top()});
   }
   world_->show_people(std::move(people), std::move(bodies));

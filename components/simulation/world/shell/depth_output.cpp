@@ -1,6 +1,7 @@
 #include "simulation/world/shell/depth_output.hpp"
 
 #include "simulation/rendering/core/face_pictures.hpp"
+#include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
 #include "wire/tilt_servo.hpp"
@@ -11,7 +12,8 @@ namespace {
 
 /// Half a period of 30 Hz: the cameras take turns.
 constexpr auto kTurn = std::chrono::nanoseconds(16'666'667);
-constexpr int kRearEvery = 2;  ///< the rear camera has 15 Hz: the detector looks no more often
+constexpr int kColorsEvery = 6;  ///< 5 Hz of the modelled colors of clothes
+constexpr int kRearEvery = 2;    ///< the rear camera has 15 Hz: the detector looks no more often
 constexpr const char* kKinectFrame = "kinect_depth_optical";
 constexpr const char* kRearFrame = "rear_camera_depth_optical";
 
@@ -106,6 +108,7 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   kinect_color_ = host.output(topics::kSimKinectColor);
   kinect_info_ = host.output(topics::kSimKinectInfo);
   rear_depth_ = host.output(topics::kSimRearDepth);
+  rear_color_ = host.output(topics::kSimRearColor);
   rear_info_ = host.output(topics::kSimRearInfo);
   kinect_scan_ = host.output(topics::kSimKinectScan);
   kinect_low_ = host.output(topics::kSimKinectScanLow);
@@ -118,6 +121,8 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
 void DepthOutput::read_faces() {
   const bool color =
       host_.parameters().flag("color", false, "Whether colour images are painted too.");
+  colors_every_ = static_cast<int>(host_.parameters().integer(
+      "colors_every", "-", {1, 30}, 1, "Of them only every n-th of the 30 a second."));
   const std::string folder = host_.parameters().file(
       "face_pictures", "",
       "Folder of pictures, one face each, that the people have in turn; empty: drawn faces.");
@@ -167,14 +172,25 @@ void DepthOutput::publish_kinect() {
   }
   if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
   kinect_.measure(*world_, renderer_.renderer(), depth_);
+  publish_colors(kinect_, kKinectFrame, kinect_color_);
   const rendering::Lens& lens = kinect_.config().sensor.lens;
   wire::to_message(stepped_, kKinectFrame, imaging::DepthImage{lens.width, lens.height, depth_},
                    image_);
   kinect_depth_.publish(image_);
-  if (!painter_) return;
-  painter_->paint(kinect_.truth(), lens, kinect_.pose(*world_), renderer_.bodies(), rgb_);
-  wire::to_color_message(stepped_, kKinectFrame, lens.width, rgb_, image_);
-  kinect_color_.publish(image_);
+}
+
+/// Before the depths of the same moment: whoever has those has the colors, too.
+void DepthOutput::publish_colors(const DepthCamera& camera, const char* frame,
+                                 runtime::Output<sensor_msgs::msg::Image>& output) {
+  if (!painter_ || images_ / 2 % colors_every_ != 0) return;
+  const auto people = world_->people();
+  gains_.resize(people.size());
+  for (std::size_t i = 0; i < people.size(); ++i)
+    gains_[i] = camera.gains(*world_, people[i].position);
+  const rendering::Lens& lens = camera.config().sensor.lens;
+  painter_->paint(camera.truth(), lens, camera.pose(*world_), renderer_.bodies(), gains_, rgb_);
+  wire::to_color_message(stepped_, frame, lens.width, rgb_, image_);
+  output.publish(image_);
 }
 
 void DepthOutput::publish_rear() {
@@ -186,6 +202,7 @@ void DepthOutput::publish_rear() {
   }
   if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
   rear_.measure(*world_, renderer_.renderer(), depth_);
+  publish_colors(rear_, kRearFrame, rear_color_);
   const rendering::Lens& lens = rear_.config().sensor.lens;
   wire::to_message(stepped_, kRearFrame, imaging::DepthImage{lens.width, lens.height, depth_},
                    image_);
@@ -230,16 +247,17 @@ void DepthOutput::publish_faces() {
 
 /// The detector looks at every second image.
 void DepthOutput::publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
-                                 runtime::Output<geometry_msgs::msg::PoseArray>& output) {
+                                 runtime::Output<usher_sim_msgs::msg::Sightings>& output) {
   if (images_ / 2 % 2 != 0) return;
-  model.find(*world_, camera, found_);
+  model.find(*world_, camera, images_ / 2 % kColorsEvery == 0, found_);
   people_.header(wire::header(stepped_, frame));
-  people_.poses().resize(found_.size());
+  people_.sightings().resize(found_.size());
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    auto& place = people_.poses()[i].position();
-    place.x(found_[i].forward);
-    place.y(found_[i].left);
-    place.z(found_[i].height);
+    auto& sighting = people_.sightings()[i];
+    sighting.forward(found_[i].forward);
+    sighting.left(found_[i].left);
+    sighting.height(found_[i].height);
+    sighting.appearance(wire::to_message(found_[i].appearance));
   }
   output.publish(people_);
 }

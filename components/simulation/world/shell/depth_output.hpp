@@ -35,17 +35,20 @@ class DepthOutput {
   void publish_info();
   void publish_kinect();
   void publish_rear();
+  void publish_colors(const DepthCamera& camera, const char* frame,
+                      runtime::Output<sensor_msgs::msg::Image>& output);
   void publish_scan(const std::vector<float>& ranges, const char* frame,
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
   void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
-                      runtime::Output<geometry_msgs::msg::PoseArray>& output);
+                      runtime::Output<usher_sim_msgs::msg::Sightings>& output);
   void publish_faces();
 
   runtime::Host& host_;
   const World* world_;
   Kind kind_ = Kind::kOff;
   bool has_rear_ = true;
-  int every_ = 1;  ///< only every n-th image is rendered
+  int every_ = 1;         ///< only every n-th image is rendered
+  int colors_every_ = 1;  ///< and every n-th one painted
   DepthCamera kinect_, rear_;
   std::optional<DepthScanModel> kinect_model_, rear_model_;
   std::optional<PeopleModel> kinect_people_model_, rear_people_model_;
@@ -58,17 +61,18 @@ class DepthOutput {
   int images_ = 0;  ///< of both cameras
   std::vector<std::uint16_t> depth_;
   std::vector<std::uint8_t> rgb_;
+  std::vector<rendering::Gains> gains_;  // for each of the people
   sensor_msgs::msg::Image image_;
   DepthScanResult result_;
   sensor_msgs::msg::LaserScan scan_;
   std::vector<ModelledSighting> found_;
   std::vector<ModelledFace> seen_faces_;
   usher_msgs::msg::Faces faces_message_;
-  geometry_msgs::msg::PoseArray people_;
-  runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_;
+  usher_sim_msgs::msg::Sightings people_;
+  runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_, rear_color_;
   runtime::Output<sensor_msgs::msg::CameraInfo> kinect_info_, rear_info_;
   runtime::Output<sensor_msgs::msg::LaserScan> kinect_scan_, kinect_low_, rear_scan_;
-  runtime::Output<geometry_msgs::msg::PoseArray> kinect_people_, rear_people_;
+  runtime::Output<usher_sim_msgs::msg::Sightings> kinect_people_, rear_people_;
   runtime::Output<usher_msgs::msg::Faces> faces_;
   runtime::Timer timer_;
 };

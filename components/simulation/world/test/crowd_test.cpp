@@ -51,6 +51,16 @@ TEST(Crowd, SqueezesPastARobotThatStandsAtTheWall) {
   EXPECT_GT(east, 3.0);
 }
 
+TEST(Crowd, WearsClothesOfTheSeedAndTheName) {
+  const std::vector<PersonPlan> plans{{.name = "ada"}, {.name = "boole"}};
+  const Crowd crowd({}, plans, {5.0, 5.0}, 1), same({}, plans, {9.0, 9.0}, 1),
+      other({}, plans, {5.0, 5.0}, 2);
+  EXPECT_EQ(crowd.people()[0].clothes.upper, same.people()[0].clothes.upper);
+  EXPECT_EQ(crowd.people()[1].clothes.legs, same.people()[1].clothes.legs);
+  EXPECT_NE(crowd.people()[0].clothes.upper, crowd.people()[1].clothes.upper);
+  EXPECT_NE(crowd.people()[0].clothes.upper, other.people()[0].clothes.upper);
+}
+
 TEST(Crowd, WalksAwayFromARobotThatBarsBothWaysAlongTheLoop) {
   // Pushed off her loop, she stands east of a robot that leaves her 0.37 m at its sides.
   const PersonPlan plan{.name = "ada", .start = {}, .speed = 1.2, .loop = {{-8, 0}, {-4, 0}}};
