@@ -70,6 +70,13 @@ double Guard::stoppable(const geometry::Twist2& twist, double contact,
   return share;
 }
 
+/// Likewise, with the stand-off and no slower than it may be there.
+double Guard::kept_off(const geometry::Twist2& twist, double contact,
+                       const geometry::Twist2& measured) const {
+  const double share = stoppable(twist, contact, measured, parameters_.stand_off);
+  return share < creeping(twist, parameters_.slowest) ? 0.0 : share;
+}
+
 /// [m] What is farther from the axle's middle allows the whole motion.
 double Guard::farthest(const geometry::Twist2& twist, const geometry::Twist2& measured) const {
   const double v = std::abs(twist.v), w = std::abs(twist.w);
@@ -94,8 +101,7 @@ double Guard::share(const geometry::Twist2& twist, const View& view,
   const geometry::Twist2 moves = measured.value_or(twist);
   const double reach = farthest(twist, moves);
   const double cells =
-      stoppable(twist, second_contact(parameters_.outline, twist, view.cells, reach), moves,
-                parameters_.stand_off);
+      kept_off(twist, second_contact(parameters_.outline, twist, view.cells, reach), moves);
   const double most = std::min(cells, view.sees ? 1.0 : creeping(twist, parameters_.blind));
   const double wide = std::min(
       most, stoppable(twist, second_contact(wide_, twist, view.points, reach), moves, 0.0));
@@ -118,7 +124,7 @@ double Guard::planned_share(const geometry::Twist2& twist, const View& view,
   const bool in_time = twist.v != 0.0 ? parameters_.stopping.distance(std::abs(twist.v)) <=
                                             std::abs(twist.v) * contact - parameters_.stand_off
                                       : parameters_.turn_stop <= contact;
-  return in_time ? 1.0 : stoppable(twist, contact, moves, parameters_.stand_off);
+  return in_time ? 1.0 : kept_off(twist, contact, moves);
 }
 
 bool Guard::stops(const geometry::Twist2& twist, const View& view) const {

@@ -29,6 +29,9 @@ namespace usher::movement_control {
 ///  - A planner looks ahead itself, also along ways that are no arcs: it is left alone as long as
 ///    the robot, told to stand, comes to rest in time, d(|v|) <= |v| c - stand_off, with the bare
 ///    outline and before what was seen; what it is told beyond that is scaled as above.
+///
+/// Where a stand-off is kept, a motion that may be no faster than `slowest` is none: the robot
+/// would creep so near that it heard no glass any more, and the costs forgot it.
 class Guard {
  public:
   struct Parameters {
@@ -39,6 +42,7 @@ class Guard {
     double turn_reaction = 0.2;  ///< [s] {>= 0} likewise when turning
     double margin = 0.02;        ///< [m] {>= 0} of the laser's error
     double stand_off = 0.08;     ///< [m] {>= 0} of the way ahead; what is in a cell may be nearer
+    double slowest = 0.15;       ///< [m/s] {>= 0} of the outline, where the stand-off is kept
     double creep = 0.05;         ///< [m/s] {>= 0} of the outline's fastest point, within the margin
     double blind = 0.1;          ///< [m/s] {>= 0} likewise, where nothing is seen
   };
@@ -75,6 +79,8 @@ class Guard {
   double creeping(const geometry::Twist2& twist, double speed) const;
   double stoppable(const geometry::Twist2& twist, double contact, const geometry::Twist2& measured,
                    double stand_off) const;
+  double kept_off(const geometry::Twist2& twist, double contact,
+                  const geometry::Twist2& measured) const;
   double farthest(const geometry::Twist2& twist, const geometry::Twist2& measured) const;
 
   Parameters parameters_;

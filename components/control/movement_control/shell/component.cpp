@@ -66,6 +66,9 @@ Guard::Parameters MovementControlComponent::read_guard(runtime::Host& host) {
   g.stand_off =
       parameters.number("guard_stand_off", "m", {0, 0.5}, g.stand_off,
                         "Left free before lethal cells, and by a planner that is stopped.");
+  g.slowest = parameters.number("guard_slowest_v", "m/s", {0, 0.5}, g.slowest,
+                                "What may be no faster before them stands: a balancing base would "
+                                "creep up to them.");
   g.creep = parameters.number("guard_creep_v", "m/s", {0, 0.3}, g.creep,
                               "Of the outline's fastest point, within the margin.");
   g.blind = parameters.number("guard_blind_v", "m/s", {0, 0.8}, g.blind,

@@ -131,6 +131,9 @@ TEST(Guard, LeavesAPlannerAloneThatCanStop) {
   // 1.184 m after the outline and the stand-off.
   EXPECT_EQ(speed(0.305 + 0.08 + 1.19), 0.8);
   EXPECT_NEAR(speed(0.305 + 0.08 + 1.18), (1.18 - 0.56) / 1.48, 1e-9) << "as an operator";
+  EXPECT_EQ(speed(0.305 + 0.08 + 0.70), 0.0) << "0.09 m/s: it would creep up to it";
+  const auto near = wall({0.305 + 0.08 + 0.15, -1.0}, {0.305 + 0.08 + 0.15, 1.0});
+  EXPECT_EQ(planned({0.1, 0.0}, {.points = near, .sees = true}), 1.0) << "who wants no more may";
   EXPECT_EQ(speed(0.305 + 0.07), 0.0);
   EXPECT_EQ(speed(0.2), 0.0) << "it touches";
   const auto beside = wall({-2.0, 0.331}, {4.0, 0.331});
