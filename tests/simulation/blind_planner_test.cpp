@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -27,8 +28,11 @@ struct Way {
   double v;           ///< [m/s] that the planner wants
   const char* world;  ///< instead of the site's, where not null
   double ahead;       ///< [m] from the place to the obstacle
+  bool glass;         ///< not even a beam at a right angle sees it; whiskers feel this one only
 };
 
+constexpr double kLaserX = 0.28;  // [m] of MARVIN's laser ahead of the axle
+constexpr double kPaneX = 4.5;    // [m] of the pane across the glass corridor, up to y = 1.2 m
 constexpr const char* kLowBox = R"(name: hall
 ceiling: 2.7
 rooms:
@@ -39,17 +43,18 @@ obstacles:
   - {name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}
 )";
 
-// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees.
+// What the laser sees; what only the ultrasonic sensors hear, which are deaf 0.15 m before it, so
+// that the costs forget it after a while; what only the depth camera sees.
 const Way kWays[] = {
-    {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7},
-    {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49},
-    {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8},
+    {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7, false},
+    {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49, true},
+    {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8, false},
 };
 
 struct Outcome {
   RunRecord::Summary summary;
   double way = 0.0, fastest = 0.0, speed = 0.0;  ///< [m], [m/s], the latter at the end
-  std::string reason;
+  bool held = false;                             ///< by the guard, while it was fast
 };
 
 Outcome drive_blindly(const Way& way, bool guard) {
@@ -78,13 +83,30 @@ Outcome drive_blindly(const Way& way, bool guard) {
     wanted.twist().angular().z(0.0);
     return true;
   });
+  world.tamper(topics::kWhiskers, [&](const auto&, auto& whiskers) {
+    if (!way.glass) whiskers.front_left(false), whiskers.front_right(false);
+    return true;
+  });
+  world.tamper(topics::kScanFiltered, [&](const auto&, auto& scan) {
+    const auto truth = (*run)->record().truth();
+    if (!way.glass || !truth) return true;
+    for (std::size_t i = 0; i < scan.ranges().size(); ++i) {
+      const double angle = scan.angle_min() + scan.angle_increment() * static_cast<double>(i);
+      const double range = scan.ranges()[i];
+      const geometry::Point2 end =
+          *truth * geometry::Point2(kLaserX + range * std::cos(angle), range * std::sin(angle));
+      if (std::abs(end.x() - kPaneX) < 0.15 && end.y() > 0.1 && end.y() < 1.3)
+        scan.ranges()[i] = std::numeric_limits<float>::infinity();
+    }
+    return true;
+  });
   world.observe(topics::kSupervisorStatus,
                 [&](const auto& status, const auto&) { errand.take(status); });
   world.observe(topics::kNavigateStatus,
                 [&](const auto& status, const auto&) { errand.take(status); });
   world.observe(topics::kMovementStatus, [&](const auto& status, const auto&) {
-    if (status.source() == usher_msgs::msg::MovementStatus_Constants::SOURCE_NAVIGATION)
-      outcome.reason = status.limit_reason();
+    outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
+                                    status.velocity_measured_linear() > 0.5F);
   });
   while (world.elapsed() < std::chrono::seconds(20) && !errand.over()) {
     errand.step();
@@ -105,7 +127,7 @@ TEST_P(BlindPlanner, IsStoppedBeforeIt) {
   EXPECT_GT(outcome.fastest, 0.7 * GetParam().v) << "it went there at speed";
   EXPECT_GT(outcome.way, GetParam().ahead - 0.8) << "and got near";
   EXPECT_LT(std::abs(outcome.speed), 0.1);
-  EXPECT_EQ(outcome.reason, "something is in the way");
+  EXPECT_TRUE(outcome.held);
   EXPECT_EQ(outcome.summary.contacts + outcome.summary.touches, 0U) << outcome.summary.contact_with;
 }
 
