@@ -40,24 +40,25 @@ std::span<const Point2> LethalCells::around(const geometry::Pose2& window_T_base
       !(reach >= 0.0))
     return {};
   // In cells, from the first cell's center.
-  const double side = window.resolution, radius = reach / side;
-  const double x = (window_T_base.x - window.origin.x()) / side - 0.5;
-  const double y = (window_T_base.y - window.origin.y()) / side - 0.5;
+  const double cell = window.resolution, radius = reach / cell;
+  const double x = (window_T_base.x - window.origin.x()) / cell - 0.5;
+  const double y = (window_T_base.y - window.origin.y()) / cell - 0.5;
   const auto rows = static_cast<double>(window.height);
   const double nearest = std::round(y), column = std::round(x);
   if (!(nearest >= 0.0 && nearest < rows && column >= 0.0 &&
         column < static_cast<double>(window.width)))
     return {};
   const geometry::Pose2 base_T_window = geometry::inverse(window_T_base);
-  const double c = side * std::cos(base_T_window.yaw), s = side * std::sin(base_T_window.yaw);
-  const Raster raster{base_T_window * Point2(window.origin.array() + 0.5 * side), {c, s}, {-s, c}};
-  const double farthest = std::min(radius + 1.0, rows);
-  for (double away = 0.0; away <= farthest; ++away) {
-    for (const double row : {nearest - away, nearest + away}) {
+  const double c = cell * std::cos(base_T_window.yaw), s = cell * std::sin(base_T_window.yaw);
+  const Raster raster{base_T_window * Point2(window.origin.array() + 0.5 * cell), {c, s}, {-s, c}};
+  const auto farthest = static_cast<int>(std::min(radius + 1.0, rows));
+  for (int away = 0; away <= farthest; ++away) {
+    for (const int side : {-1, 1}) {
+      const double row = nearest + side * away;
       const double half = std::sqrt(radius * radius - (row - y) * (row - y));
       if (half >= 0.0 && row >= 0.0 && row < rows)
         take_row(window, raster, static_cast<std::size_t>(row), x - half, x + half);
-      if (away == 0.0) break;
+      if (away == 0) break;
     }
   }
   return cells_;
