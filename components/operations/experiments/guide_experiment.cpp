@@ -28,6 +28,7 @@ struct Visit {
   double simulated = 0.0, wall = 0.0;  // [s]
   RunRecord::Summary summary;
   std::uint64_t digest = 0;
+  std::uint64_t held_back = 0;  ///< times that movement_control's guard held back the navigation
 };
 
 Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64_t seed,
@@ -50,6 +51,7 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
   visit.summary = record.summary();
   visit.digest = world.digest();
   visit.complaints = (*run)->complaints();
+  visit.held_back = (*run)->counter("movement_control", "guard: held back the navigation");
   const auto truth = record.truth();
   const auto person = record.person("visitor");
   const bool served = std::find(record.dialogue().begin(), record.dialogue().end(),
@@ -112,12 +114,12 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   sheet.name = "guide";
   sheet.input = std::to_string(seeds) + " seeded visits in the office, lock-step";
   Table table({"seed", "to", "arrived", "s", "m", "m/s", "clearance m", "error mean m",
-               "error max m", "contacts", "touches", "outcome"});
+               "error max m", "contacts", "touches", "held back", "outcome"});
   std::string csv =
       "seed,destination,arrived,seconds,path,speed,clearance,error_mean,error_max,contacts,"
-      "touches\n";
-  double arrivals = 0, contacts = 0, touches = 0, error_sum = 0, estimates = 0, worst_error = 0,
-         simulated = 0, wall = 0, path = 0, time = 0;
+      "touches,held_back\n";
+  double arrivals = 0, contacts = 0, touches = 0, held_back = 0, error_sum = 0, estimates = 0,
+         worst_error = 0, simulated = 0, wall = 0, path = 0, time = 0;
   double clearance = 1e9;
   for (std::size_t i = 0; i < visits.size(); ++i) {
     if (!visits[i]) continue;
@@ -126,6 +128,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
     arrivals += v.arrived ? 1 : 0;
     contacts += s.contacts;
     touches += s.touches;
+    held_back += static_cast<double>(v.held_back);
     error_sum += s.localization_mean * static_cast<double>(s.estimates);
     estimates += static_cast<double>(s.estimates);
     worst_error = std::max(worst_error, s.localization_max);
@@ -138,16 +141,17 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
                format("%.0f", s.seconds), format("%.1f", s.path), format("%.2f", s.mean_speed),
                format("%.2f", s.smallest_clearance), format("%.3f", s.localization_mean),
                format("%.3f", s.localization_max), std::to_string(s.contacts),
-               std::to_string(s.touches), v.outcome});
+               std::to_string(s.touches), std::to_string(v.held_back), v.outcome});
     csv += std::to_string(i + 1) + "," + v.destination + "," + (v.arrived ? "1" : "0") +
            format(",%.2f", s.seconds) + format(",%.2f", s.path) + format(",%.3f", s.mean_speed) +
            format(",%.3f", s.smallest_clearance) + format(",%.4f", s.localization_mean) +
            format(",%.4f", s.localization_max) + "," + std::to_string(s.contacts) + "," +
-           std::to_string(s.touches) + "\n";
+           std::to_string(s.touches) + "," + std::to_string(v.held_back) + "\n";
   }
   sheet.metrics = {{"arrivals", arrivals},
                    {"contacts", contacts},
                    {"touches", touches},
+                   {"held_back_by_the_guard", held_back},
                    {"localization_error_mean_m", estimates > 0 ? error_sum / estimates : NAN},
                    {"localization_error_max_m", worst_error},
                    {"smallest_clearance_m", clearance},

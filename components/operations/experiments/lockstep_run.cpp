@@ -46,6 +46,14 @@ std::string LockstepRun::complaints() const {
   return out;
 }
 
+std::uint64_t LockstepRun::counter(const std::string& component, const std::string& name) const {
+  const auto found = heartbeats_.find(component);
+  if (found == heartbeats_.end()) return 0;
+  for (const auto& counter : found->second.counters())
+    if (counter.name() == name) return counter.count();
+  return 0;
+}
+
 Status LockstepRun::add(const Deployment& deployment, std::uint64_t seed) {
   if (!deployment.findings.empty()) {
     const auto& first = deployment.findings.front();

@@ -27,6 +27,9 @@ class LockstepRun {
   const RunRecord& record(const std::string& robot = {}) const { return records_.at(robot); }
   /// What components that are not well say of themselves now, and what they rejected, one a line.
   std::string complaints() const;
+  /// Of a component's newest heartbeat; in a fleet its name is "robot/component". Zero when nothing
+  /// was counted.
+  std::uint64_t counter(const std::string& component, const std::string& name) const;
   /// Another goal: a new record, the world goes on.
   void restart_record() {
     for (auto& [robot, record] : records_) record = {};

@@ -166,9 +166,19 @@ bool MovementControl::smooth(Source source) const {
   return parameters_.jerk.v > 0.0 && source != Source::kNavigation;
 }
 
-/// The planner looks ahead itself.
+/// Who does not look ahead himself.
 bool MovementControl::guards(Source source) const {
   return parameters_.guarded && source != Source::kNavigation;
+}
+
+/// Of what a planner that has gone wrong may do: one that has not is left alone.
+double MovementControl::planned_share(const geometry::Twist2& twist, const Inputs& inputs,
+                                      Source source) {
+  const bool planned = parameters_.guarded && source == Source::kNavigation;
+  const double share = planned ? guard_.planned_share(twist, inputs.view, inputs.measured) : 1.0;
+  if (share < 1.0 && !holds_back_) ++held_back_;
+  holds_back_ = share < 1.0;
+  return share;
 }
 
 /// A base that is told to be much slower rolls on with its speed and the new turn rate, off the arc
@@ -182,7 +192,7 @@ double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const
     return ramped.w;
   }
   const double kept = kept_arc_.stop(inputs.measured, now).w;
-  return guard_.stops({v, ramped.w}, inputs.view.points) ? ramped.w : kept;
+  return guard_.stops({v, ramped.w}, inputs.view) ? ramped.w : kept;
 }
 
 /// As fast as the base can slow down, never faster than wanted before the touch.
@@ -212,13 +222,14 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     const double linear_share = share(limits.limit.linear, wish.twist.v);
     const double angular_share = share(limits.limit.angular, wish.twist.w);
     const double factor = std::min(linear_share, angular_share);
-    geometry::Twist2 wanted{wish.twist.v * factor, wish.twist.w * factor};
     // A base that is still faster than it may be rolls on with its speed: so does its turn.
-    if (!guards(wish.source) && inputs.measured && inputs.measured->v * wish.twist.v > 0.0) {
-      const double rolls = std::min(1.0, inputs.measured->v / wish.twist.v);
-      wanted.w = std::clamp(wish.twist.w * std::max(factor, rolls), -limits.limit.angular,
-                            limits.limit.angular);
-    }
+    const auto turn = [&](double part) {
+      const double v = inputs.measured ? inputs.measured->v : 0.0;
+      if (guards(wish.source) || !(v * wish.twist.v > 0.0)) return wish.twist.w * part;
+      return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)),
+                        -limits.limit.angular, limits.limit.angular);
+    };
+    geometry::Twist2 wanted{wish.twist.v * factor, turn(factor)};
     if (factor < 1.0) {
       decision.limit = linear_share <= angular_share ? limits.linear_by : limits.angular_by;
     }
@@ -229,6 +240,13 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     if (limits.limit.angular == 0.0 && wanted.w != 0.0) {
       wanted.w = 0.0;
       decision.limit = limits.angular_by;
+    }
+    const double planned = planned_share({wanted.v, wish.twist.w * factor}, inputs, wish.source);
+    if (planned < 1.0) {
+      wanted = {wanted.v * planned, wanted.w == 0.0 ? 0.0 : turn(factor * planned)};
+      decision.limit = Limit::kObstacle;
+      (wanted.v != 0.0 ? limits.limit.linear : limits.limit.angular) =
+          std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);
     }
 
     // What is wished, so that the arc stays, and what is really commanded: while the robot speeds
@@ -247,6 +265,10 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
         rolls_against(wanted.v, inputs.measured))
       wanted.v = 0.0;
     geometry::Twist2 ramped = ramp(wanted, wish.source, now);
+    if (planned < 1.0) {
+      if (std::abs(ramped.v) > std::abs(wanted.v)) ramped.v = wanted.v;
+      if (wish.twist.v == 0.0 && std::abs(ramped.w) > std::abs(wanted.w)) ramped.w = wanted.w;
+    }
     if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
     const geometry::Twist2 uncut = ramped;
     guard(ramped);

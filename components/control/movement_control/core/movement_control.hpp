@@ -41,7 +41,7 @@ struct AccelerationLimit {
 };
 
 struct Parameters {
-  bool guarded = false;  ///< operator and interaction; the planner looks ahead itself
+  bool guarded = false;  ///< all sources
   Guard::Parameters guard;
   // The thesis, section 8.1.3 and 6.1.
   VelocityLimit open{1.4, 1.0};
@@ -85,7 +85,7 @@ struct Inputs {
   Situation situation = Situation::kConfined;
   Localization localization = Localization::kLost;
   bool low_battery = false;
-  Guard::View view;                          ///< living through the decision
+  Guard::View view;  ///< living through the decision; its cells know the map, so none when lost
   std::optional<geometry::Twist2> measured;  ///< absent: the base is not connected
   bool motors_off = false;                   ///< after an emergency stop: it keeps no arc
 };
@@ -106,7 +106,7 @@ enum class Limit : std::uint8_t {
   kSpeedFactor,  ///< something is degraded, says the supervisor
   kSituation,
   kReverse,
-  kObstacle,  ///< it could not stop before what the laser sees
+  kObstacle,  ///< it could not stop before what is seen or known to be there
   kBlind,     ///< no scan tells what is ahead
   kAcceleration,
 };
@@ -162,6 +162,8 @@ class MovementControl {
 
   /// How often a source with the right to drive sent something that is not finite.
   std::uint64_t rejected() const { return rejected_; }
+  /// How often the guard began to hold back the navigation.
+  std::uint64_t held_back() const { return held_back_; }
 
   const Guard& guard() const { return guard_; }
 
@@ -182,6 +184,7 @@ class MovementControl {
   geometry::Twist2 ramp(const geometry::Twist2& wanted, Source source, Time now);
   bool smooth(Source source) const;
   bool guards(Source source) const;
+  double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
@@ -196,6 +199,8 @@ class MovementControl {
   geometry::Twist2 acceleration_;  ///< [m/s^2] [rad/s^2] of the command
   std::optional<Time> last_at_;
   std::uint64_t rejected_ = 0;
+  std::uint64_t held_back_ = 0;
+  bool holds_back_ = false;
   MovementStatus status_;
 };
 

@@ -53,6 +53,7 @@ void Surroundings::move(const std::optional<geometry::Twist2>& measured, Time no
 
 void Surroundings::forget() {
   points_.clear();
+  seen_ = 0;
   near_.clear();
   hidden_.clear();
 }
@@ -133,6 +134,7 @@ void Surroundings::take(const ScanView& scan, Time now) {
   for (const Remembered& each : hidden_) {
     if (points_.size() < kMostPoints) points_.push_back(each.point);
   }
+  seen_ = points_.size();
   go_on(scan, true);
   go_on(scan, false);
 }

@@ -52,6 +52,8 @@ class Surroundings {
 
   /// Nearest first is not promised. Valid until the next call.
   std::span<const geometry::Point2> points() const { return points_; }
+  /// So many of them, the last, are walls that go on: nobody has seen them.
+  std::size_t guessed() const { return points_.size() - seen_; }
 
  private:
   struct Remembered {
@@ -67,6 +69,7 @@ class Surroundings {
 
   Parameters parameters_;
   std::vector<geometry::Point2> points_;
+  std::size_t seen_ = 0;            ///< so many of them, the first, were seen
   std::vector<Remembered> near_;    ///< seen by the last scan
   std::vector<Remembered> hidden_;  ///< seen before
   double way_ = 0.0, turn_ = 0.0;

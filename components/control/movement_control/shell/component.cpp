@@ -6,6 +6,7 @@
 
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
+#include "wire/frames.hpp"
 #include "wire/stopping.hpp"
 
 namespace usher::movement_control {
@@ -18,10 +19,21 @@ constexpr auto kEnableAge = milliseconds(120);
 constexpr auto kCommandAge = milliseconds(250);
 constexpr auto kSensorAge = milliseconds(300);
 constexpr auto kBaseAge = milliseconds(150);
+constexpr auto kCostsAge = milliseconds(250);
+constexpr auto kOdomAge = milliseconds(150);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kPersonAge = milliseconds(500);
 constexpr auto kLeaning = milliseconds(2500);  // at a start
 constexpr double kStanding = 0.01;             // [m/s]
+constexpr double kReported = 1.4;              // [m/s] the status tells of what would stop this
+
+/// Costs around the robot in odom; else where they lie is not known.
+bool is_window(const usher_msgs::msg::Costmap& costs) {
+  return costs.header().frame_id() == frames::kOdom && !costs.costs().empty() &&
+         costs.costs().size() == std::size_t{costs.width()} * costs.height() &&
+         costs.resolution() > 0.0F && std::isfinite(costs.resolution()) &&
+         std::isfinite(costs.origin_x()) && std::isfinite(costs.origin_y());
+}
 
 float single(double value) { return static_cast<float>(value); }
 float in_seconds(Time time) { return single(std::chrono::duration<double>(time).count()); }
@@ -51,6 +63,12 @@ Guard::Parameters MovementControlComponent::read_guard(runtime::Host& host) {
                                   "Lag of the base's turn rate.");
   g.margin = parameters.number("guard_margin", "m", {0, 0.5}, g.margin,
                                "Around the outline; within it the guard lets it creep only.");
+  g.stand_off =
+      parameters.number("guard_stand_off", "m", {0, 0.5}, g.stand_off,
+                        "Left free before lethal cells, and by a planner that is stopped.");
+  g.slowest = parameters.number("guard_slowest_v", "m/s", {0, 0.5}, g.slowest,
+                                "What may be no faster before them stands: a balancing base would "
+                                "creep up to them.");
   g.creep = parameters.number("guard_creep_v", "m/s", {0, 0.3}, g.creep,
                               "Of the outline's fastest point, within the margin.");
   g.blind = parameters.number("guard_blind_v", "m/s", {0, 0.8}, g.blind,
@@ -62,8 +80,8 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
   auto& parameters = host.parameters();
   Parameters p;
   p.guarded = parameters.flag("guard", true,
-                              "Operator and interaction move no faster than the robot stops "
-                              "before what the laser sees.");
+                              "Nobody moves the robot faster than it stops before what the "
+                              "laser sees and the local costs know.");
   p.guard = read_guard(host);
   const auto limit = [&](VelocityLimit& value, const std::string& name, const std::string& when) {
     value.linear = parameters.number(name + "_v", "m/s", {0, 1.5}, value.linear,
@@ -113,7 +131,9 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       parameters_(read_parameters(host)),
       core_(parameters_),
       surroundings_({.base_T_sensor = free_space_.base_T_sensor}),
-      rejected_(host.health().counter("cmd_vel: rejected")) {
+      rejected_(host.health().counter("cmd_vel: rejected")),
+      held_back_(host.health().counter("guard: held back the navigation")),
+      rejected_costs_(host.health().counter("local costs: rejected")) {
   auto& parameters = host.parameters();
   assume_person_ =
       parameters.flag("assume_person_ahead", true,
@@ -151,6 +171,15 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
         surroundings_.forget();
         situation_.update(std::nullopt, host_.now().time_since_epoch());
       });
+  costs_ =
+      host.input(topics::kLocalCosts,
+                 {.max_age = kCostsAge, .on_loss = "guards by the scan alone", .optional = true},
+                 [this](const auto& costs, const auto&) {
+                   if (!is_window(costs)) ++rejected_costs_;
+                 });
+  odom_ =
+      host.input(topics::kOdom,
+                 {.max_age = kOdomAge, .on_loss = "guards by the scan alone", .optional = true});
   localization_ = host.input(topics::kLocalizationStatus,
                              {.max_age = kLocalizationAge, .on_loss = "drives as if lost"});
   person_ = host.input(
@@ -183,6 +212,32 @@ bool MovementControlComponent::sees() const {
   return seen_at_ && host_.now().time_since_epoch() - *seen_at_ < kLeaning;
 }
 
+/// Where the costs are lethal. They know the map's walls, which are elsewhere when the pose is
+/// lost.
+std::span<const geometry::Point2> MovementControlComponent::cells(double reach) {
+  const auto* costs = costs_.fresh();
+  const auto* odom = odom_.fresh();
+  const auto* localization = localization_.fresh();
+  if (costs == nullptr || odom == nullptr || !is_window(*costs) || localization == nullptr ||
+      localization->state() == usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST)
+    return {};
+  const auto odom_T_base = wire::to_planar(odom->pose().pose());
+  if (!odom_T_base) return {};
+  return lethal_.around(*odom_T_base,
+                        {.costs = costs->costs(),
+                         .width = costs->width(),
+                         .height = costs->height(),
+                         .resolution = static_cast<double>(costs->resolution()),
+                         .origin = {costs->origin_x(), costs->origin_y()}},
+                        reach);
+}
+
+/// What counts for a robot that shall be, or is, so fast.
+Guard::View MovementControlComponent::view(double speed) {
+  return {surroundings_.points(), sees(), surroundings_.guessed(),
+          cells(core_.guard().reach(speed))};
+}
+
 Inputs MovementControlComponent::gather() {
   Inputs inputs;
   if (const auto* enable = enable_.fresh()) {
@@ -206,7 +261,10 @@ Inputs MovementControlComponent::gather() {
     inputs.motors_off = base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
   }
   inputs.measured = measured();
-  inputs.view = {surroundings_.points(), sees()};
+  double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot
+  for (const auto& twist : {inputs.manual, inputs.interaction, inputs.navigation, inputs.measured})
+    fastest = std::max(fastest, twist ? std::abs(twist->v) : 0.0);
+  inputs.view = view(std::min(fastest, parameters_.open.linear));
   return inputs;
 }
 
@@ -235,6 +293,7 @@ void MovementControlComponent::decide() {
   surroundings_.move(measured(), now);
   const Decision decision = core_.decide(gather(), now);
   rejected_ = core_.rejected();
+  held_back_ = core_.held_back();
   const auto* enable = enable_.fresh();
   usher_msgs::msg::DriveCommand command;
   command.stamp(wire::to_message(host_.now()));
@@ -280,8 +339,7 @@ void MovementControlComponent::publish_status() {
   m.source(static_cast<std::uint8_t>(s.source));
   m.situation(static_cast<std::uint8_t>(s.situation));
   m.limit_reason(std::string(text(s.limit)));
-  const double way =
-      sees() ? core_.guard().way(s.current, surroundings_.points()) : 0.0;  // nobody knows
+  const double way = sees() ? core_.guard().way(s.current, view(kReported)) : 0.0;  // nobody knows
   m.person_ahead(person_ahead().value_or(true));
   m.obstacle_distance(single(way));
   m.stopping_distance(single(parameters_.guard.stopping.distance(s.measured.v)));

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "control/movement_control/core/lethal_cells.hpp"
 #include "control/movement_control/core/movement_control.hpp"
 #include "control/movement_control/core/surroundings.hpp"
 #include "idl/topics.hpp"
@@ -23,6 +24,8 @@ class MovementControlComponent final : public runtime::Component {
       const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
   std::optional<geometry::Twist2> measured() const;
   bool sees() const;
+  Guard::View view(double speed);
+  std::span<const geometry::Point2> cells(double reach);
   Inputs gather();
   std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);
@@ -36,10 +39,13 @@ class MovementControlComponent final : public runtime::Component {
   double low_battery_;
   MovementControl core_;
   Surroundings surroundings_;
+  LethalCells lethal_;
   std::optional<Time> seen_at_;  ///< when a scan last told what is ahead; none: no scan comes
   SituationFilter situation_;
   std::uint64_t number_ = 0;
   std::uint64_t& rejected_;
+  std::uint64_t& held_back_;
+  std::uint64_t& rejected_costs_;
 
   runtime::Input<usher_msgs::msg::MovementEnable> enable_;
   runtime::Input<geometry_msgs::msg::TwistStamped> manual_;
@@ -48,6 +54,8 @@ class MovementControlComponent final : public runtime::Component {
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
   runtime::Input<usher_msgs::msg::BaseStatus> base_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
+  runtime::Input<usher_msgs::msg::Costmap> costs_;
+  runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
   runtime::Input<usher_msgs::msg::PersonAhead> person_;
   runtime::Output<usher_msgs::msg::DriveCommand> command_;

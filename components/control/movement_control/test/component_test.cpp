@@ -44,7 +44,12 @@ class Component : public testing::Test {
   std::optional<geometry::Twist2> wanted_by_hand;
   double measured_v = 0.5;
   double wall = 100.0;  ///< [m] ahead of the laser
-  bool floor = false;   ///< every beam ends on it
+  std::optional<double>
+      glass;  ///< [m] ahead of the axle in the local costs; nothing: there are none
+  geometry::Pose2 odom_T_base{3.0, -2.0, 2.0};
+  const char* costs_frame = "odom";
+  std::uint8_t localization = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD;
+  bool floor = false;  ///< every beam ends on it
 
  private:
   void speak() {
@@ -72,10 +77,10 @@ class Component : public testing::Test {
       host.publish(topics::kBaseStatus, base);
     }
     if (speaks("localization/status")) {
-      usher_msgs::msg::LocalizationStatus localization;
-      localization.header(header);
-      localization.state(usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD);
-      host.publish(topics::kLocalizationStatus, localization);
+      usher_msgs::msg::LocalizationStatus status;
+      status.header(header);
+      status.state(localization);
+      host.publish(topics::kLocalizationStatus, status);
     }
     if (speaks("scan/filtered")) {
       sensor_msgs::msg::LaserScan scan;
@@ -90,6 +95,13 @@ class Component : public testing::Test {
       }
       host.publish(topics::kScanFiltered, scan);
     }
+    if (speaks("odom")) {
+      nav_msgs::msg::Odometry odom;
+      odom.header(wire::header(host.now(), "odom"));
+      odom.pose().pose(wire::to_message(odom_T_base));
+      host.publish(topics::kOdom, odom);
+    }
+    if (glass && speaks("local_costmap/costs")) speak_costs();
     if (speaks("cmd_vel/navigation")) {
       geometry_msgs::msg::TwistStamped wanted;
       wanted.header(header);
@@ -110,6 +122,15 @@ class Component : public testing::Test {
       person.clear(*clear);
       host.publish(topics::kPersonAhead, person, "people_detector");
     }
+  }
+  /// A window of 6 m around the robot with a pane across its way.
+  void speak_costs() {
+    grid::Grid<std::uint8_t> costs({120, 120, 0.05, odom_T_base.x - 3.0, odom_T_base.y - 3.0});
+    for (double y = -1.0; y <= 1.0; y += 0.02) {
+      const auto at = costs.geometry().cell_at(odom_T_base * geometry::Point2(*glass, y));
+      costs.at(at) = 254;
+    }
+    host.publish(topics::kLocalCosts, wire::to_message(host.now(), costs_frame, costs));
   }
 };
 
@@ -224,7 +245,53 @@ TEST_F(Component, AnOperatorDrivesNoFasterThanItStops) {
   EXPECT_NEAR(commanded(), -0.3, 1e-6) << "and gets away from it";
   wanted_by_hand.reset();
   run(2000);
-  EXPECT_GT(commanded(), 0.7) << "the navigation looks ahead itself";
+  EXPECT_EQ(commanded(), 0.0) << "nor does the navigation get in";
+  EXPECT_EQ(status().limit_reason(), "something is in the way");
+  EXPECT_EQ(host.counter("guard: held back the navigation"), 1U);
+}
+
+TEST_F(Component, NobodyDrivesIntoWhatOnlyTheLocalCostsKnow) {
+  run(2000);
+  measured_v = 0.0;
+  glass = 0.3 + 0.08 + 0.5;
+  run(200);
+  EXPECT_NEAR(commanded(), 0.5 / 1.48, 0.03) << "the navigation";
+  EXPECT_EQ(status().limit_reason(), "something is in the way");
+  EXPECT_NEAR(status().obstacle_distance(), 0.58, 0.05);
+  wanted_by_hand = {0.8, 0.0};
+  run(1000);
+  EXPECT_NEAR(commanded(), 0.5 / 1.48, 0.03) << "the operator";
+  glass = -0.7;
+  run(1000);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6) << "behind it bars nothing";
+}
+
+TEST_F(Component, CostsThatTellNothingOfWhatIsAheadAreNotLookedAt) {
+  glass = 0.4;
+  run(1000);
+  ASSERT_LT(commanded(), 0.05);
+  for (const char* topic : {"local_costmap/costs", "odom"}) {
+    silent = {topic};
+    run(80);
+    EXPECT_LT(commanded(), 0.05) << topic << ": not yet";
+    run(2000);
+    EXPECT_NEAR(commanded(), 1.0, 1e-6) << topic;
+    silent.clear();
+    run(200);
+    EXPECT_LT(commanded(), 0.05) << topic << ": back";
+  }
+  localization = usher_msgs::msg::LocalizationStatus_Constants::STATE_LOST;
+  wanted_by_hand = {0.3, 0.0};
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.3, 1e-6) << "the map's walls are elsewhere";
+  localization = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD;
+  run(200);
+  EXPECT_LT(commanded(), 0.05);
+  EXPECT_EQ(host.counter("local costs: rejected"), 0U);
+  costs_frame = "map";
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.3, 1e-6) << "in another frame";
+  EXPECT_GT(host.counter("local costs: rejected"), 0U);
 }
 
 TEST_F(Component, WithoutAScanAnOperatorCreeps) {

@@ -35,7 +35,7 @@ Guard::Parameters pioneer() {
 
 double share(const Guard::Parameters& parameters, const Twist2& twist,
              const std::vector<Point2>& points) {
-  return Guard(parameters).share(twist, {points, true}, twist);
+  return Guard(parameters).share(twist, {.points = points, .sees = true}, twist);
 }
 
 TEST(Guard, DrivesNoFasterThanItStopsBeforeAWall) {
@@ -91,7 +91,8 @@ TEST(Guard, TurningIntoSomethingItComesToRestBeforeIt) {
     std::vector<Point2> seen;
     for (const Point2& p : wall({-2.0, 0.4}, {2.0, 0.4}))
       seen.push_back(geometry::inverse({0.0, 0.0, yaw}) * p);
-    told.push_back(0.8 * guard.share({0.0, 0.8}, {seen, true}, Twist2{0.0, rate}));
+    told.push_back(0.8 *
+                   guard.share({0.0, 0.8}, {.points = seen, .sees = true}, Twist2{0.0, rate}));
     rate += (told[told.size() - 11] - rate) * 0.01 / 0.2;
     yaw += rate * 0.01;
   }
@@ -104,7 +105,8 @@ TEST(Guard, TurningIntoSomethingItComesToRestBeforeIt) {
 TEST(Guard, WithinTheMarginItCreeps) {
   const auto near = wall({-1.0, 0.345}, {1.0, 0.345});  // 15 mm beside MARVIN
   EXPECT_NEAR(0.8 * share(marvin(), {0.8, 0.0}, near), 0.05, 1e-9) << "along it";
-  const double into = 0.8 * Guard(marvin()).share({0.8, 0.05}, {near, true}, Twist2{});
+  const double into =
+      0.8 * Guard(marvin()).share({0.8, 0.05}, {.points = near, .sees = true}, Twist2{});
   EXPECT_LE(into, 0.05);
   EXPECT_GT(into, 0.0);
   EXPECT_EQ(share(marvin(), {0.8, 0.0}, wall({-1.0, 0.36}, {1.0, 0.36})), 1.0);
@@ -118,16 +120,94 @@ TEST(Guard, WithoutAScanItCreeps) {
   EXPECT_EQ(guard.share({0.05, 0.0}, {}, Twist2{}), 1.0);
 }
 
+double planned(const Twist2& twist, const Guard::View& view) {
+  return Guard(marvin()).planned_share(twist, view, twist);
+}
+
+TEST(Guard, LeavesAPlannerAloneThatCanStop) {
+  const auto speed = [&](double x) {
+    return 0.8 * planned({0.8, 0.0}, {.points = wall({x, -1.0}, {x, 1.0}), .sees = true});
+  };
+  // 1.184 m after the outline and the stand-off.
+  EXPECT_EQ(speed(0.305 + 0.08 + 1.19), 0.8);
+  EXPECT_NEAR(speed(0.305 + 0.08 + 1.18), (1.18 - 0.56) / 1.48, 1e-9) << "as an operator";
+  EXPECT_EQ(speed(0.305 + 0.08 + 0.70), 0.0) << "0.09 m/s: it would creep up to it";
+  const auto near = wall({0.305 + 0.08 + 0.15, -1.0}, {0.305 + 0.08 + 0.15, 1.0});
+  EXPECT_EQ(planned({0.1, 0.0}, {.points = near, .sees = true}), 1.0) << "who wants no more may";
+  EXPECT_EQ(speed(0.305 + 0.07), 0.0);
+  EXPECT_EQ(speed(0.2), 0.0) << "it touches";
+  const auto beside = wall({-2.0, 0.331}, {4.0, 0.331});
+  EXPECT_EQ(planned({0.8, 0.0}, {.points = beside, .sees = true}), 1.0);
+  EXPECT_EQ(planned({-0.15, 0.0}, {.points = beside, .sees = true}), 1.0);
+  EXPECT_LT(planned({0.8, 0.1}, {.points = beside, .sees = true}), 1.0) << "into it";
+  EXPECT_EQ(planned({0.8, 0.0}, {}), 1.0) << "without a scan it is the planner that stands";
+}
+
+TEST(Guard, DoesNotHoldBackAPlannerForWhatNobodyHasSeen) {
+  const auto corner = wall({0.0, 0.4}, {-0.6, 0.4});
+  const Guard::View seen{.points = corner, .sees = true};
+  const Guard::View guessed{.points = corner, .sees = true, .guessed = corner.size()};
+  EXPECT_LT(planned({0.0, -1.0}, seen), 1.0);
+  EXPECT_EQ(planned({0.0, -1.0}, guessed), 1.0);
+  EXPECT_LT(share(marvin(), {0.0, -1.0}, corner), 1.0) << "an operator it does";
+}
+
+TEST(Guard, HoldsBackAPlannersTurnOnTheSpotButNotOneThatRollsOut) {
+  const auto beside = wall({-2.0, 0.4}, {2.0, 0.4});  // 0.27 rad
+  const Guard guard(marvin());
+  const auto turn = [&](double w, double v) {
+    return guard.planned_share({0.0, w}, {.points = beside, .sees = true}, Twist2{v, w});
+  };
+  EXPECT_EQ(turn(0.5, 0.0), 1.0);
+  EXPECT_LT(turn(1.0, 0.0), 1.0);
+  EXPECT_EQ(turn(1.0, 0.5), 1.0) << "told to stand, it keeps its arc";
+}
+
+TEST(Guard, LethalCellsCountForEverybodyWithTheBareOutlineAndAStandOff) {
+  const auto ahead = wall({1.325, -1.0}, {1.325, 1.0});
+  const Guard guard(marvin());
+  const auto operated = [&](const Twist2& twist, const std::vector<Point2>& cells) {
+    return guard.share(twist, {.sees = true, .cells = cells}, twist);
+  };
+  EXPECT_NEAR(0.8 * operated({0.8, 0.0}, ahead), (1.02 - 0.08 - 0.56) / 1.48, 1e-9);
+  EXPECT_NEAR(0.8 * planned({0.8, 0.0}, {.sees = true, .cells = ahead}),
+              (1.02 - 0.08 - 0.56) / 1.48, 1e-9);
+  EXPECT_EQ(operated({0.1, 0.0}, wall({0.37, -1.0}, {0.37, 1.0})), 0.0) << "no creeping there";
+  EXPECT_EQ(operated({0.8, 0.0}, wall({-2.0, 0.331}, {4.0, 0.331})), 1.0);
+  EXPECT_EQ(operated({0.8, 0.0}, {{0.8, 0.0}}), 1.0) << "one echo alone may have made it";
+  // Turning, the corners keep the stand-off.
+  const auto beside = wall({-2.0, 0.4}, {2.0, 0.4});
+  EXPECT_LT(operated({0.0, 0.3}, beside), share(marvin(), {0.0, 0.3}, beside));
+}
+
+TEST(Guard, ReachesAsFarAsSomethingBears) {
+  const Guard guard(marvin());
+  for (const double v : {0.1, 0.5, 0.9, 1.4}) {
+    const double far = guard.reach(v);
+    const Twist2 twist{v, 0.2};
+    EXPECT_EQ(guard.share(twist, {.sees = true, .cells = wall({far, -1.0}, {far, 1.0})}, twist),
+              1.0);
+    const double near = far - 0.2;
+    EXPECT_LT(guard.share(twist, {.sees = true, .cells = wall({near, -1.0}, {near, 1.0})}, twist),
+              1.0);
+  }
+}
+
 TEST(Guard, TellsTheWayAlongTheArc) {
   const Guard guard(marvin());
   const auto ahead = wall({2.0, -3.0}, {2.0, 3.0});
-  EXPECT_NEAR(guard.way({0.5, 0.0}, ahead), 1.695, 1e-9);
-  EXPECT_NEAR(guard.way({0.0, 0.0}, ahead), 1.695, 1e-9) << "standing";
-  EXPECT_NEAR(guard.way({0.0, 0.7}, ahead), 1.695, 1e-9) << "turning";
-  EXPECT_GT(guard.way({0.5, 0.25}, ahead), 1.7);
-  EXPECT_EQ(guard.way({0.5, 0.5}, ahead), std::numeric_limits<double>::infinity())
+  const auto way = [&](const Twist2& twist) {
+    const double seen = guard.way(twist, {.points = ahead, .sees = true});
+    EXPECT_EQ(seen, guard.way(twist, {.sees = true, .cells = ahead}));
+    return seen;
+  };
+  EXPECT_NEAR(way({0.5, 0.0}), 1.695, 1e-9);
+  EXPECT_NEAR(way({0.0, 0.0}), 1.695, 1e-9) << "standing";
+  EXPECT_NEAR(way({0.0, 0.7}), 1.695, 1e-9) << "turning";
+  EXPECT_GT(way({0.5, 0.25}), 1.7);
+  EXPECT_EQ(way({0.5, 0.5}), std::numeric_limits<double>::infinity())
       << "the turn is tighter than the room";
-  EXPECT_EQ(guard.way({-0.5, 0.0}, ahead), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(way({-0.5, 0.0}), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -392,7 +392,7 @@ class Guarded : public testing::Test {
     parameters.reflex_drop = 0.25;
     inputs = all_well();
     for (int i = -100; i <= 100; ++i) points.emplace_back(0.305 + 0.5, 0.01 * i);
-    inputs.view = {points, true};
+    inputs.view = {.points = points, .sees = true};
   }
   Parameters parameters;
   std::vector<geometry::Point2> points;
@@ -410,18 +410,56 @@ TEST_F(Guarded, WhoDoesNotLookAheadDrivesNoFasterThanItStops) {
   inputs.manual.reset();
   inputs.interaction = Twist2{0.8, 0.0};
   EXPECT_NEAR(settled(inputs, parameters).twist.v, (0.5 - 0.02) / 1.48, 1e-9);
-  inputs.navigation = inputs.interaction;
-  inputs.interaction.reset();
-  EXPECT_EQ(settled(inputs, parameters).twist.v, 0.8) << "the planner looks ahead itself";
+}
+
+TEST_F(Guarded, APlannerThatDoesNotLookAheadIsHeldBack) {
+  inputs.navigation = Twist2{0.8, 0.1};
+  MovementControl control(parameters);
+  Decision decision;
+  for (int ms = 0; ms < 3000; ms += 20) decision = control.decide(inputs, milliseconds(ms));
+  EXPECT_NEAR(decision.twist.v, (0.5 - 0.08) / 1.48, 0.02) << "a corner is a little nearer";
+  EXPECT_NEAR(decision.twist.w / decision.twist.v, 0.1 / 0.8, 1e-9) << "the arc stays";
+  EXPECT_EQ(decision.limit, Limit::kObstacle);
+  EXPECT_NEAR(control.status().max_current.linear, decision.twist.v, 1e-9);
+  EXPECT_EQ(control.held_back(), 1U);
+  inputs.navigation = Twist2{0.25, 0.0};  // 0.37 m to rest
+  for (int ms = 3000; ms < 3100; ms += 20) decision = control.decide(inputs, milliseconds(ms));
+  EXPECT_EQ(decision.twist.v, 0.25);
+  inputs.navigation = Twist2{0.8, 0.0};
+  control.decide(inputs, milliseconds(3100));
+  EXPECT_EQ(control.held_back(), 2U);
+  parameters.guarded = false;
+  EXPECT_EQ(settled(inputs, parameters).twist.v, 0.8);
+}
+
+TEST_F(Guarded, AHeldBackPlannersRobotStaysOnItsArcWhileItIsFaster) {
+  MovementControl control(parameters);
+  inputs.navigation = inputs.measured = Twist2{0.8, 0.2};
+  inputs.view = {.sees = true};
+  int ms = 0;
+  for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+  inputs.view = {.sees = true, .cells = points};
+  EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist, (Twist2{0.0, 0.2})) << "at once";
+  inputs.measured = Twist2{0.4, 0.1};
+  for (int i = 0; i < 5; ++i) control.decide(inputs, milliseconds(ms += 20));
+  EXPECT_NEAR(control.status().current.w, 0.1, 1e-9);
+}
+
+TEST_F(Guarded, ALostPlannerMayTurn) {
+  inputs.navigation = Twist2{0.8, 0.3};
+  inputs.localization = Localization::kLost;
+  const Decision decision = settled(inputs, parameters);
+  EXPECT_EQ(decision.twist, (Twist2{0.0, 0.3}));
+  EXPECT_EQ(decision.limit, Limit::kLocalizationLost);
 }
 
 TEST_F(Guarded, SlowsDownAtOnceForWhatAppears) {
   MovementControl control(parameters);
   inputs.manual = Twist2{0.8, 0.0};
-  inputs.view = {{}, true};
+  inputs.view = {.sees = true};
   int ms = 0;
   for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
-  inputs.view = {points, true};
+  inputs.view = {.points = points, .sees = true};
   EXPECT_NEAR(control.decide(inputs, milliseconds(ms)).twist.v, (0.5 - 0.02) / 1.48, 1e-9);
 }
 
@@ -438,15 +476,15 @@ TEST_F(Guarded, RollsOutOnTheArcWhereItWouldMeetSomethingElse) {
   MovementControl control(parameters);
   inputs.measured = Twist2{0.6, 0.5};
   inputs.manual = Twist2{0.6, 0.5};
-  inputs.view = {{}, true};
+  inputs.view = {.sees = true};
   int ms = 0;
   for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
   for (const double wish : {0.0, -0.3}) {
     inputs.manual = Twist2{wish, 0.0};
-    inputs.view = {points, true};
+    inputs.view = {.points = points, .sees = true};
     EXPECT_NEAR(control.decide(inputs, milliseconds(ms += 20)).twist.w, 0.5, 1e-9) << wish;
   }
-  inputs.view = {{}, true};
+  inputs.view = {.sees = true};
   EXPECT_LT(control.decide(inputs, milliseconds(ms += 20)).twist.w, 0.5) << "room enough";
 }
 
@@ -648,7 +686,10 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
     return Twist2{random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
   };
   for (int run = 0; run < 200; ++run) {
-    MovementControl control(run % 2 == 0 ? Parameters{} : with_jerk());
+    Parameters parameters = run % 2 == 0 ? Parameters{} : with_jerk();
+    parameters.guarded = run % 4 >= 2;
+    MovementControl control(parameters);
+    std::vector<geometry::Point2> things;
     Time now{};
     double last = 0.0;
     for (int i = 0; i < 200; ++i) {
@@ -662,6 +703,10 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
       if (chance(20)) inputs.whiskers.reset();
       inputs.situation = static_cast<Situation>(random.below(3));
       inputs.localization = static_cast<Localization>(random.below(3));
+      things.clear();
+      for (auto n = random.below(4); n > 0; --n)
+        things.emplace_back(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+      inputs.view = {.points = things, .sees = !chance(5), .guessed = 0, .cells = things};
       now += milliseconds(random.below(50));
       const Decision decision = control.decide(inputs, now);
       const Twist2& out = decision.twist;

@@ -133,6 +133,10 @@ TEST_F(Walled, AWallThatLeavesTheViewGoesOn) {
   EXPECT_LT(nearest({-0.2, -0.3}), 0.02);
   EXPECT_LT(nearest({-0.6, -0.3}), 0.02);
   EXPECT_GT(nearest({-0.9, -0.3}), 0.05);
+  const auto seen =
+      surroundings.points().first(surroundings.points().size() - surroundings.guessed());
+  EXPECT_NEAR(static_cast<double>(surroundings.guessed()), 160.0, 1.0);
+  for (const Point2& p : seen) EXPECT_GT(p.x(), 0.1);
   walls = {{0, -1, 2.0}};
   look();
   EXPECT_GT(nearest({-0.9, -2.0}), 0.05) << "too far to matter";

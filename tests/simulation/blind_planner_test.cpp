@@ -1,0 +1,142 @@
+// A local planner that has gone wrong, in lock-step: whatever it should do, it tells the robot to
+// drive full speed ahead.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "operations/command_line/installation.hpp"
+#include "operations/experiments/errand.hpp"
+#include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/site_facts.hpp"
+#include "support/folder.hpp"
+
+namespace usher::operations {
+namespace {
+
+using std::chrono::milliseconds;
+
+struct Way {
+  const char* name;
+  const char* manifest;
+  const char* place;
+  const char* goal;
+  double v;           ///< [m/s] that the planner wants
+  const char* world;  ///< instead of the site's, where not null
+  double ahead;       ///< [m] from the place to the obstacle
+  bool glass;         ///< not even a beam at a right angle sees it; whiskers feel this one only
+};
+
+constexpr double kLaserX = 0.28;  // [m] of MARVIN's laser ahead of the axle
+constexpr double kPaneX = 4.5;    // [m] of the pane across the glass corridor, up to y = 1.2 m
+constexpr const char* kLowBox = R"(name: hall
+ceiling: 2.7
+rooms:
+  - {name: hall, title: Hall, area: [0.0, 0.0, 12.0, 6.0]}
+walls:
+  - {name: around, thickness: 0.2, points: [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]}
+obstacles:
+  - {name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}
+)";
+
+// What the laser sees; what only the ultrasonic sensors hear, which are deaf 0.15 m before it, so
+// that the costs forget it after a while; what only the depth camera sees.
+const Way kWays[] = {
+    {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7, false},
+    {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49, true},
+    {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8, false},
+};
+
+struct Outcome {
+  RunRecord::Summary summary;
+  double way = 0.0, fastest = 0.0, speed = 0.0;  ///< [m], [m/s], the latter at the end
+  bool held = false;                             ///< by the guard, while it was fast
+};
+
+Outcome drive_blindly(const Way& way, bool guard) {
+  const std::string share = std::string(USHER_BINARY_DIR) + "/share/usher";
+  const Installation installation{
+      .programs = {}, .contracts = share + "/contracts", .share = share};
+  auto deployment = load_deployment(share + "/deploy/" + way.manifest, installation,
+                                    {{"movement_control", "guard", guard ? "true" : "false"}});
+  EXPECT_TRUE(deployment.ok()) << deployment.error();
+  set_site_value(*deployment, "site.initial_pose", way.place);
+  const test::Folder folder;
+  if (way.world != nullptr)
+    set_site_value(*deployment, "site.world", folder.file("world.yaml", way.world));
+  auto run = LockstepRun::create(*deployment, 1);
+  EXPECT_TRUE(run.ok()) << run.error();
+  auto& world = (*run)->world();
+  Outcome outcome;
+  Errand errand(
+      way.goal, 1000,
+      {[&](const auto& request) {
+         world.publish(topics::kSupervisorRequest, request, Errand::kClient);
+       },
+       [&](const auto& goal) { world.publish(topics::kNavigateGoal, goal, Errand::kClient); }});
+  world.tamper(topics::kCmdVelNavigation, [&](const auto&, auto& wanted) {
+    wanted.twist().linear().x(way.v);
+    wanted.twist().angular().z(0.0);
+    return true;
+  });
+  world.tamper(topics::kWhiskers, [&](const auto&, auto& whiskers) {
+    if (!way.glass) whiskers.front_left(false), whiskers.front_right(false);
+    return true;
+  });
+  world.tamper(topics::kScanFiltered, [&](const auto&, auto& scan) {
+    const auto truth = (*run)->record().truth();
+    if (!way.glass || !truth) return true;
+    for (std::size_t i = 0; i < scan.ranges().size(); ++i) {
+      const double angle = scan.angle_min() + scan.angle_increment() * static_cast<double>(i);
+      const double range = scan.ranges()[i];
+      const geometry::Point2 end =
+          *truth * geometry::Point2(kLaserX + range * std::cos(angle), range * std::sin(angle));
+      if (std::abs(end.x() - kPaneX) < 0.15 && end.y() > 0.1 && end.y() < 1.3)
+        scan.ranges()[i] = std::numeric_limits<float>::infinity();
+    }
+    return true;
+  });
+  world.observe(topics::kSupervisorStatus,
+                [&](const auto& status, const auto&) { errand.take(status); });
+  world.observe(topics::kNavigateStatus,
+                [&](const auto& status, const auto&) { errand.take(status); });
+  world.observe(topics::kMovementStatus, [&](const auto& status, const auto&) {
+    outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
+                                    status.velocity_measured_linear() > 0.5F);
+  });
+  while (world.elapsed() < std::chrono::seconds(20) && !errand.over()) {
+    errand.step();
+    world.run_for(milliseconds(200));
+  }
+  const auto& samples = (*run)->record().samples();
+  for (const auto& sample : samples) outcome.fastest = std::max(outcome.fastest, sample.v);
+  outcome.speed = samples.back().v;
+  outcome.way = geometry::distance(samples.front().truth, samples.back().truth);
+  outcome.summary = (*run)->record().summary();
+  return outcome;
+}
+
+class BlindPlanner : public testing::TestWithParam<Way> {};
+
+TEST_P(BlindPlanner, IsStoppedBeforeIt) {
+  const Outcome outcome = drive_blindly(GetParam(), true);
+  EXPECT_GT(outcome.fastest, 0.7 * GetParam().v) << "it went there at speed";
+  EXPECT_GT(outcome.way, GetParam().ahead - 0.8) << "and got near";
+  EXPECT_LT(std::abs(outcome.speed), 0.1);
+  EXPECT_TRUE(outcome.held);
+  EXPECT_EQ(outcome.summary.contacts + outcome.summary.touches, 0U) << outcome.summary.contact_with;
+}
+
+TEST_P(BlindPlanner, HitsItWithoutTheGuard) {
+  EXPECT_GT(drive_blindly(GetParam(), false).summary.contacts, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Into, BlindPlanner, testing::ValuesIn(kWays),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+}  // namespace
+}  // namespace usher::operations
