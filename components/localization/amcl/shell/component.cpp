@@ -21,8 +21,7 @@ constexpr auto kScanAge = milliseconds(500);
 /// whoever looks at that scan sooner than the filter knows where it belongs.
 constexpr auto kShortestLife = milliseconds(50);
 constexpr auto kLongestLife = milliseconds(300);
-constexpr auto kKeeping = milliseconds(5);  // the pose on the disk, in simulation
-constexpr const char* kPoseKey = "amcl.pose";
+constexpr const char* kPoseKey = "session.pose";  // a boot may find the robot elsewhere
 constexpr double kOdometryContinues =
     3.0;  // [m] a longer way since the pose was kept is a restarted odometry
 constexpr std::size_t kCloudSize = 500;
@@ -95,6 +94,7 @@ AmclComponent::AmclComponent(runtime::Host& host)
       rejected_maps_(host.health().counter("map: rejected")),
       rejected_poses_(host.health().counter("initialpose: rejected")),
       bad_beams_(host.health().counter("scan: beams without a number")),
+      memory_(host, kPoseKey),
       transforms_(host) {
   auto& p = host.parameters();
   const auto start = p.numbers("site.initial_pose", "-", {-1e4, 1e4}, 3, 3, {0, 0, 0},
@@ -154,8 +154,8 @@ void AmclComponent::take_initial_pose(
 /// From what was kept over a restart, else from the site's initial pose, else anywhere.
 void AmclComponent::start(const geometry::Pose2& odom_T_base) {
   started_ = true;
-  if (const auto bytes = host_.kept(kPoseKey); bytes && !bytes->empty()) {
-    const auto kept = read_kept_pose(std::string(bytes->begin(), bytes->end()), map_fingerprint_);
+  if (!memory_.found().empty()) {
+    const auto kept = read_kept_pose(memory_.found(), map_fingerprint_);
     if (kept) {
       const geometry::Pose2& map = kept->map_T_base;
       const geometry::Pose2& odom = kept->odom_T_base;
@@ -281,24 +281,11 @@ void AmclComponent::publish_cloud() {
 
 void AmclComponent::keep() {
   const auto& estimate = core_.estimate();
-  if (keeping_ || !estimate || estimate->quality.confidence != Confidence::kGood) return;
+  if (!estimate || estimate->quality.confidence != Confidence::kGood) return;
   refused_memory_.clear();
-  // Beside the handlers: a busy disk takes longer than the heartbeat may be silent. A robot that
-  // cannot write its disk still localizes; it only starts at the site's pose the next time.
-  keeping_ = true;
-  const auto done = std::make_shared<bool>(false);
-  host_.offload(
-      kKeeping,
-      [&host = host_,
-       kept = to_text({map_fingerprint_, estimate->map_T_base, estimate->odom_T_base}), done] {
-        const auto status =
-            host.keep(kPoseKey, {reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()});
-        *done = static_cast<bool>(status);
-      },
-      [this, done] {
-        keeping_ = false;
-        if (!*done) ++host_.health().counter("pose: not kept");
-      });
+  // A robot that cannot write its disk still localizes; it only starts at the site's pose the next
+  // time.
+  memory_.keep(to_text({map_fingerprint_, estimate->map_T_base, estimate->odom_T_base}));
 }
 
 }  // namespace usher::amcl

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "idl/topics.hpp"
 #include "localization/amcl/core/amcl.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 #include "wire/transform_input.hpp"
 
 namespace usher::amcl {
@@ -38,7 +38,6 @@ class AmclComponent final : public runtime::Component {
   bool map_known_ = false;
   std::uint64_t map_fingerprint_ = 0;
   std::string refused_memory_;  ///< why the kept pose was not taken up; until there is a good one
-  bool keeping_ = false;        ///< the last pose is on its way to the disk
   runtime::Time last_scan_{};
   runtime::Duration scan_interval_{};  ///< between the last two
   runtime::Time valid_until_{};        ///< of map -> odom, as it was told
@@ -49,6 +48,7 @@ class AmclComponent final : public runtime::Component {
   std::uint64_t& rejected_poses_;
   std::uint64_t& bad_beams_;
 
+  wire::Keeper memory_;  ///< the last good pose
   wire::TransformInput transforms_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
