@@ -112,7 +112,8 @@ AmclComponent::AmclComponent(runtime::Host& host)
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
   scan_ = host.input(
       topics::kScanFiltered, {.max_age = kScanAge, .on_loss = "reports lost: navigation stops"},
-      [this](const auto&, const auto&) { take_scan(scan_.share()); }, [this] { publish_status(); });
+      [this](const auto&, const auto& info) { take_scan(scan_.share(), info.effective); },
+      [this] { publish_status(); });
   initial_pose_ =
       host.input(topics::kInitialPose, {.optional = true},
                  [this](const auto& message, const auto&) { take_initial_pose(message); });
@@ -173,20 +174,21 @@ void AmclComponent::start(const geometry::Pose2& odom_T_base) {
   core_.start_globally();
 }
 
-void AmclComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan) {
+void AmclComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
+                              runtime::Time effective) {
   if (!wire::check(*scan)) {
     ++rejected_scans_;
     return;
   }
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   transforms_.when_known(frames::kOdom, frames::kBaseFootprint, stamp,
-                         [this, scan = std::move(scan), stamp](const auto& pose) {
-                           update(*scan, stamp, geometry::to_plane(pose));
+                         [this, scan = std::move(scan), stamp, effective](const auto& pose) {
+                           update(*scan, stamp, effective, geometry::to_plane(pose));
                          });
 }
 
 void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
-                           const geometry::Pose2& odom_T_base) {
+                           runtime::Time effective, const geometry::Pose2& odom_T_base) {
   const auto base_T_laser =
       transforms_.lookup_planar(frames::kBaseFootprint, scan.header().frame_id(), stamp);
   if (!base_T_laser) {
@@ -204,6 +206,7 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected) {
     if (last_scan_ != runtime::Time{}) scan_interval_ = stamp - last_scan_;
     last_scan_ = stamp;
+    last_used_ = effective;
   }
   if (!core_.estimate() || last_scan_ != stamp) return;
   publish_transform(stamp);
@@ -257,7 +260,7 @@ void AmclComponent::publish_status() {
     reason = map_known_ ? "no pose yet" : "no map";
   }
   // Scans that come but say nothing, or whose place is not known, are none.
-  if (!scan_.fresh() || host_.now() - last_scan_ > kScanAge) {
+  if (!scan_.fresh() || host_.now() - last_used_ > kScanAge) {
     confidence = Confidence::kLost;
     reason = scan_.fresh() ? "no scan that can be used" : "no scan";
   }

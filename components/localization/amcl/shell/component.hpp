@@ -20,8 +20,8 @@ class AmclComponent final : public runtime::Component {
   static AmclConfig read_parameters(runtime::Host& host);
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_initial_pose(const geometry_msgs::msg::PoseWithCovarianceStamped& message);
-  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
-  void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
+  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan, runtime::Time effective);
+  void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp, runtime::Time effective,
               const geometry::Pose2& odom_T_base);
   void start(const geometry::Pose2& odom_T_base);
   void publish_transform(runtime::Time stamp);
@@ -38,7 +38,8 @@ class AmclComponent final : public runtime::Component {
   bool map_known_ = false;
   std::uint64_t map_fingerprint_ = 0;
   std::string refused_memory_;  ///< why the kept pose was not taken up; until there is a good one
-  runtime::Time last_scan_{};
+  runtime::Time last_scan_{};   ///< its stamp, on the clock of the host that it came from
+  runtime::Time last_used_{};   ///< when that was, on this host's clock
   runtime::Duration scan_interval_{};  ///< between the last two
   runtime::Time valid_until_{};        ///< of map -> odom, as it was told
   std::uint64_t& rejected_scans_;
