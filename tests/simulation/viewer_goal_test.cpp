@@ -1,0 +1,65 @@
+// A goal that is clicked in rviz, before the whole robot.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "operations/command_line/installation.hpp"
+#include "operations/experiments/lockstep_run.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::operations {
+namespace {
+
+using std::chrono::seconds;
+namespace goal_state = usher_msgs::msg::GoalStatus_Constants;
+namespace supervisor_state = usher_msgs::msg::SupervisorStatus_Constants;
+
+TEST(ViewerGoal, IsDrivenToAndLeavesTheRobotToItsVisitors) {
+  const std::string share = std::string(USHER_BINARY_DIR) + "/share/usher";
+  const Installation installation{
+      .programs = {}, .contracts = share + "/contracts", .share = share};
+  const auto deployment = load_deployment(share + "/deploy/marvin-sim.yaml", installation, {});
+  ASSERT_TRUE(deployment.ok()) << deployment.error();
+  const auto made = LockstepRun::create(*deployment, 1);
+  ASSERT_TRUE(made.ok()) << made.error();
+  LockstepRun& run = **made;
+  auto& world = run.world();
+  std::optional<geometry::Pose2> place;
+  world.observe(topics::kLocations, [&](const auto& message, const auto&) {
+    for (const auto& location : message.locations()) {
+      if (location.name() == "lounge") place = wire::to_planar(location.pose());
+    }
+  });
+  std::uint8_t state = 0;
+  bool granted = false;
+  world.observe(topics::kSupervisorStatus, [&](const auto& status, const auto&) {
+    state = status.state();
+    granted = status.granted();
+  });
+  std::uint8_t outcome = 0;
+  world.observe(topics::kNavigateStatus, [&](const auto& status, const auto&) {
+    if (status.client() == "goal_pose") outcome = status.state();
+  });
+  const auto becomes = [&](seconds limit, const auto& condition) {
+    const auto until = world.now() + limit;
+    while (world.now() < until && !condition()) world.run_for(std::chrono::milliseconds(100));
+    return condition();
+  };
+  ASSERT_TRUE(becomes(seconds(30), [&] {
+    return place && granted && state == supervisor_state::STATE_INTERACTION;
+  })) << run.complaints();
+
+  geometry_msgs::msg::PoseStamped goal;
+  goal.header(wire::header(world.now(), "map"));
+  goal.pose(wire::to_message(*place));
+  world.publish(topics::kGoalPose, goal, "rviz");
+  ASSERT_TRUE(becomes(seconds(240), [&] { return outcome == goal_state::STATE_SUCCEEDED; }))
+      << static_cast<int>(outcome) << "\n"
+      << run.complaints();
+  EXPECT_LT((run.record().samples().back().truth.position() - place->position()).norm(), 0.5);
+  EXPECT_TRUE(becomes(seconds(3), [&] { return state == supervisor_state::STATE_INTERACTION; }));
+}
+
+}  // namespace
+}  // namespace usher::operations
