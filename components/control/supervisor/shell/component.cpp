@@ -83,8 +83,15 @@ void SupervisorComponent::watch_topics(const std::vector<drive::NamedComponent>&
   tell(topics::kMap, topics::kAmclPose, topics::kLocalizationStatus, topics::kLocalCosts,
        topics::kGlobalCosts, topics::kCostmapRequest);
   tell(topics::kPlanRequest, topics::kPlanReply, topics::kFollowGoal, topics::kFollowCancel,
-       topics::kFollowStatus, topics::kNavigateStatus, topics::kNavigatePace,
-       topics::kMovementStatus, topics::kSupervisorStatus);
+       topics::kFollowStatus, topics::kNavigateStatus, topics::kNavigatePace, topics::kLocations,
+       topics::kExploreStatus, topics::kExploreShare, topics::kMovementStatus,
+       topics::kSupervisorStatus);
+  tell(topics::kKinectDepth, topics::kKinectInfo, topics::kKinectColor, topics::kKinectProcessed,
+       topics::kKinectTilt, topics::kKinectTiltCommand, topics::kRearDepth, topics::kRearInfo,
+       topics::kRearProcessed, topics::kFaces);
+  tell(topics::kInteractionTarget, topics::kTorsoFrame, topics::kTorsoStatus, topics::kVisitor,
+       topics::kGuideStatus, topics::kMeetingStatus, topics::kDialogueScreen,
+       topics::kSpeechStatus);
 }
 
 Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
