@@ -28,7 +28,8 @@ TEST(ViewerGoal, IsDrivenToAndLeavesTheRobotToItsVisitors) {
   std::optional<geometry::Pose2> place;
   world.observe(topics::kLocations, [&](const auto& message, const auto&) {
     for (const auto& location : message.locations()) {
-      if (location.name() == "lounge") place = wire::to_planar(location.pose());
+      const auto pose = wire::to_planar(location.pose());
+      if (pose && location.name() == "lounge") place = *pose;
     }
   });
   std::uint8_t state = 0;
