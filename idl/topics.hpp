@@ -207,7 +207,7 @@ inline constexpr Topic<usher_msgs::msg::SupervisorRequest> kSupervisorRequest{
     Kind::kEvent,
     32,
     0,
-    "guide manual_control meeting tablet speech operator",
+    "guide manual_control meeting navigator tablet speech operator",
     "Changes of the supervisor's state."};
 
 // --- Localization and maps

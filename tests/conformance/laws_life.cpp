@@ -116,6 +116,22 @@ TEST_F(HostLaw, MemoryOutlivesTheComponent) {
   EXPECT_THAT(found.all(), ElementsAre("nothing", "here"));
 }
 
+TEST_F(HostLaw, NoHandlerWaitsForADisk) {
+  auto& kept = make<std::atomic<bool>>(false);
+  start(scripted<Timer>([&](Host& host, Timer& timer) {
+    timer = host.timer("once", milliseconds(20), [&](auto) {
+      timer.stop();
+      host.offload(
+          milliseconds(5), [&] { kept = host.keep("pose", Bytes{'1'}).ok(); },
+          [&] { static_cast<void>(host.keep("pose", Bytes{'2'}).ok()); });
+    });
+  }));
+  ASSERT_TRUE(stage_->run_until([&] { return stage_->exit_code("subject").has_value(); }, kSoon));
+  EXPECT_TRUE(kept) << "beside the handlers";
+  EXPECT_EQ(newest_heartbeat("subject").reason(),
+            "pose was kept in a handler: what it publishes would wait for the disk");
+}
+
 TEST_F(HostLaw, AskedToStopAComponentEndsWithZeroAndRunsNoMore) {
   auto& ticks = make<std::atomic<int>>(0);
   start(scripted<Timer>([&](Host& host, Timer& timer) {

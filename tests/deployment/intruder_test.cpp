@@ -90,7 +90,10 @@ bool names(const RunningRobot& robot, const std::string& topic) {
 
 class IntruderTest : public testing::Test {
  protected:
-  static void SetUpTestSuite() { robot_ = new DrivenRobot; }
+  static void SetUpTestSuite() {
+    robot_ = new DrivenRobot(
+        "  visitor_tracker: {host: nuc, criticality: notify, heartbeat_timeout: 1.0}\n");
+  }
   static void TearDownTestSuite() {
     delete robot_;
     robot_ = nullptr;
@@ -194,6 +197,14 @@ TEST_F(IntruderTest, IsNamedOnEachOtherTopicThatTheRobotDecidesBy) {
       target(topics::kNavigatePace),
       target(topics::kMovementStatus),
       target(topics::kSupervisorStatus),
+      target(topics::kLocations),
+      target(topics::kKinectTilt),
+      target(topics::kInteractionTarget),
+      target(topics::kTorsoFrame),
+      target(topics::kTorsoStatus),
+      target(topics::kVisitor),
+      target(topics::kGuideStatus),
+      target(topics::kDialogueScreen),
   };
   for (const auto& target : targets) {
     SCOPED_TRACE(target.topic);

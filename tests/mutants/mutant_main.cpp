@@ -22,10 +22,11 @@ constexpr std::uint64_t kLastSeed = 10'000;
 
 /// The first seeds whose windows are of these kinds.
 std::vector<std::uint64_t> seeds_of(const std::set<std::string>& kinds,
-                                    const usher::operations::FaultTargets& targets) {
+                                    const usher::operations::WindowSetting& setting) {
   std::vector<std::uint64_t> seeds;
   for (std::uint64_t seed = 1; seed <= kLastSeed && seeds.size() < kWindows; ++seed) {
-    if (kinds.contains(draw_window(seed, 0, targets).kind())) seeds.push_back(seed);
+    if (kinds.contains(draw_window(seed, 0, setting.robot_of(seed).targets).kind()))
+      seeds.push_back(seed);
   }
   return seeds;
 }
@@ -48,7 +49,7 @@ int main(int argc, char** argv) {
     std::printf("%s\n", setting.error().c_str());
     return 2;
   }
-  const auto seeds = seeds_of({argv + 1, argv + argc}, setting->targets);
+  const auto seeds = seeds_of({argv + 1, argv + argc}, *setting);
   std::atomic<bool> killed = false;
   const auto done = run_jobs(seeds.size(), "windows", [&](std::size_t i) -> Result<std::string> {
     if (killed) return std::string();

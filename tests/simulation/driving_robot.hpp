@@ -46,6 +46,11 @@ class DrivingRobot : public testing::Test {
   std::uint64_t count(const std::string& component, const std::string& counter) {
     return counters_[component][counter];
   }
+  bool becomes(const std::function<bool()>& condition, seconds limit) {
+    const auto until = run_->world().now() + limit;
+    while (run_->world().now() < until && !condition()) run_->world().run_for(milliseconds(100));
+    return condition();
+  }
   /// Calls `write` again and again for so long.
   void flood(seconds duration, const std::function<void()>& write,
              milliseconds period = milliseconds(20)) {

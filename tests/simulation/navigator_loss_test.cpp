@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "simulation/driving_robot.hpp"
@@ -33,11 +32,6 @@ class NavigatorLoss : public DrivingRobot {
       run_->world().run_for(milliseconds(20));
     EXPECT_LE(std::abs(speed()), 0.02) << "it should stand by now";
     return (place() - from).norm();
-  }
-  bool becomes(const std::function<bool()>& condition, seconds limit) {
-    const auto until = run_->world().now() + limit;
-    while (run_->world().now() < until && !condition()) run_->world().run_for(milliseconds(100));
-    return condition();
   }
   void goes_on_to_its_goal() {
     // Somebody may pass just then: it gives way for a while and creeps past.

@@ -21,6 +21,7 @@ constexpr double kHeld = 0.45;
 /// [s] A grant that nobody renews has run out.
 constexpr double kExpires = 0.2;
 constexpr double kTwoAtOnce = 0.12;    // share of windows
+constexpr double kSightAtFault = 0.5;  // share of the windows of a robot that sees
 constexpr double kLongestDelay = 3.0;  // [s]
 
 /// Topic and who may write it.
@@ -109,7 +110,7 @@ Fault draw_fault(Random& random, const FaultTargets& targets) {
   constexpr std::array kTouches = {"silent"sv, "pressed"sv, "free"sv};
   constexpr std::array kHosts = {"nuc"sv, "sensing"sv, "tablet"sv};
   Fault fault;
-  fault.kind = static_cast<FaultKind>(random.below(kFaultKinds));
+  fault.kind = static_cast<FaultKind>(random.below(kBlindFaultKinds));
   fault.duration = draw_duration(random);
   switch (fault.kind) {
     case FaultKind::kCrash:
@@ -156,6 +157,32 @@ Fault draw_fault(Random& random, const FaultTargets& targets) {
     case FaultKind::kStick:
       fault.amount = either_sign(random, 0.3, 1.0);
       break;
+    case FaultKind::kDepth:
+    case FaultKind::kUltrasonic:
+    case FaultKind::kPeople:
+      break;  // draw_sight()
+  }
+  return fault;
+}
+
+Fault draw_sight(Random& random) {
+  constexpr std::array kCameras = {"kinect"sv, "rear camera"sv, "both cameras"sv};
+  constexpr std::array kImages = {"silent"sv, "frozen"sv, "not finite"sv};
+  constexpr std::array kEchoes = {"silent"sv, "not finite"sv, "near"sv};
+  constexpr std::array kWords = {"silent"sv, "frozen"sv, "false"sv};
+  constexpr std::array kKinds = {FaultKind::kDepth, FaultKind::kUltrasonic, FaultKind::kPeople};
+  Fault fault;
+  fault.kind = kKinds[random.below(kKinds.size())];
+  fault.duration = draw_duration(random);
+  if (fault.kind == FaultKind::kDepth) {
+    fault.target = pick(random, kCameras);
+    fault.variant = pick(random, kImages);
+  } else if (fault.kind == FaultKind::kUltrasonic) {
+    fault.variant = pick(random, kEchoes);
+    if (fault.variant == "near") fault.amount = random.uniform(0.2, 0.8);
+  } else {
+    fault.variant = pick(random, kWords);
+    if (fault.variant == "false") fault.amount = random.uniform(0.8, 3.0);
   }
   return fault;
 }
@@ -177,10 +204,10 @@ void expect_of_link(const Fault& fault, Expectation& expected) {
 }  // namespace
 
 std::string_view text(FaultKind kind) {
-  constexpr std::array kTexts = {"crash",        "hang",        "slow handler", "base line",
-                                 "topic silent", "bad command", "rogue writer", "link of hosts",
-                                 "clock jump",   "laser",       "whiskers",     "odometry",
-                                 "flood",        "held stick"};
+  constexpr std::array kTexts = {
+      "crash",        "hang",          "slow handler", "base line",  "topic silent", "bad command",
+      "rogue writer", "link of hosts", "clock jump",   "laser",      "whiskers",     "odometry",
+      "flood",        "held stick",    "depth camera", "ultrasonic", "people"};
   static_assert(kTexts.size() == kFaultKinds);
   return kTexts[static_cast<std::size_t>(kind)];
 }
@@ -221,6 +248,11 @@ WindowPlan draw_window(std::uint64_t seed, int attempt, const FaultTargets& targ
     Fault second = draw_fault(random, targets);
     // Twice the same is once.
     if (second.kind != plan.faults.front().kind) plan.faults.push_back(std::move(second));
+  }
+  if (targets.sees) {
+    // Of their own, so that the other draws are those of a robot that does not see.
+    Random sight(stream_seed(seed, ("sight " + std::to_string(attempt)).c_str()));
+    if (sight.uniform() < kSightAtFault) plan.faults.front() = draw_sight(sight);
   }
   plan.sensing_apart = std::any_of(plan.faults.begin(), plan.faults.end(), needs_sensing_apart);
   return plan;
@@ -302,6 +334,9 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
     case FaultKind::kSlow:
     case FaultKind::kClock:
     case FaultKind::kStick:
+    case FaultKind::kDepth:
+    case FaultKind::kUltrasonic:
+    case FaultKind::kPeople:
       break;
   }
   return expected;

@@ -25,8 +25,14 @@ enum class FaultKind : std::uint8_t {
   kOdometry,      ///< the base's encoders and gyroscope are frozen, not finite or biased
   kFlood,         ///< a participant writes a topic as fast as it can
   kStick,         ///< an operator's stick is held though nobody asked for manual driving
+  // Of a robot that has depth cameras.
+  kDepth,       ///< a depth camera, or both, is silent, frozen or not finite
+  kUltrasonic,  ///< the ultrasonic sensors are silent or not finite, or one is stuck at something
+                ///< near
+  kPeople,      ///< what is said of people is silent or frozen, or there is one who is not there
 };
-inline constexpr std::size_t kFaultKinds = 14;
+inline constexpr std::size_t kBlindFaultKinds = 14;  ///< of a robot without depth cameras
+inline constexpr std::size_t kFaultKinds = 17;
 
 std::string_view text(FaultKind kind);
 
@@ -36,7 +42,8 @@ struct Fault {
   std::string target;   ///< component, topic, host or pair of hosts; empty where there is one only
   std::string variant;  ///< how; empty where there is one way only
   double duration = 0.0;  ///< [s] {> 0} from the hit on
-  double amount = 0.0;    ///< of a bias [m] [rad/s], a delay [s], a loss [-], a jump [s]
+  double amount =
+      0.0;  ///< of a bias [m] [rad/s], a delay [s], a loss [-], a jump [s]; a distance [m]
 
   /// "laser frozen for 3.2 s"
   std::string text() const;
@@ -79,6 +86,7 @@ struct FaultTargets {
   std::string base_driver;         ///< its loss leaves the base deaf
   std::size_t starts = 0;          ///< {> 0} places where the robot may start
   std::size_t locations = 0;       ///< {> 0} places that it may go to
+  bool sees = false;               ///< it has depth cameras
 };
 
 /// The participant that floods.

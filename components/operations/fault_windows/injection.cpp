@@ -287,6 +287,99 @@ void break_odometry(const Fault& fault, LockstepWorld& world) {
       });
 }
 
+/// All that the camera's model says, with its own stamps where it is frozen.
+template <class Message>
+void break_picture(LockstepWorld& world, const topics::Topic<Message>& topic, const Fault& fault,
+                   const std::function<void(Message&)>& spoil) {
+  const Time until = end_of(fault, world);
+  if (fault.variant == "silent") {
+    silence(world, std::string(topic.name), until);
+  } else if (fault.variant == "not finite") {
+    tamper_until<Message>(world, topic, until, spoil);
+  } else {
+    tamper_until<Message>(world, topic, until, [first = frozen<Message>()](Message& message) {
+      const auto header = message.header();
+      message = first(message);
+      message.header(header);
+    });
+  }
+}
+
+void break_cameras(const Fault& fault, LockstepWorld& world) {
+  const std::function<void(sensor_msgs::msg::LaserScan&)> no_ranges = [](auto& scan) {
+    for (float& range : scan.ranges()) range = kNan;
+  };
+  const std::function<void(geometry_msgs::msg::PoseArray&)> no_places = [](auto& people) {
+    for (auto& pose : people.poses()) pose.position().x(kNan);
+  };
+  if (fault.target != "rear camera") {
+    break_picture(world, topics::kSimKinectScan, fault, no_ranges);
+    break_picture(world, topics::kSimKinectScanLow, fault, no_ranges);
+    break_picture(world, topics::kSimKinectPeople, fault, no_places);
+  }
+  if (fault.target != "kinect") {
+    break_picture(world, topics::kSimRearScan, fault, no_ranges);
+    break_picture(world, topics::kSimRearPeople, fault, no_places);
+  }
+}
+
+void break_ultrasonic(const Fault& fault, LockstepWorld& world) {
+  using usher_sim_msgs::msg::SensorBoardReading;
+  const Time until = end_of(fault, world);
+  if (fault.variant == "silent") {
+    silence(world, std::string(topics::kUltrasonic.name), until);
+    return;
+  }
+  tamper_until<SensorBoardReading>(
+      world, topics::kSimSensorBoard, until,
+      [near = fault.variant == "near",
+       distance = static_cast<float>(fault.amount)](SensorBoardReading& board) {
+        auto& ranges = board.ranges();
+        if (near && !ranges.empty()) ranges[ranges.size() / 2] = distance;
+        if (!near) std::ranges::fill(ranges, kNan);
+      });
+}
+
+/// Stands before the robot where that was at the hit.
+class Ghost {
+ public:
+  explicit Ghost(double distance) : ahead_(distance) {}
+  void join(const nav_msgs::msg::Odometry& odom) {
+    if (place_) return;
+    if (const auto pose = wire::to_planar(odom.pose().pose()))
+      place_ = *pose * geometry::Point2(ahead_, 0.0);
+  }
+  void join(usher_msgs::msg::People& people) const {
+    if (!place_) return;
+    auto& ghost = people.people().emplace_back();
+    ghost.id(1'000'000);
+    ghost.x(place_->x());
+    ghost.y(place_->y());
+    for (const std::size_t i : {0U, 5U, 10U, 15U}) ghost.covariance()[i] = 0.01;
+    ghost.height(1.7F);
+    ghost.age(1.0F);
+    ghost.by_kinect(true);
+  }
+
+ private:
+  double ahead_;
+  std::optional<geometry::Point2> place_;
+};
+
+void spoil_people(const Fault& fault, LockstepWorld& world) {
+  using usher_msgs::msg::People;
+  using usher_msgs::msg::PersonAhead;
+  if (fault.variant != "false") {
+    break_picture<People>(world, topics::kPeople, fault, {});
+    break_picture<PersonAhead>(world, topics::kPersonAhead, fault, {});
+    return;
+  }
+  const auto ghost = std::make_shared<Ghost>(fault.amount);
+  world.observe(topics::kOdom, [ghost](const auto& odom, const auto&) { ghost->join(odom); });
+  tamper_until<People>(world, topics::kPeople, end_of(fault, world),
+                       [ghost](People& people) { ghost->join(people); });
+}
+
 /// Of no meaning to anybody, and very many.
 void flood_once(LockstepWorld& world, const std::string& topic, std::uint64_t number) {
   if (topic == topics::kHeartbeat.name) {
@@ -368,6 +461,15 @@ std::vector<Guid> inject(const Fault& fault, LockstepWorld& world) {
       break;
     case FaultKind::kStick:
       hold_stick(fault, world);
+      break;
+    case FaultKind::kDepth:
+      break_cameras(fault, world);
+      break;
+    case FaultKind::kUltrasonic:
+      break_ultrasonic(fault, world);
+      break;
+    case FaultKind::kPeople:
+      spoil_people(fault, world);
       break;
   }
   return {};

@@ -82,7 +82,7 @@ class Window {
   void be_hit(WindowResult& result) {
     result.hit_at = now();
     result.hit_speed = speed_;
-    judge_.hit(now(), expectations(plan_, setting_.targets));
+    judge_.hit(now(), expectations(plan_, setting_.robot_of(plan_.seed).targets));
     for (const Fault& fault : plan_.faults) {
       const auto writers = inject(fault, world());
       foreign_.insert(writers.begin(), writers.end());
@@ -185,7 +185,7 @@ class Window {
 };
 
 Deployment placed(const WindowSetting& setting, const WindowPlan& plan) {
-  Deployment deployment = setting.deployment;
+  Deployment deployment = setting.robot_of(plan.seed).deployment;
   const geometry::Point2& start = setting.starts[plan.start];
   char pose[96];
   std::snprintf(pose, sizeof(pose), "[%.3f, %.3f, %.4f]", start.x(), start.y(), plan.yaw);
@@ -212,38 +212,51 @@ std::vector<geometry::Point2> free_places(const grid::OccupancyGrid& map) {
 
 Status save_trace(const RunRecord& record, const WindowSetting& setting, const std::string& title,
                   const std::string& trace) {
-  const auto map = site_map(setting.deployment);
+  const auto map = site_map(setting.blind.deployment);
   if (!map) return Error{map.error()};
   if (auto saved = write_file(trace + ".csv", run_csv(record)); !saved) return saved;
   return draw_run(record, *map, title, trace + ".png");
 }
 
+Result<WindowSetting::Robot> robot_from(const std::string& share, bool sees) {
+  const Installation installation{
+      .programs = {}, .contracts = share + "/contracts", .share = share};
+  const std::string manifest = sees ? "marvin-depth-sim.yaml" : "marvin-sim.yaml";
+  auto deployment =
+      load_deployment(share + "/deploy/" + manifest, installation, {{"world", "people", "true"}});
+  if (!deployment) return Error{deployment.error()};
+  WindowSetting::Robot robot{std::move(deployment).value(), {}};
+  FaultTargets& targets = robot.targets;
+  targets.sees = sees;
+  for (const auto& [name, movement] : robot.deployment.movement) {
+    if (movement == Movement::kHolds) targets.base_driver = name;
+  }
+  for (const auto& component : robot.deployment.manifest.components) {
+    if (component.name == "world") continue;  // not of the robot
+    targets.components.push_back(component.name);
+    if (component.criticality == Criticality::kStop) targets.critical.insert(component.name);
+  }
+  return robot;
+}
+
 }  // namespace
 
 Result<WindowSetting> window_setting(const std::string& share) {
-  const Installation installation{
-      .programs = {}, .contracts = share + "/contracts", .share = share};
-  auto deployment = load_deployment(share + "/deploy/marvin-sim.yaml", installation,
-                                    {{"world", "people", "true"}});
-  if (!deployment) return Error{deployment.error()};
   WindowSetting setting;
-  setting.deployment = std::move(deployment).value();
-  auto locations = site_locations(setting.deployment);
+  for (const bool sees : {false, true}) {
+    auto robot = robot_from(share, sees);
+    if (!robot) return Error{robot.error()};
+    (sees ? setting.seeing : setting.blind) = std::move(robot).value();
+  }
+  auto locations = site_locations(setting.blind.deployment);
   if (!locations) return Error{locations.error()};
   setting.locations = std::move(locations).value();
-  const auto map = site_map(setting.deployment);
+  const auto map = site_map(setting.blind.deployment);
   if (!map) return Error{map.error()};
   setting.starts = free_places(*map);
-  setting.targets.locations = setting.locations.size();
-  setting.targets.starts = setting.starts.size();
-  for (const auto& [name, movement] : setting.deployment.movement) {
-    if (movement == Movement::kHolds) setting.targets.base_driver = name;
-  }
-  for (const auto& component : setting.deployment.manifest.components) {
-    if (component.name == "world") continue;  // not of the robot
-    setting.targets.components.push_back(component.name);
-    if (component.criticality == Criticality::kStop)
-      setting.targets.critical.insert(component.name);
+  for (auto* robot : {&setting.blind, &setting.seeing}) {
+    robot->targets.locations = setting.locations.size();
+    robot->targets.starts = setting.starts.size();
   }
   return setting;
 }
@@ -254,7 +267,7 @@ Result<WindowResult> run_window(const WindowSetting& setting, std::uint64_t seed
   WindowResult result;
   result.seed = seed;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    result.plan = draw_window(seed, attempt, setting.targets);
+    result.plan = draw_window(seed, attempt, setting.robot_of(seed).targets);
     auto run = LockstepRun::create(placed(setting, result.plan),
                                    stream_seed(seed, "robot") + static_cast<unsigned>(attempt));
     if (!run) return Error{run.error()};

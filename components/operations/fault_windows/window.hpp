@@ -13,8 +13,14 @@ namespace usher::operations {
 
 /// The robot that the windows hit, and whom they may hit.
 struct WindowSetting {
-  Deployment deployment;
-  FaultTargets targets;
+  struct Robot {
+    Deployment deployment;
+    FaultTargets targets;
+  };
+  Robot blind;   ///< laser, ultrasonic sensors and whiskers: marvin-sim.yaml
+  Robot seeing;  ///< with depth cameras too, by their models: marvin-depth-sim.yaml
+  /// Every third window hits the one that sees.
+  const Robot& robot_of(std::uint64_t seed) const { return seed % 3 == 0 ? seeing : blind; }
   std::vector<std::string> locations;    ///< names
   std::vector<geometry::Point2> starts;  ///< in map, free around
 };

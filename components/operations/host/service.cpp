@@ -14,6 +14,8 @@ namespace usher::operations {
 
 namespace {
 
+constexpr const char* kStateDirectory = "/var/lib/usher/";  // StateDirectory=usher
+
 /// As a word of ExecStart=: systemd expands % and $ and splits at blanks.
 std::string word(const std::string& text) {
   std::string out = "\"";
@@ -35,7 +37,8 @@ ServiceUnit service_unit(const Manifest& manifest, const ServiceOptions& options
          "After=network-online.target time-sync.target\n"
          "# A robot that cannot start goes on trying.\nStartLimitIntervalSec=0\n\n"
       << "[Service]\nType=notify\nNotifyAccess=main\nExecStart=" << word(options.program)
-      << " launch " << word(options.manifest) << " --host " << word(options.host);
+      << " launch " << word(options.manifest) << " --host " << word(options.host)
+      << " --run-directory " << word(std::string(kStateDirectory) + options.host);
   if (!options.keys.empty()) out << " --keys " << word(options.keys);
   out << "\n# The launcher stops its components in order. When it is gone without having done so, "
          "they and the\n"
@@ -48,6 +51,8 @@ ServiceUnit service_unit(const Manifest& manifest, const ServiceOptions& options
          "# The launcher says that it lives while it can keep its components running.\n"
          "WatchdogSec=5\nWatchdogSignal=SIGKILL\n"
          "RuntimeDirectory=usher\nRuntimeDirectoryPreserve=restart\n"
+         "# What must outlive a stop and a boot lies here: an emergency stop holds until it is "
+         "cleared.\n"
          "StateDirectory=usher\nEnvironment=XDG_RUNTIME_DIR=/run\n"
          "LimitNOFILE=4096\nLimitRTPRIO=50\nLimitCORE=0\nUMask=0077\nNoNewPrivileges=true\n";
   if (!options.user.empty())

@@ -206,6 +206,7 @@ Launcher::Launcher(Launcher&& other) noexcept
       events_(std::move(other.events_)),
       operator_file_(std::exchange(other.operator_file_, {})),
       may_go_first_(other.may_go_first_),
+      since_boot_(other.since_boot_),
       locks_(std::exchange(other.locks_, {})),
       last_poll_(other.last_poll_),
       trusted_from_(other.trusted_from_) {
@@ -228,7 +229,9 @@ Status Launcher::lock(const Deployment& deployment) {
     if (!options_.host.empty() && host.name != options_.host) continue;
     const std::string name =
         "domain-" + std::to_string(deployment.manifest.domain) + "-" + host.name + ".lock";
-    if (auto status = lock_file(runtime_directory() + "/" + name); !status) return status;
+    const std::string path = runtime_directory() + "/" + name;
+    since_boot_ = since_boot_ || access(path.c_str(), F_OK) == 0;  // a boot empties that folder
+    if (auto status = lock_file(path); !status) return status;
   }
   return {};
 }
@@ -251,11 +254,33 @@ Status Launcher::lock_file(const std::string& path) {
   return {};
 }
 
+/// Wherever the run directory lies: after a boot the robot may stand elsewhere, and its visitor has
+/// gone.
+Status Launcher::forget_session() const {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path kept = options_.run_directory + "/kept";
+  if (!fs::exists(kept, error)) return {};
+  std::vector<fs::path> forgotten;
+  for (fs::recursive_directory_iterator at(kept, error), end; !error && at != end;
+       at.increment(error)) {
+    if (at->path().filename().string().starts_with("session.")) forgotten.push_back(at->path());
+  }
+  for (const auto& path : forgotten) {
+    if (!error) fs::remove(path, error);
+  }
+  if (error) return Error{"cannot empty " + kept.string() + ": " + error.message()};
+  return {};
+}
+
 Status Launcher::prepare(const Deployment& deployment) {
   if (deployment.manifest.fresh_start) {
     std::error_code error;
     std::filesystem::remove_all(options_.run_directory + "/kept", error);
     if (error) return Error{"cannot empty " + options_.run_directory + "/kept: " + error.message()};
+  }
+  if (!since_boot_) {
+    if (auto status = forget_session(); !status) return status;
   }
   may_go_first_ = may_go_first();
   if (!may_go_first_) {

@@ -113,6 +113,7 @@ class Launcher {
   Status lock(const Deployment& deployment);
   Status lock_file(const std::string& path);
   Status prepare(const Deployment& deployment);
+  Status forget_session() const;
   Status leave_operator_file(const Deployment& deployment, std::int64_t anchor);
   Status add_discovery_server(const Deployment& deployment, std::int64_t anchor);
   void start(Process& process);
@@ -132,6 +133,7 @@ class Launcher {
   std::vector<std::string> events_;
   std::string operator_file_;
   bool may_go_first_ = false;  ///< permitted
+  bool since_boot_ = false;    ///< this host's part was launched before, since the boot
   std::vector<int> locks_;     ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed

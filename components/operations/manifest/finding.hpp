@@ -20,11 +20,11 @@ enum class Verdict {
   kTypeMismatch,        ///< one topic, two types; or a topic that the catalogue does not know
   kQosMismatch,         ///< reader and writer would not match
   kRateTooLow,          ///< a writer too slow for the age that a reader accepts
-  kUnsafePolicy,        ///< a component of the drive chain that is not critical or not restarted
-  kSplitDriveChain,     ///< the drive chain spread over several hosts
-  kSplitGroup,          ///< a group that cannot be one process
-  kWrongIdl,            ///< a contract made from other IDL
-  kNoPermission,        ///< keys that do not let a component do what its contract says, or more
+  kUnsafePolicy,     ///< what the robot drives by is not critical, or its drive chain not restarted
+  kSplitDriveChain,  ///< the drive chain spread over several hosts
+  kSplitGroup,       ///< a group that cannot be one process
+  kWrongIdl,         ///< a contract made from other IDL
+  kNoPermission,     ///< keys that do not let a component do what its contract says, or more
 };
 std::string to_string(Verdict verdict);
 

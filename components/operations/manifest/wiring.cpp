@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <sstream>
@@ -163,38 +164,56 @@ class Judge {
     }
   }
 
-  /// Whoever writes a command, a grant or the base's state decides over motion.
-  void judge_drive_chain() {
-    std::map<std::string, const ManifestComponent*> chain;
-    for (const auto* topic : {"drive/command", "drive/grant", "base/status", "movement/enable"}) {
+  /// Who writes one of the topics, by name.
+  std::map<std::string, const ManifestComponent*> writers_of(
+      std::initializer_list<const char*> topics) const {
+    std::map<std::string, const ManifestComponent*> found;
+    for (const auto* topic : topics) {
       const auto writers = writers_.find(topic);
       if (writers == writers_.end()) continue;
       for (const auto& writer : writers->second)
-        chain.emplace(writer.component->name, writer.component);
+        found.emplace(writer.component->name, writer.component);
+    }
+    return found;
+  }
+
+  /// Its loss must stop the robot, and be noticed in time.
+  void judge_critical(const ManifestComponent& component, const std::string& role) {
+    const std::string who = "'" + component.name + "' " + role + ": its ";
+    if (component.criticality != Criticality::kStop) {
+      found(Verdict::kUnsafePolicy,
+            who + "criticality must be stop, not " + to_string(component.criticality), component,
+            "criticality");
+    }
+    if (component.heartbeat_timeout > 0.5) {
+      found(Verdict::kUnsafePolicy, who + "heartbeat_timeout must be at most 0.5 s", component,
+            "heartbeat_timeout");
+    }
+  }
+
+  /// Whoever writes a command, a grant or the base's state decides over motion. Nobody drives
+  /// without those who tell where, either; they may live elsewhere.
+  void judge_drive_chain() {
+    const auto chain =
+        writers_of({"drive/command", "drive/grant", "base/status", "movement/enable"});
+    const auto guides =
+        writers_of({"scan", "scan/filtered", "ultrasonic", "ultrasonic/filtered", "whiskers",
+                    "local_costmap/costs", "localization/status", "cmd_vel/navigation"});
+    for (const auto& [name, component] : guides) {
+      if (!chain.contains(name)) judge_critical(*component, "tells where the robot may drive");
     }
     const ManifestComponent* first = nullptr;
     for (const auto& [name, component] : chain) {
-      if (component->criticality != Criticality::kStop) {
-        found(Verdict::kUnsafePolicy,
-              "'" + name + "' belongs to the drive chain: its criticality must be stop, not " +
-                  to_string(component->criticality),
-              *component, "criticality");
-      }
+      const std::string role = "belongs to the drive chain";
+      judge_critical(*component, role);
       if (component->restart != RestartPolicy::kAlways) {
-        found(Verdict::kUnsafePolicy,
-              "'" + name + "' belongs to the drive chain: its restart must be always", *component,
-              "restart");
+        found(Verdict::kUnsafePolicy, "'" + name + "' " + role + ": its restart must be always",
+              *component, "restart");
       }
       if (component->restart_budget < 1) {
         found(Verdict::kUnsafePolicy,
-              "'" + name + "' belongs to the drive chain: its restart_budget must be at least 1",
-              *component, "restart_budget");
-      }
-      if (component->heartbeat_timeout > 0.5) {
-        found(Verdict::kUnsafePolicy,
-              "'" + name +
-                  "' belongs to the drive chain: its heartbeat_timeout must be at most 0.5 s",
-              *component, "heartbeat_timeout");
+              "'" + name + "' " + role + ": its restart_budget must be at least 1", *component,
+              "restart_budget");
       }
       if (first == nullptr) first = component;
       if (component->host != first->host) {

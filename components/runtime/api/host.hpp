@@ -75,16 +75,16 @@ struct StreamHandlers {
 };
 
 /// Everything that a component may ask for. Called only from the component's constructor and
-/// handlers; keep() also from the jobs of offload().
+/// handlers; keep() from the constructor and from the jobs of offload().
 ///
 /// Laws (tests/conformance proves them for every host): handlers of one component never overlap;
 /// now() is constant inside a handler and never goes back; each turn runs at most `depth` samples
 /// per input and writer, ordered by arrival and then by declaration, then what is due, losses
 /// before timers, by time and then by declaration; a latched input gets a living writer's last
 /// value however late it starts; timers do not drift and count what they skipped; outputs leave
-/// when the handler returns without a fault, all or none; after a fault no handler runs; random
-/// streams have names and are seeded from (world seed, robot of a fleet, component, stream); topics
-/// of a fleet reach every robot of it, all others stay with one robot.
+/// when the handler returns without a fault, all or none; none waits for a disk (keep() is a fault
+/// there); after a fault no handler runs; random streams have names, seeded from (world seed, robot
+/// of a fleet, component, stream); topics of a fleet reach all of it, all others stay with one.
 class Host {
  public:
   virtual ~Host() = default;
@@ -153,7 +153,7 @@ class Host {
   /// a close with that reason.
   virtual Stream& open_stream(const std::string& uri, StreamHandlers handlers) = 0;
 
-  /// Memory over restarts: small values (at most 1 MB) in the run directory of the launcher.
+  /// Memory over restarts, at most 1 MB a value; a boot ends that of "session.*". See wire::Keeper.
   virtual Status keep(const std::string& key, std::span<const std::uint8_t> bytes) = 0;
   virtual Result<Bytes> kept(const std::string& key) = 0;
 

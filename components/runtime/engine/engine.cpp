@@ -25,6 +25,21 @@ constexpr Duration kHandler = std::chrono::milliseconds(100);
 /// Ends a handler. Not an std::exception, so that a component that catches those does not go on.
 struct HandlerEnded {};
 
+/// The engine whose handler this thread runs; null: none.
+thread_local const void* handling = nullptr;
+
+/// Sets it for its scope.
+class Handling {
+ public:
+  explicit Handling(const void* engine) : before_(std::exchange(handling, engine)) {}
+  ~Handling() { handling = before_; }
+  Handling(const Handling&) = delete;
+  Handling& operator=(const Handling&) = delete;
+
+ private:
+  const void* before_;
+};
+
 class EngineInput final : public InputPort {
  public:
   EngineInput(InputDeclaration declaration, std::uint32_t order, const Time& now,
@@ -242,6 +257,7 @@ class Engine::State {
   bool run(const Handler& handler, const char* kind, const std::string& subject) {
     const Duration begin = platform.work_time();
     try {
+      const Handling mark(this);
       handler();
       if (!fault) outbox.release();
     } catch (const HandlerEnded&) {
@@ -538,6 +554,8 @@ Stream& Engine::open_stream(const std::string& uri, StreamHandlers handlers) {
 }
 
 Status Engine::keep(const std::string& key, std::span<const std::uint8_t> bytes) {
+  if (handling == state_.get())
+    fault(key + " was kept in a handler: what it publishes would wait for the disk");
   constexpr std::size_t kLargest = 1 << 20;
   if (bytes.size() > kLargest) {
     return Error{"at most 1 MB can be kept, got " + std::to_string(bytes.size()) + " bytes (" +

@@ -1,6 +1,5 @@
 #include "control/supervisor/shell/component.hpp"
 
-#include <memory>
 #include <utility>
 
 #include "wire/conversions.hpp"
@@ -20,8 +19,6 @@ constexpr auto kBaseAge = milliseconds(150);
 constexpr auto kMovementAge = milliseconds(500);
 constexpr auto kExplorerAge = milliseconds(2000);
 constexpr const char* kMemoryKey = "supervisor";
-constexpr auto kKeeping = milliseconds(5);  // the memory on the disk, in simulation
-constexpr auto kKeepAgain = milliseconds(1000);
 constexpr int kMostComponents = 64;
 constexpr std::size_t kMostWriters = 64;  // in the status
 
@@ -86,8 +83,15 @@ void SupervisorComponent::watch_topics(const std::vector<drive::NamedComponent>&
   tell(topics::kMap, topics::kAmclPose, topics::kLocalizationStatus, topics::kLocalCosts,
        topics::kGlobalCosts, topics::kCostmapRequest);
   tell(topics::kPlanRequest, topics::kPlanReply, topics::kFollowGoal, topics::kFollowCancel,
-       topics::kFollowStatus, topics::kNavigateStatus, topics::kNavigatePace,
-       topics::kMovementStatus, topics::kSupervisorStatus);
+       topics::kFollowStatus, topics::kNavigateStatus, topics::kNavigatePace, topics::kLocations,
+       topics::kExploreStatus, topics::kExploreShare, topics::kMovementStatus,
+       topics::kSupervisorStatus);
+  tell(topics::kKinectDepth, topics::kKinectInfo, topics::kKinectColor, topics::kKinectProcessed,
+       topics::kKinectTilt, topics::kKinectTiltCommand, topics::kRearDepth, topics::kRearInfo,
+       topics::kRearProcessed, topics::kFaces);
+  tell(topics::kInteractionTarget, topics::kTorsoFrame, topics::kTorsoStatus, topics::kVisitor,
+       topics::kGuideStatus, topics::kMeetingStatus, topics::kDialogueScreen,
+       topics::kSpeechStatus);
 }
 
 Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
@@ -159,10 +163,9 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
 }
 
 /// An unreadable memory must not be taken for none: latched faults would be forgotten.
-Memory SupervisorComponent::remembered(runtime::Host& host) {
-  const auto bytes = host.kept(kMemoryKey);
-  if (!bytes || bytes->empty()) return {};
-  auto memory = memory_from_text(*bytes);
+Memory SupervisorComponent::remembered(runtime::Host& host, const std::string& kept) {
+  if (kept.empty()) return {};
+  auto memory = memory_from_text({reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()});
   if (!memory) host.fault("what was kept over the restart cannot be read: " + memory.error());
   return std::move(memory).value();
 }
@@ -172,7 +175,8 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
       grant_valid_for_(host.parameters().number("grant_valid_for", "s", {0.04, 0.12}, 0.12,
                                                 "Life of a grant without renewal.")),
       parameters_(read_parameters(host)),
-      core_(parameters_, remembered(host)) {
+      memory_(host, kMemoryKey, [this](const Status& kept) { core_.memory_kept(kept, now()); }),
+      core_(parameters_, remembered(host, memory_.found())) {
   heartbeat_ =
       host.input(topics::kHeartbeat, {.depth = 4 * kMostComponents},
                  [this](const auto& message, const auto& info) {
@@ -291,7 +295,10 @@ void SupervisorComponent::step() {
   publish_grant(decision);
   publish_enable(decision);
   ask_base(decision);
-  keep_memory();
+  // What a crash loses before the disk has it is an epoch at most, which a restart skips, or a stop
+  // of the last milliseconds. A full disk stops no robot: the operator reads what would be
+  // forgotten.
+  memory_.keep(to_text(core_.memory()));
   const bool fault = decision.state == State::kFault;
   host_.health().set(fault ? HealthState::kDegraded : HealthState::kOk,
                      fault ? std::string(decision.reason) : "");
@@ -336,31 +343,6 @@ void SupervisorComponent::ask_base(const Decision& decision) {
   message.client(host_.name());
   message.command(wanted);
   base_requests_.publish(message);
-}
-
-/// Beside the handlers: a busy disk takes longer than a grant lives. What a crash meanwhile loses
-/// is an epoch at most, which a restart skips, or a stop of the last milliseconds. A full disk
-/// stops no robot: the operator reads what a restart would forget.
-void SupervisorComponent::keep_memory() {
-  if (keeping_ || now() < keep_again_) return;
-  std::string text = to_text(core_.memory());
-  if (text == kept_) return;
-  kept_ = text;
-  keeping_ = true;
-  const auto outcome = std::make_shared<Status>();
-  host_.offload(
-      kKeeping,
-      [&host = host_, text = std::move(text), outcome] {
-        *outcome = host.keep(kMemoryKey,
-                             {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-      },
-      [this, outcome] {
-        keeping_ = false;
-        core_.memory_kept(*outcome, now());
-        if (*outcome) return;
-        kept_.clear();
-        keep_again_ = now() + kKeepAgain;
-      });
 }
 
 void SupervisorComponent::publish_status() {

@@ -5,6 +5,7 @@
 #include "control/supervisor/core/supervisor.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 
 namespace usher::supervisor {
 
@@ -18,7 +19,7 @@ class SupervisorComponent final : public runtime::Component {
   static Parameters read_parameters(runtime::Host& host);
   static void watch_topics(const std::vector<drive::NamedComponent>& manifest,
                            std::vector<WatchedTopic>& watched);
-  static Memory remembered(runtime::Host& host);
+  static Memory remembered(runtime::Host& host, const std::string& kept);
   /// Tells the core who appears on the topic and who leaves it.
   void watch(const std::string& topic);
   Time now() const { return host_.now().time_since_epoch(); }
@@ -31,15 +32,12 @@ class SupervisorComponent final : public runtime::Component {
   void ask_base(const Decision& decision);
   void publish_status();
   void publish_diagnostics(const SupervisorStatus& status);
-  void keep_memory();
 
   runtime::Host& host_;
   double grant_valid_for_;
   const Parameters parameters_;
+  wire::Keeper memory_;
   Supervisor core_;
-  std::string kept_;           ///< written, or on its way to the disk; empty when that failed
-  bool keeping_ = false;       ///< it is on its way
-  Time keep_again_{};          ///< not before, after a failure
   Time answered_at_{};         ///< the last request that acted at once
   bool answer_later_ = false;  ///< another one, with the next step
   bool told_fault_ = false;    ///< in the status: an operator reads of a fault at once

@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+
 #include "runtime/testing/test_host.hpp"
 
 namespace usher::supervisor {
@@ -84,6 +90,54 @@ TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
   EXPECT_FALSE(host.last(topics::kDriveGrant)->granted());
   EXPECT_FALSE(status.reason().empty());
   EXPECT_GE(host.written(topics::kDriveGrant).size(), 20U) << "silence is no answer";
+}
+
+/// With a writer of every topic in it.
+std::string manifest_of_everybody() {
+  std::string lines = "manifest.components:\n";
+  std::set<std::string> types;
+  const auto add = [&](const auto& topic) {
+    std::istringstream words{std::string(topic.writers)};
+    for (std::string word; words >> word;) {
+      if (word != "*" && word != "operator") types.insert(word);
+    }
+  };
+  std::apply([&](const auto&... topic) { (add(topic), ...); }, topics::kAll);
+  for (const auto& type : types) {
+    lines += "  - {name: " + type + ", type: " + type +
+             ", host: nuc, criticality: notify, timeout: 1.0 s}\n";
+  }
+  return lines;
+}
+
+TEST(ForeignWriters, AreNamedOnEveryTopicButThoseThatAnybodyMayWriteOrNobodyDecidesBy) {
+  const std::set<std::string> free{
+      // An operator, a visitor or a viewer may ask.
+      "heartbeat", "supervisor/request", "navigate/goal", "navigate/cancel", "goal_pose",
+      "initialpose", "explore/goal", "explore/cancel", "meeting/request", "meeting/cancel",
+      "dialogue/answer", "kinect/tilt/request",
+      // To be looked at.
+      "diagnostics", "battery", "particle_cloud", "local_costmap/costmap", "global_costmap/costmap",
+      "plan", "local_plan", "explore/coverage", "guide/visit", "meeting/report",
+      "interaction/status", "speech/level"};
+  const std::string manifest = manifest_of_everybody();
+  int watched = 0;
+  const auto intrude = [&](const auto& topic) {
+    const std::string name(topic.name);
+    SCOPED_TRACE(name);
+    if (name.starts_with("sim/") || topic.scope == topics::Scope::kFleet) return;
+    runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"), manifest};
+    host.run_for(milliseconds(100));
+    host.publish(topic, {}, "stranger");
+    host.run_for(milliseconds(100));
+    bool named = false;
+    for (const auto& fault : host.last(topics::kSupervisorStatus)->faults())
+      named = named || (fault.component_name() == "stranger" && fault.latched());
+    EXPECT_NE(named, free.contains(name));
+    watched += named ? 1 : 0;
+  };
+  std::apply([&](const auto&... topic) { (intrude(topic), ...); }, topics::kAll);
+  std::printf("%d topics are watched\n", watched);
 }
 
 }  // namespace

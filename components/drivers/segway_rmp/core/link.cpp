@@ -68,6 +68,10 @@ std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time n
     output_ = shutdown();
     return output_;
   }
+  if (asks_first()) {
+    output_ = command({}, parameters_.calibration);
+    return output_;
+  }
   if (configured()) {
     output_ = command(wanted, parameters_.calibration);
     return output_;

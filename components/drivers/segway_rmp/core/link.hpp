@@ -15,7 +15,9 @@ namespace usher::segway_rmp {
 /// and a command frame goes out in every cycle, zero where nothing else is wanted.
 ///
 /// A base that balanced and then reports its motors off has fallen, or somebody switched it off: it
-/// counts as an emergency stop, so that it does not get up by itself while it is lifted.
+/// counts as an emergency stop, so that it does not get up by itself while it is lifted. So does
+/// one that went off while its line was closed: until it says how it is, it is told nothing but
+/// zero.
 class Link {
  public:
   struct Parameters {
@@ -56,7 +58,7 @@ class Link {
   bool configured() const { return step_ >= kSteps * kRepeats; }
   bool emergency() const { return emergency_; }
   /// The next cycle says nothing that a later one would not say again: only the newest counts.
-  bool velocity_only() const { return emergency_ || configured(); }
+  bool velocity_only() const { return emergency_ || configured() || asks_first(); }
   Mode mode(Time now) const;
   /// Why it does not drive, or a warning; empty when all is well.
   const std::string& reason() const { return reason_; }
@@ -69,6 +71,8 @@ class Link {
   static constexpr int kRepeats = 3;
 
   std::optional<SegwayFeedback> take(const Packet& packet, Time now);
+  /// It balanced before the line was opened; whether it still does is not known.
+  bool asks_first() const { return balanced_ && !feedback_at_; }
 
   Parameters parameters_;
   PacketDecoder decoder_;

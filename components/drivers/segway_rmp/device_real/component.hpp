@@ -3,6 +3,7 @@
 #include "drivers/base_obedience/shell/base_line.hpp"
 #include "drivers/segway_rmp/core/link.hpp"
 #include "drivers/segway_rmp/shell/base_driver.hpp"
+#include "wire/keeper.hpp"
 
 namespace usher::segway_rmp {
 
@@ -14,14 +15,11 @@ class SegwayRmpComponent final : public runtime::Component {
  private:
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
   void emergency(bool on);
-  void keep();
+  void remember();
 
-  runtime::Host& host_;
   drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
-  runtime::Timer keep_again_;
-  bool kept_ = false;     ///< the memory says that its motors were switched off
-  bool keeping_ = false;  ///< it is on its way to the disk
+  wire::Keeper memory_;  ///< that its motors were switched off
 };
 
 }  // namespace usher::segway_rmp

@@ -36,6 +36,8 @@ class Device final : public runtime::LockstepDevice {
     return {said.begin(), said.end()};
   }
 
+  void switch_off() { state_.mode = Mode::kStandby, twist = {}; }
+
   geometry::Twist2 twist;  ///< last ordered
   int shutdowns = 0, balances = 0;
   bool silent = false;
@@ -149,6 +151,28 @@ TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndReturnsByItself) {
   right.run(1200);
   EXPECT_EQ(state(), STATE_DISCONNECTED) << "the line is open, the base says nothing";
   device->silent = false;
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+}
+
+TEST_F(DeviceReal, ABaseThatWentOffWhileItsLineWasOutStaysOffOverARestart) {
+  right.v = 0.5;
+  right.run(2000);
+  device->plugged = false;
+  right.run(200);
+  device->switch_off();
+  const int balances = device->balances;
+  device->plugged = true;
+  right.run(3000);
+  EXPECT_EQ(device->balances, balances);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  host.world().kill(host.name());
+  host.run_for(milliseconds(20));
+  host.world().start(host.name());
+  right.run(2000);
+  EXPECT_EQ(device->balances, balances);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_RESET);
   right.run(1000);
   EXPECT_EQ(state(), STATE_BALANCING);
 }

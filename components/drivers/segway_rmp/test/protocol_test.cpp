@@ -385,6 +385,38 @@ TEST(Link, ABaseThatFellDoesNotGetUpByItself) {
   EXPECT_EQ(bench.link.mode(bench.now()), Mode::kBalancing);
 }
 
+TEST(Link, ABaseThatWentOffWhileItsLineWasOutStaysOff) {
+  Bench bench;
+  bench.run(500, {1.0, 0.0});
+  bench.link.closed();
+  bench.base.off = true;
+  bench.run(500);
+  bench.link.opened(bench.now());
+  bench.run(3000, {1.0, 0.0});
+  EXPECT_TRUE(bench.base.off);
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kEmergency);
+  bench.link.reset();
+  bench.run(500, {0.5, 0.0});
+  EXPECT_FALSE(bench.base.off);
+  EXPECT_EQ(bench.base.speed, 164);
+}
+
+TEST(Link, ABaseThatStillBalancesIsConfiguredAnewWhenItsLineIsBack) {
+  Bench bench;
+  bench.run(500);
+  const auto settings = bench.base.settings;
+  bench.link.closed();
+  bench.base.settings.clear();
+  bench.run(500);
+  bench.link.opened(bench.now());
+  bench.run(200, {0.5, 0.0});
+  EXPECT_TRUE(bench.base.settings.empty()) << "not before it says that it balances";
+  EXPECT_EQ(bench.base.speed, 0);
+  bench.run(500, {0.5, 0.0});
+  EXPECT_EQ(bench.base.settings, settings);
+  EXPECT_EQ(bench.base.speed, 164);
+}
+
 TEST(Link, NoticesASilentBase) {
   Bench bench;
   bench.run(500);

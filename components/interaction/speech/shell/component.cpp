@@ -87,6 +87,7 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
       understood_(host.health().counter("answers: understood")),
       ignored_(host.health().counter("answers: ignored")),
       rejected_(host.health().counter("inputs: rejected")),
+      memory_(host, kHoldKey),
       status_output_(host.output(topics::kSpeechStatus)),
       level_output_(host.output(topics::kSpeechLevel)),
       answers_(host, topics::kDialogueAnswer),
@@ -105,7 +106,7 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
   timer_ = host.timer("step", kStep, [this](std::uint64_t skipped) { tick(skipped); });
   player_.set_gain(settings_.volume);
   if (recognizer_ == nullptr) models_trouble_ = "there is no recognizer";
-  if (const auto kept = host.kept(kHoldKey); kept && !kept->empty()) conversation_.hold_again();
+  if (!memory_.found().empty()) conversation_.hold_again();
 }
 
 void SpeechComponent::open_devices() {
@@ -192,10 +193,7 @@ void SpeechComponent::fulfil() {
   }
   if (wishes.halt) ask_supervisor(command::COMMAND_STOP);
   if (wishes.go_on) ask_supervisor(command::COMMAND_MOVEMENT_ON);
-  if (wishes.halt || wishes.go_on) {
-    const std::uint8_t one = 1;
-    static_cast<void>(host_.keep(kHoldKey, {&one, wishes.halt ? 1U : 0U}).ok());
-  }
+  if (wishes.halt || wishes.go_on) memory_.keep(wishes.halt ? kHoldKey : "");
 }
 
 void SpeechComponent::say_next() {

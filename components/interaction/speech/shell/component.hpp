@@ -11,6 +11,7 @@
 #include "interaction/speech/core/voice_activity.hpp"
 #include "interaction/speech/shell/equipment.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 #include "wire/repeater.hpp"
 
 namespace usher::speech {
@@ -77,6 +78,7 @@ class SpeechComponent final : public runtime::Component {
   std::uint64_t& understood_;
   std::uint64_t& ignored_;
   std::uint64_t& rejected_;
+  wire::Keeper memory_;  ///< that a spoken stop holds
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
   runtime::Input<usher_msgs::msg::GuideStatus> guide_;
   runtime::Input<usher_msgs::msg::MeetingStatus> meeting_;

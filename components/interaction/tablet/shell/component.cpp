@@ -34,6 +34,7 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
       core_(phrases::read_phrases(host, "tablet", kTextKeys)),
       titles_(phrases::read_place_titles(host)),
       rejected_(host.health().counter("inputs: rejected")),
+      memory_(host, kHeldKey),
       answers_(host, topics::kDialogueAnswer),
       requests_(host, topics::kSupervisorRequest) {
   auto& parameters = host.parameters();
@@ -79,10 +80,7 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
       host.input(topics::kLocations, {.optional = true},
                  [this](const auto& locations, const auto&) { take_locations(locations); });
   timer_ = host.timer("step", kStep, [this](auto) { tick(); });
-  if (const auto kept = host.kept(kHeldKey); kept && !kept->empty()) {
-    core_.hold_again();
-    held_ = true;
-  }
+  if (!memory_.found().empty()) core_.hold_again();
   window_.open(settings);
   show();
 }
@@ -178,11 +176,7 @@ void TabletComponent::act(const Touched& touched) {
     answers_.give_up();
     answers_.ask(std::move(answer));
   }
-  if (core_.holds() != held_) {
-    held_ = core_.holds();
-    const std::uint8_t one = 1;
-    static_cast<void>(host_.keep(kHeldKey, {&one, held_ ? 1U : 0U}).ok());
-  }
+  memory_.keep(core_.holds() ? kHeldKey : "");
   show();
 }
 

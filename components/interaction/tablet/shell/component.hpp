@@ -8,6 +8,7 @@
 #include "interaction/tablet/core/tablet.hpp"
 #include "interaction/tablet/shell/window.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 #include "wire/repeater.hpp"
 
 namespace usher::tablet {
@@ -41,9 +42,9 @@ class TabletComponent final : public runtime::Component {
   std::string language_;  ///< of the dialogue
   finger::Lines finger_;
   View shown_;
-  bool held_ = false;
   std::uint64_t ticks_ = 0;
   std::uint64_t& rejected_;
+  wire::Keeper memory_;  ///< that its Stop holds
   runtime::Input<usher_msgs::msg::DialogueScreen> screen_;
   /// Whoever leads a dialogue on this robot is heard.
   bool dialogue() const { return guide_.fresh() != nullptr || meeting_.fresh() != nullptr; }

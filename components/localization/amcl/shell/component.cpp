@@ -21,8 +21,7 @@ constexpr auto kScanAge = milliseconds(500);
 /// whoever looks at that scan sooner than the filter knows where it belongs.
 constexpr auto kShortestLife = milliseconds(50);
 constexpr auto kLongestLife = milliseconds(300);
-constexpr auto kKeeping = milliseconds(5);  // the pose on the disk, in simulation
-constexpr const char* kPoseKey = "amcl.pose";
+constexpr const char* kPoseKey = "session.pose";  // a boot may find the robot elsewhere
 constexpr double kOdometryContinues =
     3.0;  // [m] a longer way since the pose was kept is a restarted odometry
 constexpr std::size_t kCloudSize = 500;
@@ -95,6 +94,7 @@ AmclComponent::AmclComponent(runtime::Host& host)
       rejected_maps_(host.health().counter("map: rejected")),
       rejected_poses_(host.health().counter("initialpose: rejected")),
       bad_beams_(host.health().counter("scan: beams without a number")),
+      memory_(host, kPoseKey),
       transforms_(host) {
   auto& p = host.parameters();
   const auto start = p.numbers("site.initial_pose", "-", {-1e4, 1e4}, 3, 3, {0, 0, 0},
@@ -112,7 +112,8 @@ AmclComponent::AmclComponent(runtime::Host& host)
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
   scan_ = host.input(
       topics::kScanFiltered, {.max_age = kScanAge, .on_loss = "reports lost: navigation stops"},
-      [this](const auto&, const auto&) { take_scan(scan_.share()); }, [this] { publish_status(); });
+      [this](const auto&, const auto& info) { take_scan(scan_.share(), info.effective); },
+      [this] { publish_status(); });
   initial_pose_ =
       host.input(topics::kInitialPose, {.optional = true},
                  [this](const auto& message, const auto&) { take_initial_pose(message); });
@@ -154,8 +155,8 @@ void AmclComponent::take_initial_pose(
 /// From what was kept over a restart, else from the site's initial pose, else anywhere.
 void AmclComponent::start(const geometry::Pose2& odom_T_base) {
   started_ = true;
-  if (const auto bytes = host_.kept(kPoseKey); bytes && !bytes->empty()) {
-    const auto kept = read_kept_pose(std::string(bytes->begin(), bytes->end()), map_fingerprint_);
+  if (!memory_.found().empty()) {
+    const auto kept = read_kept_pose(memory_.found(), map_fingerprint_);
     if (kept) {
       const geometry::Pose2& map = kept->map_T_base;
       const geometry::Pose2& odom = kept->odom_T_base;
@@ -173,20 +174,21 @@ void AmclComponent::start(const geometry::Pose2& odom_T_base) {
   core_.start_globally();
 }
 
-void AmclComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan) {
+void AmclComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
+                              runtime::Time effective) {
   if (!wire::check(*scan)) {
     ++rejected_scans_;
     return;
   }
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   transforms_.when_known(frames::kOdom, frames::kBaseFootprint, stamp,
-                         [this, scan = std::move(scan), stamp](const auto& pose) {
-                           update(*scan, stamp, geometry::to_plane(pose));
+                         [this, scan = std::move(scan), stamp, effective](const auto& pose) {
+                           update(*scan, stamp, effective, geometry::to_plane(pose));
                          });
 }
 
 void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
-                           const geometry::Pose2& odom_T_base) {
+                           runtime::Time effective, const geometry::Pose2& odom_T_base) {
   const auto base_T_laser =
       transforms_.lookup_planar(frames::kBaseFootprint, scan.header().frame_id(), stamp);
   if (!base_T_laser) {
@@ -204,6 +206,7 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   if (result.outcome != Outcome::kOdometryRejected && result.outcome != Outcome::kScanRejected) {
     if (last_scan_ != runtime::Time{}) scan_interval_ = stamp - last_scan_;
     last_scan_ = stamp;
+    last_used_ = effective;
   }
   if (!core_.estimate() || last_scan_ != stamp) return;
   publish_transform(stamp);
@@ -257,7 +260,7 @@ void AmclComponent::publish_status() {
     reason = map_known_ ? "no pose yet" : "no map";
   }
   // Scans that come but say nothing, or whose place is not known, are none.
-  if (!scan_.fresh() || host_.now() - last_scan_ > kScanAge) {
+  if (!scan_.fresh() || host_.now() - last_used_ > kScanAge) {
     confidence = Confidence::kLost;
     reason = scan_.fresh() ? "no scan that can be used" : "no scan";
   }
@@ -281,24 +284,11 @@ void AmclComponent::publish_cloud() {
 
 void AmclComponent::keep() {
   const auto& estimate = core_.estimate();
-  if (keeping_ || !estimate || estimate->quality.confidence != Confidence::kGood) return;
+  if (!estimate || estimate->quality.confidence != Confidence::kGood) return;
   refused_memory_.clear();
-  // Beside the handlers: a busy disk takes longer than the heartbeat may be silent. A robot that
-  // cannot write its disk still localizes; it only starts at the site's pose the next time.
-  keeping_ = true;
-  const auto done = std::make_shared<bool>(false);
-  host_.offload(
-      kKeeping,
-      [&host = host_,
-       kept = to_text({map_fingerprint_, estimate->map_T_base, estimate->odom_T_base}), done] {
-        const auto status =
-            host.keep(kPoseKey, {reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size()});
-        *done = static_cast<bool>(status);
-      },
-      [this, done] {
-        keeping_ = false;
-        if (!*done) ++host_.health().counter("pose: not kept");
-      });
+  // A robot that cannot write its disk still localizes; it only starts at the site's pose the next
+  // time.
+  memory_.keep(to_text({map_fingerprint_, estimate->map_T_base, estimate->odom_T_base}));
 }
 
 }  // namespace usher::amcl

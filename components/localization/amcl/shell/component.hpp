@@ -1,12 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "idl/topics.hpp"
 #include "localization/amcl/core/amcl.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 #include "wire/transform_input.hpp"
 
 namespace usher::amcl {
@@ -20,8 +20,8 @@ class AmclComponent final : public runtime::Component {
   static AmclConfig read_parameters(runtime::Host& host);
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_initial_pose(const geometry_msgs::msg::PoseWithCovarianceStamped& message);
-  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
-  void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
+  void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan, runtime::Time effective);
+  void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp, runtime::Time effective,
               const geometry::Pose2& odom_T_base);
   void start(const geometry::Pose2& odom_T_base);
   void publish_transform(runtime::Time stamp);
@@ -38,8 +38,8 @@ class AmclComponent final : public runtime::Component {
   bool map_known_ = false;
   std::uint64_t map_fingerprint_ = 0;
   std::string refused_memory_;  ///< why the kept pose was not taken up; until there is a good one
-  bool keeping_ = false;        ///< the last pose is on its way to the disk
-  runtime::Time last_scan_{};
+  runtime::Time last_scan_{};   ///< its stamp, on the clock of the host that it came from
+  runtime::Time last_used_{};   ///< when that was, on this host's clock
   runtime::Duration scan_interval_{};  ///< between the last two
   runtime::Time valid_until_{};        ///< of map -> odom, as it was told
   std::uint64_t& rejected_scans_;
@@ -49,6 +49,7 @@ class AmclComponent final : public runtime::Component {
   std::uint64_t& rejected_poses_;
   std::uint64_t& bad_beams_;
 
+  wire::Keeper memory_;  ///< the last good pose
   wire::TransformInput transforms_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;

@@ -119,6 +119,24 @@ TEST_F(Component, DropsAndCountsScansWhosePlaceIsNotKnown) {
   EXPECT_GE(host.counter("tf: dropped"), 10U);
 }
 
+TEST_F(Component, AgesScansOfAnotherHostFromTheirArrival) {
+  give_map(map);
+  run(2000);
+  for (int at = 0; at < 20; ++at) {  // its clock is behind, by more than a scan may be old
+    tf2_msgs::msg::TFMessage moving;
+    moving.transforms().push_back(
+        wire::transform(host.now(), frames::kOdom, frames::kBaseFootprint, {}));
+    host.publish(topics::kTf, moving);
+    auto late = scan();
+    late.header().stamp(wire::to_message(host.now() - milliseconds(700)));
+    host.world().publish(topics::kScanFiltered, late, "scan_filter", "sensing");
+    host.run_for(milliseconds(100));
+  }
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+  run(700, false);
+  EXPECT_EQ(status().state(), STATE_LOST);
+}
+
 TEST_F(Component, SaysThatThereIsNoMap) {
   run(1000);
   EXPECT_EQ(status().state(), STATE_LOST);

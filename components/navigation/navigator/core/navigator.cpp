@@ -210,9 +210,9 @@ bool Navigator::pace(std::uint64_t id, const std::string& client, double max_spe
   return true;
 }
 
-bool Navigator::cancel(std::uint64_t id) {
+bool Navigator::cancel(std::uint64_t id, const std::string& reason) {
   if (!open() || (id != 0 && id != status_.id)) return false;
-  finish(GoalState::kCancelled, Failure::kNone, "cancelled");
+  finish(GoalState::kCancelled, Failure::kNone, reason);
   return true;
 }
 

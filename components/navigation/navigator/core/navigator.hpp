@@ -202,7 +202,7 @@ class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is
   /// Nobody says a pace any more: the goal's own counts again.
   void forget_pace() { pace_.reset(); }
   /// Ends the goal of this id, or whatever runs for 0. Returns whether there was one.
-  bool cancel(std::uint64_t id);
+  bool cancel(std::uint64_t id, const std::string& reason = "cancelled");
   /// Answers other than to the newest plan request are ignored.
   void plan_reply(PlanReply reply);
   Decision step(const Situation& situation);
@@ -213,6 +213,8 @@ class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is
   State state() const { return state_; }
   Phase phase() const { return phase_; }  ///< meaningful in kNewRequest and kActive
   const NavigationStatus& status() const { return status_; }
+  /// Whether its goal has no outcome yet.
+  bool pursues() const { return open(); }
   const Motion& motion() const { return motion_; }
   /// The path of a motion in mode kFollow.
   const std::vector<geometry::Pose2>& path() const { return route_.path(); }

@@ -29,6 +29,8 @@ constexpr double kTrail = 1.2;  // [m] of its own way that is taken for free
 constexpr auto kPoseAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kSeenLately = 1.0;  // [s]
+constexpr const char* kViewer = "goal_pose";
+constexpr auto kViewerPatience = milliseconds(3000);  // with the supervisor's answers
 
 }  // namespace
 
@@ -95,7 +97,8 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
       rejected_(host.health().counter("inputs: rejected")),
       unfelt_trail_(host.parameters().number(
           "unfelt_trail", "m", {0, 1}, 0.0,
-          "Way behind the robot that is taken for free where no rear whisker feels.")) {
+          "Way behind the robot that is taken for free where no rear whisker feels.")),
+      requests_(host, topics::kSupervisorRequest) {
   goal_ = host.input(topics::kNavigateGoal, {.optional = true},
                      [this](const auto& goal, const auto&) { take_goal(goal); });
   goal_pose_ = host.input(topics::kGoalPose, {.optional = true},
@@ -123,7 +126,8 @@ NavigatorComponent::NavigatorComponent(runtime::Host& host)
   odom_ =
       host.input(topics::kOdom, {.max_age = kOdomAge, .on_loss = "pauses, fails after a while"});
   supervisor_ = host.input(topics::kSupervisorStatus,
-                           {.max_age = kSupervisorAge, .on_loss = "pauses, fails after a while"});
+                           {.max_age = kSupervisorAge, .on_loss = "pauses, fails after a while"},
+                           [this](const auto& status, const auto&) { take_supervisor(status); });
   whiskers_ =
       host.input(topics::kWhiskers,
                  {.max_age = milliseconds(300), .on_loss = "does not back off", .optional = true});
@@ -155,15 +159,59 @@ void NavigatorComponent::take_goal(const usher_msgs::msg::NavigateGoal& goal) {
   speak(true);
 }
 
-/// rviz's goal: a pose without an id.
+/// rviz's goal: a pose without an id, and nobody who asks the supervisor to let the navigation
+/// drive. It is given only when that is granted: one that waited would drive off when somebody else
+/// starts a navigation for a goal of his own.
 void NavigatorComponent::take_goal_pose(const geometry_msgs::msg::PoseStamped& goal) {
   const auto pose = wire::to_planar(goal.pose());
   if (!pose || goal.header().frame_id() != frames::kMap) {
     ++rejected_;
     return;
   }
-  core_.request({++viewer_goals_, "goal_pose", "", *pose, 0.0});
+  viewer_goal_ = {requests_.next_id(), *pose, host_.now()};
+  requests_.give_up();
+  using namespace usher_msgs::msg::SupervisorRequest_Constants;
+  for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
+    usher_msgs::msg::SupervisorRequest request;
+    request.id(requests_.next_id());
+    request.command(command);
+    request.goal(kViewer);
+    requests_.ask(std::move(request));
+  }
+}
+
+void NavigatorComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
+  if (!requests_.answered(status.last_request()) || !viewer_goal_) return;
+  if (!status.last_request_done()) return refuse_viewer(status.last_request_reason());
+  if (requests_.waits()) return;
+  core_.request({viewer_goal_->id, kViewer, "", viewer_goal_->pose, 0.0});
+  viewer_goal_.reset();
   step();
+}
+
+void NavigatorComponent::refuse_viewer(const std::string& reason) {
+  NavigationStatus refused;
+  refused.id = viewer_goal_->id;
+  refused.client = kViewer;
+  refused.state = GoalState::kFailed;
+  refused.reason = reason;
+  refused.goal = viewer_goal_->pose;
+  remember_last_word(refused);
+  viewer_goal_.reset();
+  requests_.give_up();
+}
+
+/// Nobody else gives a viewer's goal up when the supervisor navigates for it no more.
+void NavigatorComponent::watch_viewer() {
+  if (viewer_goal_ && host_.now() - viewer_goal_->asked > kViewerPatience)
+    refuse_viewer("the supervisor did not answer within 3 s");
+  const auto* supervisor = supervisor_.fresh();
+  if (supervisor == nullptr || supervisor->current_goal() == kViewer || !core_.pursues() ||
+      core_.status().client != kViewer)
+    return;
+  core_.cancel(core_.status().id, supervisor->current_goal().empty()
+                                      ? "the supervisor ended the navigation"
+                                      : "another goal took its place");
 }
 
 void NavigatorComponent::take_reply(const usher_msgs::msg::PlanReply& reply) {
@@ -248,6 +296,7 @@ Situation NavigatorComponent::situation() {
 }
 
 void NavigatorComponent::step() {
+  watch_viewer();
   const Decision decision = core_.step(situation());
   for (const auto& aside : decision.asides) remember_last_word(aside);
   if (decision.plan) send_plan(*decision.plan);

@@ -7,6 +7,7 @@
 #include "idl/topics.hpp"
 #include "navigation/navigator/core/navigator.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/repeater.hpp"
 #include "wire/transform_input.hpp"
 
 namespace usher::navigator {
@@ -23,6 +24,9 @@ class NavigatorComponent final : public runtime::Component {
   double now() const { return runtime::seconds(host_.now().time_since_epoch()); }
   void take_goal(const usher_msgs::msg::NavigateGoal& goal);
   void take_goal_pose(const geometry_msgs::msg::PoseStamped& goal);
+  void take_supervisor(const usher_msgs::msg::SupervisorStatus& status);
+  void refuse_viewer(const std::string& reason);
+  void watch_viewer();
   void take_reply(const usher_msgs::msg::PlanReply& reply);
   Situation situation();
   std::string hold() const;
@@ -38,7 +42,13 @@ class NavigatorComponent final : public runtime::Component {
   runtime::Host& host_;
   wire::TransformInput transforms_;
   Navigator core_;
-  std::uint64_t viewer_goals_ = 0;
+  /// A goal from rviz, for which the supervisor was asked to let the navigation drive.
+  struct ViewerGoal {
+    std::uint64_t id = 0;
+    geometry::Pose2 pose;
+    runtime::Time asked;
+  };
+  std::optional<ViewerGoal> viewer_goal_;
   std::uint64_t clear_requests_ = 0;
   std::deque<NavigationStatus> last_words_;  ///< of goals with an outcome, not published yet
   runtime::Time last_word_at_{};
@@ -66,6 +76,7 @@ class NavigatorComponent final : public runtime::Component {
   runtime::Output<usher_msgs::msg::CostmapRequest> clear_;
   runtime::Output<usher_msgs::msg::NavigateStatus> status_;
   runtime::Output<usher_msgs::msg::Locations> locations_;
+  wire::Repeater<usher_msgs::msg::SupervisorRequest> requests_;
   runtime::Timer timer_;
 };
 

@@ -16,6 +16,8 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using namespace usher_msgs::msg::GoalStatus_Constants;
 namespace follow = usher_msgs::msg::FollowGoal_Constants;
+namespace command = usher_msgs::msg::SupervisorRequest_Constants;
+namespace supervisor_state = usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr const char* kSite = R"(
 site.locations:
@@ -54,7 +56,15 @@ class Component : public testing::Test {
     supervisor.granted(granted);
     supervisor.reason(granted ? "" : "stopped by operator");
     supervisor.enable_movement(true);
-    supervisor.state(usher_msgs::msg::SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE);
+    supervisor.state(behavior);
+    if (const auto asked = host.last(topics::kSupervisorRequest); asked && answers) {
+      supervisor.last_request(asked->id());
+      supervisor.last_request_done(refusal.empty());
+      supervisor.last_request_reason(refusal);
+      if (refusal.empty() && asked->id() != answered) current_goal = asked->goal();
+      answered = asked->id();
+    }
+    supervisor.current_goal(current_goal);
     if (says("supervisor")) host.publish(topics::kSupervisorStatus, supervisor);
     usher_msgs::msg::People people;
     people.header(wire::header(host.now(), frames::kOdom));
@@ -137,7 +147,10 @@ class Component : public testing::Test {
   runtime::TestHost host;
   std::set<std::string> silent;
   std::vector<geometry::Point2> persons;
-  bool granted = true, blocked = false;
+  bool granted = true, blocked = false, answers = true;
+  std::uint8_t behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  std::string current_goal, refusal;
+  std::uint64_t answered = 0;
   std::uint64_t planned = 0;
   std::optional<usher_msgs::msg::FollowGoal> task;  ///< that the follower was told last
 };
@@ -386,6 +399,103 @@ TEST_F(Component, IsHeardFiveTimesASecondWhateverItDoes) {
   host.clear();
   run(2000);
   EXPECT_GE(host.written(topics::kNavigateStatus).size(), 9U) << "with one";
+}
+
+// --- Goals from rviz
+
+class ViewerGoal : public Component {
+ protected:
+  ViewerGoal() {
+    behavior = supervisor_state::STATE_INTERACTION;
+    host.publish(topics::kPlanReply, {}, "global_planner");
+    run(500);
+  }
+  void click() {
+    geometry_msgs::msg::PoseStamped goal;
+    goal.header(wire::header(host.now(), frames::kMap));
+    goal.pose(wire::to_message(geometry::Pose2{8, 0, 0}));
+    host.publish(topics::kGoalPose, goal, "rviz");
+  }
+  std::string reason_of(std::uint8_t outcome) const {
+    for (const auto& each : host.written(topics::kNavigateStatus)) {
+      if (each.client() == "goal_pose" && each.state() == outcome) return each.reason();
+    }
+    return "nothing";
+  }
+  /// The guide's visitor is ready: so far no goal of the guide's came.
+  void guide_sets_out() {
+    behavior = supervisor_state::STATE_NAVIGATION_START;
+    current_goal = "lab";
+    run(200);
+    behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+    host.clear();
+    run(1000);
+  }
+};
+
+TEST_F(ViewerGoal, IsDrivenToOnceTheSupervisorNavigatesForIt) {
+  click();
+  host.run_for(milliseconds(50));
+  const auto first = host.last(topics::kSupervisorRequest);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->command(), command::COMMAND_NAVIGATION_START);
+  EXPECT_EQ(first->goal(), "goal_pose");
+  EXPECT_EQ(plans(), 0U) << "nobody has answered";
+  run(50);
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), command::COMMAND_NAVIGATION_GO);
+  EXPECT_EQ(plans(), 0U);
+  behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  run(500);
+  EXPECT_EQ(status().client(), "goal_pose");
+  EXPECT_EQ(status().state(), STATE_ACTIVE) << status().reason();
+  EXPECT_EQ(motion(), follow::MODE_PATH);
+}
+
+TEST_F(ViewerGoal, DoesNotWaitForANavigationOfSomebodyElse) {
+  refusal = "an operator drives";
+  click();
+  run(500);
+  EXPECT_EQ(reason_of(STATE_FAILED), "an operator drives");
+  guide_sets_out();
+  EXPECT_FALSE(motions().contains(follow::MODE_PATH));
+  EXPECT_EQ(plans(), 0U);
+}
+
+TEST_F(ViewerGoal, EndsWhenTheSupervisorNavigatesForAnother) {
+  click();
+  run(200);
+  behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  run(500);
+  ASSERT_EQ(motion(), follow::MODE_PATH);
+  guide_sets_out();
+  EXPECT_FALSE(motions().contains(follow::MODE_PATH));
+  EXPECT_EQ(reason_of(STATE_CANCELLED), "another goal took its place");
+}
+
+TEST_F(ViewerGoal, EndsWithTheNavigation) {
+  click();
+  run(200);
+  behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  run(500);
+  ASSERT_EQ(motion(), follow::MODE_PATH);
+  behavior = supervisor_state::STATE_MANUAL;
+  current_goal.clear();
+  run(500);
+  EXPECT_EQ(reason_of(STATE_CANCELLED), "the supervisor ended the navigation");
+  guide_sets_out();
+  EXPECT_FALSE(motions().contains(follow::MODE_PATH));
+}
+
+TEST_F(ViewerGoal, IsGivenUpWhenTheSupervisorDoesNotAnswer) {
+  answers = false;
+  click();
+  run(2900);
+  EXPECT_EQ(reason_of(STATE_FAILED), "nothing");
+  run(500);
+  EXPECT_EQ(reason_of(STATE_FAILED), "the supervisor did not answer within 3 s");
+  host.clear();
+  run(1000);
+  EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty());
 }
 
 TEST_F(Component, RejectsAndCountsNonsense) {

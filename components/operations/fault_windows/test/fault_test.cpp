@@ -27,12 +27,47 @@ TEST(DrawWindow, StartsAndGoesWhereItMay) {
   }
 }
 
+FaultTargets of_one_that_sees() {
+  FaultTargets targets = kTargets;
+  targets.sees = true;
+  return targets;
+}
+
 TEST(DrawWindow, DrawsEveryKindAndTwoAtOnce) {
-  std::map<std::string, int> counts;
-  for (std::uint64_t seed = 1; seed <= 1000; ++seed)
-    ++counts[draw_window(seed, 0, kTargets).kind()];
-  EXPECT_EQ(counts.size(), kFaultKinds + 1);
-  for (const auto& [kind, count] : counts) EXPECT_GE(count, 30) << kind;
+  for (const bool sees : {false, true}) {
+    SCOPED_TRACE(sees);
+    const FaultTargets targets = sees ? of_one_that_sees() : kTargets;
+    std::map<std::string, int> counts;
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed)
+      ++counts[draw_window(seed, 0, targets).kind()];
+    EXPECT_EQ(counts.size(), (sees ? kFaultKinds : kBlindFaultKinds) + 1);
+    for (const auto& [kind, count] : counts) EXPECT_GE(count, 30) << kind;
+  }
+}
+
+TEST(DrawWindow, LeavesTheOtherDrawsAsTheyAreWithoutDepthCameras) {
+  const FaultTargets seeing = of_one_that_sees();
+  int same = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    const WindowPlan blind = draw_window(seed, 0, kTargets), sees = draw_window(seed, 0, seeing);
+    EXPECT_EQ(blind.start, sees.start);
+    EXPECT_EQ(blind.delay, sees.delay);
+    EXPECT_EQ(blind.faults.size(), sees.faults.size());
+    same += blind.faults.front().text() == sees.faults.front().text() ? 1 : 0;
+  }
+  EXPECT_NEAR(same, 500, 60);
+}
+
+TEST(DrawWindow, SpoilsEachSenseInEveryWay) {
+  std::set<std::string> ways;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    const auto plan = draw_window(seed, 0, of_one_that_sees());
+    const Fault& fault = plan.faults.front();
+    const bool sight = fault.kind == FaultKind::kDepth || fault.kind == FaultKind::kUltrasonic ||
+                       fault.kind == FaultKind::kPeople;
+    if (sight) ways.insert(std::string(text(fault.kind)) + " " + fault.target + fault.variant);
+  }
+  EXPECT_EQ(ways.size(), 9U + 3U + 3U);
 }
 
 TEST(DrawWindow, DrawsFaultsThatBeginAndEndInTheirWindow) {

@@ -34,10 +34,11 @@ TEST(ServiceUnit, RestartsAndIsWatched) {
   EXPECT_EQ(unit.name, "usher-nuc.service");
   EXPECT_THAT(unit.text,
               HasSubstr("ExecStart=\"/usr/bin/usher\" launch \"/etc/usher/my robot 100%%.yaml\" "
-                        "--host \"nuc\" --keys \"/etc/usher/keys\"\n"));
+                        "--host \"nuc\" --run-directory \"/var/lib/usher/nuc\" "
+                        "--keys \"/etc/usher/keys\"\n"));
   for (const auto* line :
-       {"Type=notify\n", "Restart=always\n", "WatchdogSec=5\n", "KillMode=control-group\n",
-        "User=usher\n", "WantedBy=multi-user.target\n"})
+       {"Type=notify\n", "StateDirectory=usher\n", "Restart=always\n", "WatchdogSec=5\n",
+        "KillMode=control-group\n", "User=usher\n", "WantedBy=multi-user.target\n"})
     EXPECT_THAT(unit.text, HasSubstr(line));
 }
 

@@ -420,6 +420,21 @@ TEST_F(Launching, ForgetsWhatWasKeptForAFreshStart) {
   EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
+TEST_F(Launching, ABootEndsTheSessionAndNoLatch) {
+  component("legs", "sleeper");
+  const auto latch = folder_.file("run/kept/legs/emergency", "off");
+  auto pose = folder_.file("run/kept/amcl/session.pose", "1 2 3");
+  launcher();
+  EXPECT_FALSE(std::filesystem::exists(pose)) << "the first launch since the boot";
+  folder_.file("run/kept/amcl/session.pose", "4 5 6");
+  launcher();
+  EXPECT_TRUE(std::filesystem::exists(pose)) << "a launcher that was only restarted";
+  std::filesystem::remove_all(folder_.path() + "/usher");  // as a boot does to XDG_RUNTIME_DIR
+  launcher();
+  EXPECT_FALSE(std::filesystem::exists(pose));
+  EXPECT_TRUE(std::filesystem::exists(latch));
+}
+
 TEST_F(Launching, KillsWhatWasHeardAndFallsSilent) {
   component("legs", "sleeper");
   component("arms", "sleeper");

@@ -193,6 +193,39 @@ TEST_F(Wiring, FindsDriveChainsWithUnsafePolicies) {
       << "what does not decide over motion may be lost";
 }
 
+TEST_F(Wiring, FindsGuidesWhoseLossWouldNotStopTheRobot) {
+  const struct {
+    const char* type;
+    const char* topic;
+  } guides[] = {{"lms100", "scan"},
+                {"scan_filter", "scan/filtered"},
+                {"scan_filter", "ultrasonic/filtered"},
+                {"sensor_board", "ultrasonic"},
+                {"sensor_board", "whiskers"},
+                {"costmap", "local_costmap/costs"},
+                {"amcl", "localization/status"},
+                {"local_planner", "cmd_vel/navigation"}};
+  for (const auto& [type, topic] : guides) {
+    SCOPED_TRACE(topic);
+    contracts_.clear();
+    add(writer(type, topic));
+    add(writer("supervisor", "drive/grant"));
+    const auto with = [&](const std::string& setting) {
+      return findings("  supervisor: {host: nuc}\n  " + std::string(type) +
+                      ":\n    host: tablet\n    " + setting + "\n");
+    };
+    EXPECT_THAT(with("criticality: stop"), IsEmpty()) << "on whatever host";
+    EXPECT_THAT(with("criticality: notify"),
+                ElementsAre("m.yaml:8: unsafe policy: '" + std::string(type) +
+                            "' tells where the robot may drive: its criticality must be stop, not "
+                            "notify"));
+    EXPECT_THAT(with("criticality: degrade"), ElementsAre(HasSubstr("stop, not degrade")));
+    EXPECT_THAT(with("heartbeat_timeout: 0.51"),
+                ElementsAre(HasSubstr("its heartbeat_timeout must be at most 0.5 s")));
+    EXPECT_THAT(with("restart: never"), IsEmpty()) << "it stands, and stays standing";
+  }
+}
+
 TEST_F(Wiring, KeepsTheDriveChainOnOneHost) {
   add(writer("movement_control", "drive/command"));
   add(writer("segway_rmp", "base/status", 100));

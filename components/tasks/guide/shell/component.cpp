@@ -20,13 +20,8 @@ constexpr auto kVisitorAge = milliseconds(500);
 constexpr auto kSpeechAge = milliseconds(2000);
 constexpr auto kTorsoAge = milliseconds(1000);
 constexpr auto kPoseAge = milliseconds(1000);
-constexpr const char* kMemory = "dialogue";
+constexpr const char* kMemory = "session.dialogue";  // after a boot nobody waits to be guided on
 constexpr const char* kLog = "visits.csv";
-
-std::string kept_text(runtime::Host& host, const char* key) {
-  const auto kept = host.kept(key);
-  return kept ? std::string(reinterpret_cast<const char*>(kept->data()), kept->size()) : "";
-}
 
 }  // namespace
 
@@ -81,14 +76,14 @@ Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   return p;
 }
 
-Guide GuideComponent::make(runtime::Host& host) {
+Guide GuideComponent::make(runtime::Host& host, const std::string& kept) {
   auto& parameters = host.parameters();
   const Parameters p = read_parameters(parameters);
   auto phrases = phrases::read_phrases(host, "guide", kTextKeys);
   if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
     host.fault("follow_near and follow_resume must be below follow_far");
   Memory memory;
-  if (auto read = memory_from_text(kept_text(host, kMemory))) memory = std::move(read).value();
+  if (auto read = memory_from_text(kept)) memory = std::move(read).value();
   // Ids above all that were used before a restart.
   const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
   return Guide(p, std::move(phrases), first_id, memory, host.now().time_since_epoch());
@@ -96,12 +91,13 @@ Guide GuideComponent::make(runtime::Host& host) {
 
 GuideComponent::GuideComponent(runtime::Host& host)
     : host_(host),
-      core_(make(host)),
-      log_(kept_text(host, kLog)),
+      memory_(host, kMemory),
+      visits_kept_(host, kLog),
+      core_(make(host, memory_.found())),
+      log_(visits_kept_.found()),
       max_speed_(static_cast<float>(core_.parameters().speed)),
       ignored_answers_(host.health().counter("answers: ignored")),
       rejected_locations_(host.health().counter("locations: rejected")),
-      forgotten_(host.health().counter("memory: not kept")),
       titles_(phrases::read_place_titles(host)),
       transforms_(host),
       requests_(host, topics::kSupervisorRequest),
@@ -286,12 +282,12 @@ void GuideComponent::act(const Actions& actions) {
     pace.max_speed(static_cast<float>(*actions.pace));
     pace_.publish(pace);
   }
-  if (actions.remember) remember();
+  if (actions.remember) memory_.keep(to_text(core_.memory()));
   if (actions.visit) {
     visits_.publish(to_message(*actions.visit));
     log_.add(*actions.visit, core_.screen().language,
              runtime::seconds(host_.now().time_since_epoch()));
-    keep(kLog, log_.text());
+    visits_kept_.keep(log_.text());
     publish_status();
   }
   if (actions.screen_changed) publish_screen();
@@ -300,13 +296,6 @@ void GuideComponent::act(const Actions& actions) {
       core_.guides() != told_.guides() || core_.follows() != told_.follows()) {
     publish_status();
   }
-}
-
-void GuideComponent::remember() { keep(kMemory, to_text(core_.memory())); }
-
-void GuideComponent::keep(const char* key, const std::string& text) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
-  if (!host_.keep(key, {bytes, text.size()})) ++forgotten_;
 }
 
 usher_msgs::msg::GuideVisit GuideComponent::to_message(const Visit& visit) const {

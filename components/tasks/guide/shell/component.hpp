@@ -5,6 +5,7 @@
 #include "runtime/api/host.hpp"
 #include "tasks/guide/core/guide.hpp"
 #include "tasks/guide/core/visit_log.hpp"
+#include "wire/keeper.hpp"
 #include "wire/repeater.hpp"
 #include "wire/transform_input.hpp"
 
@@ -17,7 +18,7 @@ class GuideComponent final : public runtime::Component {
 
  private:
   static Parameters read_parameters(runtime::Parameters& parameters);
-  static Guide make(runtime::Host& host);
+  static Guide make(runtime::Host& host, const std::string& kept);
   Time now() const { return host_.now().time_since_epoch(); }
   Surroundings surroundings() const;
   void place(const usher_msgs::msg::Visitor& visitor);
@@ -27,19 +28,18 @@ class GuideComponent final : public runtime::Component {
   void tick();
   void step() { act(core_.step(surroundings(), now())); }
   void act(const Actions& actions);
-  void remember();
-  void keep(const char* key, const std::string& text);
   void publish_screen();
   void publish_status();
   usher_msgs::msg::GuideVisit to_message(const Visit& visit) const;
 
   runtime::Host& host_;
+  wire::Keeper memory_;
+  wire::Keeper visits_kept_;
   Guide core_;
   VisitLog log_;
   float max_speed_;
   std::uint64_t& ignored_answers_;
   std::uint64_t& rejected_locations_;
-  std::uint64_t& forgotten_;
   phrases::PlaceTitles titles_;
   std::uint64_t ticks_ = 0;
   usher_msgs::msg::GuideStatus told_;               ///< the newest status

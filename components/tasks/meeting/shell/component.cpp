@@ -218,7 +218,7 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
       rejected_(host.health().counter("inputs: rejected")),
       rejected_faces_(host.health().counter("faces: rejected")),
       ignored_answers_(host.health().counter("answers: ignored")),
-      forgotten_(host.health().counter("memory: not kept")),
+      memory_(host, kMemory),
       transforms_(host),
       requests_(host, topics::kSupervisorRequest),
       goals_(host, topics::kNavigateGoal),
@@ -297,10 +297,7 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
 
 /// A mission does not outlive its component: what it left running ends, who asked hears it.
 void MeetingComponent::recall() {
-  const auto kept = host_.kept(kMemory);
-  if (!kept || kept->empty()) return;
-  remembered_.assign(reinterpret_cast<const char*>(kept->data()), kept->size());
-  auto report = report_from_text(remembered_);
+  auto report = report_from_text(memory_.found());
   if (!report) return;
   left_ = std::move(report).value();
   left_->outcome = Outcome::kFailed;
@@ -556,11 +553,7 @@ void MeetingComponent::act(const Actions& actions) {
 /// While a mission goes on; nothing once it is over.
 void MeetingComponent::remember() {
   if (left_) return;  // not told yet
-  std::string text = active(core_.state()) ? to_text(core_.report()) : std::string();
-  if (text == remembered_) return;
-  remembered_ = std::move(text);
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(remembered_.data());
-  if (!host_.keep(kMemory, {bytes, remembered_.size()})) ++forgotten_;
+  memory_.keep(active(core_.state()) ? to_text(core_.report()) : std::string());
 }
 
 void MeetingComponent::publish_status() {

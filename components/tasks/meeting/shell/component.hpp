@@ -7,6 +7,7 @@
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 #include "tasks/meeting/core/meeting.hpp"
+#include "wire/keeper.hpp"
 #include "wire/repeater.hpp"
 #include "wire/transform_input.hpp"
 
@@ -50,11 +51,10 @@ class MeetingComponent final : public runtime::Component {
   std::uint64_t& rejected_;
   std::uint64_t& rejected_faces_;
   std::uint64_t& ignored_answers_;
-  std::uint64_t& forgotten_;
   std::uint64_t ticks_ = 0;
   std::vector<Point2> points_;
   std::uint64_t told_ = 0;  ///< number of the last report to the fleet; above all of a life before
-  std::string remembered_;
+  wire::Keeper memory_;     ///< the mission's report while it goes on
   std::optional<Report> left_;                            ///< of a mission that a restart ended
   std::optional<usher_msgs::msg::ExploreGoal> explores_;  ///< what the explorer does for it
 
