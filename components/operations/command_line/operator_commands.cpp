@@ -311,7 +311,7 @@ int save_map(std::uint32_t domain, const std::string& path) {
   auto reader = (*observer)->reader(topics::kMap);
   if (!reader) return fail(reader.error());
   const auto message = reader->take(std::chrono::seconds(5));
-  if (!message) return fail("no map in domain " + std::to_string(domain));
+  if (!message) return fail(nobody_there("map", domain));
   const auto map = wire::from_message(*message);
   if (!map) return fail(map.error());
   if (const auto saved = grid::save_map(*map, path); !saved) return fail(saved.error());
@@ -346,9 +346,9 @@ int map_from_log(const MapFromLogArguments& arguments) {
 
 void add_operator_commands(CLI::App& app, int& exit_code) {
   using namespace SupervisorRequest_Constants;
-  auto domain = std::make_shared<std::uint32_t>(0);
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
   const auto with_domain = [domain](CLI::App* command) {
-    command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+    add_domain_option(*command, *domain);
     return command;
   };
 
@@ -359,7 +359,7 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   goto_command->add_option("--pose", arguments->pose, "x y yaw in map [m, m, rad]")->expected(3);
   goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default");
   goto_command->add_flag("--no-wait", arguments->no_wait, "Return when the goal is taken");
-  goto_command->callback([=, &exit_code] { exit_code = go(*domain, *arguments); });
+  goto_command->callback([=, &exit_code] { exit_code = go(meant_domain(*domain), *arguments); });
 
   auto emergency = std::make_shared<bool>(false);
   auto* stop_command = with_domain(
@@ -367,17 +367,20 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   stop_command->add_flag("--emergency", *emergency,
                          "Motors off: a Segway drops on its tilt limiters");
   stop_command->callback([=, &exit_code] {
-    exit_code = *emergency ? ask_supervisor(*domain, COMMAND_EMERGENCY_STOP, "emergency stop")
-                           : ask_supervisor(*domain, COMMAND_STOP, "stopped");
+    exit_code =
+        ask_supervisor(meant_domain(*domain), *emergency ? COMMAND_EMERGENCY_STOP : COMMAND_STOP,
+                       *emergency ? "emergency stop" : "stopped");
   });
   with_domain(app.add_subcommand("move", "Lift `usher stop`; a latched fault needs `usher clear`"))
       ->callback([=, &exit_code] {
-        exit_code = ask_supervisor(*domain, COMMAND_MOVEMENT_ON, "the stop is lifted");
+        exit_code =
+            ask_supervisor(meant_domain(*domain), COMMAND_MOVEMENT_ON, "the stop is lifted");
       });
   with_domain(app.add_subcommand(
                   "clear", "Clear latched faults (an emergency stop is one) whose cause is gone"))
-      ->callback(
-          [=, &exit_code] { exit_code = ask_supervisor(*domain, COMMAND_CLEAR, "cleared"); });
+      ->callback([=, &exit_code] {
+        exit_code = ask_supervisor(meant_domain(*domain), COMMAND_CLEAR, "cleared");
+      });
 
   auto path = std::make_shared<std::string>();
   auto* map_command = app.add_subcommand("map", "Work with maps");
@@ -386,7 +389,7 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
       with_domain(map_command->add_subcommand("save", "Write the running robot's map to a file"));
   save_command->add_option("file", *path, "YAML file; the picture is written beside it")
       ->required();
-  save_command->callback([=, &exit_code] { exit_code = save_map(*domain, *path); });
+  save_command->callback([=, &exit_code] { exit_code = save_map(meant_domain(*domain), *path); });
 
   auto from_log = std::make_shared<MapFromLogArguments>();
   auto* log_command = map_command->add_subcommand(

@@ -148,7 +148,8 @@ std::string default_run_directory(std::uint32_t domain, const std::string& host)
 /// Where a launcher leaves how its robot is reached (a parameter file without parameters), and
 /// where it is looked for: that of this user first, then that of a service.
 std::vector<std::string> operator_files(std::uint32_t domain);
-/// Domains that this user launched a robot in on this machine and that have such a file, rising.
+/// Domains in which a robot was launched on this machine, by this user or as a service, and whose
+/// launcher lives; rising.
 std::vector<std::uint32_t> launched_domains();
 
 /// The file that a component gets with --parameters.

@@ -347,6 +347,28 @@ TEST_F(Launching, KeepsItsFilesWhereNobodyElseCanPutAny) {
                                     "/tmp/usher-" + user + "/domain-7-nuc"));
 }
 
+TEST_F(Launching, NamesTheDomainsWhereALauncherLives) {
+  component("legs", "sleeper");
+  const std::string runtime = folder_.path() + "/runtime";
+  std::filesystem::create_directory(runtime);
+  ::setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+  const std::uint32_t domain = deployment_.manifest.domain;
+  {
+    const auto lives = launcher();
+    EXPECT_THAT(launched_domains(), testing::Contains(domain));
+    folder_.file("runtime/usher/domain-99-nuc.lock", "999999999\n");  // more than any process has
+    folder_.file("runtime/usher/domain-99-operator.yaml", "");
+    folder_.file("runtime/usher/domain-x-nuc.lock", "1\n");
+    folder_.file("runtime/usher/domain-98.lock", std::to_string(::getpid()) + "\n");
+    folder_.file("runtime/usher/domain-98-operator.yaml", "");
+    EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(99U))) << "it was killed";
+    EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(98U)))
+        << "that is no lock of ours";
+  }
+  EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(domain))) << "it has ended";
+  ::unsetenv("XDG_RUNTIME_DIR");
+}
+
 TEST_F(Launching, StopsWhatIsHalted) {
   component("legs", "sleeper");
   auto made = launcher();
