@@ -58,6 +58,7 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
   assert(parameters.options_on_screen >= 4);
   state_ = resumed(state_of(memory.state));
   stopped_ = memory.stopped;
+  stays_ = memory.stays;
   if (state_ != State::kInitialise) {
     language_ = phrases_.find(memory.language);
     visit_ = memory.visit;
@@ -150,6 +151,7 @@ Memory Guide::memory() const {
                 place_.name,
                 goal_id_,
                 stopped_,
+                stays_,
                 visit_,
                 funnel_,
                 recent_};
@@ -195,11 +197,16 @@ void Guide::begin_visit(bool greeted, Time now) {
   visit_.greeted = greeted;
   visit_since_ = now;
   lost_visitor_ = false;
+  stays_ = false;
   place_ = {};
   if (greeted) ++funnel_.greeted;
 }
 
 void Guide::end_visit(Cause cause, Time now) {
+  // Who stopped it and says nothing any more may lie before it. The next visitor finds a robot that
+  // can go; by itself it does not turn.
+  const bool answered = cause == Cause::kNo || cause == Cause::kYes;
+  stays_ = !answered && (stopped_ || surroundings_.hold == Hold::kStopped);
   lift_stop();
   visit_.duration = now - visit_since_;
   visit_.outcome = visit_.arrived > 0    ? Outcome::kArrived
@@ -541,6 +548,7 @@ void Guide::pass_time(Time now) {
   switch (state_) {
     case State::kInitialise:
       if (ready()) {
+        stays_ = stays_ || stopped_;
         lift_stop();  // of a visit that a restart has ended
         language_ = 0;
         enter(State::kInactive, Cause::kReady, now);

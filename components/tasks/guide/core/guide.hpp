@@ -149,7 +149,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   const Surroundings& surroundings() const { return surroundings_; }
   /// Nobody is served, and somebody looks but sees nobody: the robot may turn slowly to look for
   /// people. Where nobody looks, a turn would find nobody.
-  /// Not before the tone has sounded.
+  /// Not before the tone has sounded, and not after a stop that nobody has answered: then the robot
+  /// stays as it stands until somebody begins a visit, who is greeted, or touches the screen.
   bool seeks() const { return turns_now_ && may_seek(); }
   /// A visit goes on.
   bool serves() const { return visit_.id != 0 && visit_.outcome == Outcome::kOpen; }
@@ -223,7 +224,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::string goal_name() const { return follows() ? "visitor" : place_.name; }
   bool question() const;
   bool may_seek() const {
-    return state_ == State::kInactive && human() == Human::kNo && surroundings_.hold == Hold::kNone;
+    return state_ == State::kInactive && human() == Human::kNo &&
+           surroundings_.hold == Hold::kNone && !stays_;
   }
   Time patience() const {
     return state_ == State::kGuidePaused ? parameters_.pause : parameters_.answer;
@@ -236,7 +238,11 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void watch_robot(Time now);
   std::optional<Text> stands_for(Time now) const;
   void tell_why_it_stands(Time now);
+  bool navigator_drives() const;
+  void await_navigator(Time since, Time now);
+  std::optional<bool> goal_reached(Time now);
   void watch_navigation(Time now);
+  void arrive(Time now);
   void watch_follower(Time now);
   void follow_visitor(Time now);
   void watch_following(Time now);
@@ -298,6 +304,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   int given_again_ = 0;
   std::optional<Time> move_at_;        ///< after the tone
   bool stopped_ = false;               ///< this guide has asked the supervisor to stop
+  bool stays_ = false;                 ///< a visit ended, unanswered, while somebody's stop held it
   std::optional<Time> unheard_since_;  ///< the navigator's silence
   std::optional<Time> held_since_;     ///< the supervisor lets nothing move, or somebody's stop
   std::optional<Time> waits_since_;    ///< the navigator, for something else than the way

@@ -159,50 +159,33 @@ void Guide::tell_why_it_stands(Time now) {
   if (stopped_) move_at_ = now + parameters_.tone;
 }
 
-void Guide::watch_navigation(Time now) {
+/// The navigator pursues a goal, whoever gave it. One that it refused is in its status for a moment
+/// only.
+bool Guide::navigator_drives() const {
   const auto& navigation = surroundings_.navigation;
-  const bool ours = navigation && navigation->goal_id == goal_id_;
-  if (!ours) {
-    const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
-    if (forgot) {
-      if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
-      acknowledged_ = false;
-      unheard_since_.reset();
-      goal_at_ = now;
-      actions_.goal = Goal{goal_id_, place_.name};
-      return;
-    }
-    // One that was refused leaves ours alone; it is in the status for a moment only.
-    const bool taken = navigation && (navigation->state == GoalState::kActive ||
-                                      navigation->state == GoalState::kWaiting);
-    if (acknowledged_ && taken) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
-    if (now - *unheard_since_ >= parameters_.acknowledge) {
-      fail(Text::kPartSilent, Cause::kFailure, now);
-    }
-    return;
-  }
+  return navigation &&
+         (navigation->state == GoalState::kActive || navigation->state == GoalState::kWaiting);
+}
+
+/// The navigator does not speak of our goal, at the earliest since `since`.
+void Guide::await_navigator(Time since, Time now) {
+  if (!unheard_since_) unheard_since_ = since;
+  if (now - *unheard_since_ >= parameters_.acknowledge)
+    fail(Text::kPartSilent, Cause::kFailure, now);
+}
+
+/// What became of our newest goal, of which the navigator speaks: whether it was reached; nothing
+/// while it runs. Who cancelled or replaced it has ended the journey: it was not this guide, which
+/// forgets what it cancels.
+std::optional<bool> Guide::goal_reached(Time now) {
   acknowledged_ = true;
   unheard_since_.reset();
-  switch (navigation->state) {
+  switch (surroundings_.navigation->state) {
     case GoalState::kSucceeded:
-      goal_id_ = 0;
-      leave_journey();
-      visit_.travel_time += now - departed_;
-      if (visit_.arrived++ == 0) ++funnel_.arrived;
-      if (first_eta_ > 0.0) {
-        const double took = std::chrono::duration<double>(now - first_eta_at_).count();
-        visit_.eta_error = took / first_eta_ - 1.0;
-      }
-      std::erase(recent_, place_.name);
-      recent_.insert(recent_.begin(), place_.name);
-      if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
-      enter(State::kGuideSuccess, Cause::kArrived, now);
-      break;
+      return true;
     case GoalState::kFailed:
-      fail(Text::kNoWay, Cause::kFailure, now);
-      break;
-    case GoalState::kCancelled:  // not by this guide, which forgets what it cancels
+      return false;
+    case GoalState::kCancelled:
     case GoalState::kReplaced:
       fail(Text::kOtherGoal, Cause::kFailure, now);
       break;
@@ -211,6 +194,42 @@ void Guide::watch_navigation(Time now) {
     case GoalState::kWaiting:
       break;
   }
+  return std::nullopt;
+}
+
+void Guide::watch_navigation(Time now) {
+  const auto& navigation = surroundings_.navigation;
+  if (navigation && navigation->goal_id == goal_id_) {
+    const auto reached = goal_reached(now);
+    if (reached && *reached) arrive(now);
+    if (reached && !*reached) fail(Text::kNoWay, Cause::kFailure, now);
+    return;
+  }
+  const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
+  if (!forgot) {
+    if (acknowledged_ && navigator_drives()) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    return await_navigator(acknowledged_ ? now : goal_at_, now);
+  }
+  if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
+  acknowledged_ = false;
+  unheard_since_.reset();
+  goal_at_ = now;
+  actions_.goal = Goal{goal_id_, place_.name};
+}
+
+void Guide::arrive(Time now) {
+  goal_id_ = 0;
+  leave_journey();
+  visit_.travel_time += now - departed_;
+  if (visit_.arrived++ == 0) ++funnel_.arrived;
+  if (first_eta_ > 0.0) {
+    const double took = std::chrono::duration<double>(now - first_eta_at_).count();
+    visit_.eta_error = took / first_eta_ - 1.0;
+  }
+  std::erase(recent_, place_.name);
+  recent_.insert(recent_.begin(), place_.name);
+  if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
+  enter(State::kGuideSuccess, Cause::kArrived, now);
 }
 
 void Guide::watch_follower(Time now) {

@@ -858,6 +858,60 @@ TEST(Guide, AStopOnArrivalHoldsUntilHeGoesOnOrLeaves) {
   EXPECT_EQ(leads.taken(), "start:visitor go on");
 }
 
+TEST(Guide, AStopThatNobodyAnswersLeavesTheRobotAsItStands) {
+  Rig rig;
+  rig.see(-1.5), rig.to_active(), rig.press("stop");
+  rig.see_nobody(), rig.wait(120000);
+  ASSERT_EQ(rig.state(), "end");
+  EXPECT_EQ(rig.taken(), "stop end on cancel") << "the next visitor finds a robot that can go";
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  EXPECT_FALSE(rig.guide.seeks()) << "who stopped it may lie before it";
+  Rig after(quick(), rig.guide.memory(), 1000000);
+  after.see_nobody(), after.wait(60000);
+  ASSERT_EQ(after.state(), "inactive");
+  EXPECT_FALSE(after.guide.seeks()) << "over a restart, too";
+  rig.see(1.5), rig.wait(1200);
+  ASSERT_EQ(rig.state(), "introduction");
+  rig.see_nobody(), rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  EXPECT_TRUE(rig.guide.seeks()) << "another one was greeted by a robot that stood";
+
+  Rig tablet;
+  tablet.to_location_ask();
+  tablet.around.hold = Hold::kStopped;
+  tablet.see_nobody(), tablet.wait(16000);
+  ASSERT_EQ(tablet.state(), "end");
+  tablet.around.hold = Hold::kNone;  // the end of the visit lifts the tablet's own stop
+  tablet.wait(60000);
+  ASSERT_EQ(tablet.state(), "inactive");
+  EXPECT_FALSE(tablet.guide.seeks());
+  tablet.to_location_ask(), tablet.press("no"), tablet.press("no"), tablet.press("no");
+  tablet.wait(60000);
+  ASSERT_EQ(tablet.state(), "inactive");
+  EXPECT_TRUE(tablet.guide.seeks()) << "somebody has touched it since";
+
+  Rig bye;
+  bye.to_active(), bye.press("stop"), bye.press("cancel"), bye.press("no");
+  bye.around.supervisor = Supervisor::kAvailable;
+  bye.see_nobody(), bye.wait(60000);
+  EXPECT_TRUE(bye.guide.seeks()) << "he said goodbye";
+
+  Rig restarted(
+      quick(),
+      [] {
+        Rig before;
+        before.to_active(), before.press("stop"), before.press("cancel");
+        before.press("yes"), before.press("languages");
+        return before.guide.memory();
+      }(),
+      1000000);
+  restarted.see_nobody(), restarted.wait(60000);
+  ASSERT_EQ(restarted.state(), "inactive");
+  EXPECT_FALSE(restarted.guide.seeks()) << "its restart has ended the visit, and no answer";
+}
+
 TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   Rig rig;
   rig.around.pose = geometry::Pose2{4.0, 1.0, 0.0};
