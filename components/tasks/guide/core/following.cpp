@@ -33,7 +33,7 @@ bool Guide::choose_following(const std::string& option, Time now) {
   trail_ = {};
   going_to_.reset();
   unseen_since_.reset();
-  held_since_.reset();
+  not_allowed_since_.reset();
   stands_told_.reset();
   unheard_since_.reset();
   departed_ = asked_again_ = moved_at_ = drove_at_ = now;

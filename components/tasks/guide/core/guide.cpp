@@ -206,7 +206,7 @@ void Guide::end_visit(Cause cause, Time now) {
   // Who stopped it and says nothing any more may lie before it. The next visitor finds a robot that
   // can go; by itself it does not turn.
   const bool answered = cause == Cause::kNo || cause == Cause::kYes;
-  stays_ = !answered && (stopped_ || surroundings_.hold == Hold::kStopped);
+  stays_ = !answered && (stopped_ || surroundings_.permission == Permission::kStopped);
   lift_stop();
   visit_.duration = now - visit_since_;
   visit_.outcome = visit_.arrived > 0    ? Outcome::kArrived
@@ -377,7 +377,7 @@ bool Guide::choose_place(const std::string& option, Time now) {
     return true;
   }
   visit_.place = place_.name;
-  held_since_.reset();
+  not_allowed_since_.reset();
   goal_id_ = 0;
   actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
   enter(State::kGuideStart, Cause::kChoice, now);

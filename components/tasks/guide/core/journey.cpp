@@ -106,17 +106,17 @@ void Guide::watch_robot(Time now) {
   }
   // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
   // A visitor who stopped it himself has his own time.
-  const bool refused =
-      surroundings_.hold != Hold::kNone && (state_ == State::kGuideActive || follows());
+  const bool refused = surroundings_.permission != Permission::kGiven &&
+                       (state_ == State::kGuideActive || follows());
   const bool held = refused || (supervisor != Supervisor::kNavigation &&
                                 (supervisor != Supervisor::kAvailable || on_the_way()));
   if (!held) {
-    held_since_.reset();
+    not_allowed_since_.reset();
     return;
   }
-  if (!held_since_) held_since_ = now;
-  const Time lasted = now - *held_since_;
-  const bool stopped = surroundings_.hold == Hold::kStopped;
+  if (!not_allowed_since_) not_allowed_since_ = now;
+  const Time lasted = now - *not_allowed_since_;
+  const bool stopped = surroundings_.permission == Permission::kStopped;
   if (lasted >= (stopped ? parameters_.pause : parameters_.recovery)) {
     return fail(stopped ? Text::kStoppedMe : Text::kPartSilent, Cause::kFailure, now);
   }
@@ -130,8 +130,8 @@ void Guide::watch_robot(Time now) {
 
 /// Why a robot stands that wants to drive; nothing: it drives, or waits for the visitor or the way.
 std::optional<Text> Guide::stands_for(Time now) const {
-  if (held_since_ && now - *held_since_ >= parameters_.refresh) {
-    return surroundings_.hold == Hold::kStopped ? Text::kStoppedMe : Text::kOneMoment;
+  if (not_allowed_since_ && now - *not_allowed_since_ >= parameters_.refresh) {
+    return surroundings_.permission == Permission::kStopped ? Text::kStoppedMe : Text::kOneMoment;
   }
   const bool lost = waits_since_ && now - *waits_since_ >= parameters_.refresh;
   const bool waits = stopped_ && !stands_told_;  // for the visitor
