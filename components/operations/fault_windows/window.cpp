@@ -237,7 +237,7 @@ Result<WindowSetting> window_setting(const std::string& share) {
   setting.targets.locations = setting.locations.size();
   setting.targets.starts = setting.starts.size();
   for (const auto& [name, movement] : setting.deployment.movement) {
-    if (movement == Movement::kHolds) setting.targets.base_driver = name;
+    if (movement == Movement::kBaseDriver) setting.targets.base_driver = name;
   }
   for (const auto& component : setting.deployment.manifest.components) {
     if (component.name == "world") continue;  // not of the robot

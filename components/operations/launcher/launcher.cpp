@@ -459,11 +459,11 @@ void Launcher::heard(const std::string& component, Clock::time_point at) {
   }
 }
 
-void Launcher::vouched(const std::string& component, Clock::time_point at) {
+void Launcher::heard_by_supervisor(const std::string& component, Clock::time_point at) {
   for (auto& process : processes_) {
     const auto& names = process.components;
     if (std::find(names.begin(), names.end(), component) != names.end())
-      process.vouched_at[component] = at;
+      process.supervisor_heard_at[component] = at;
   }
 }
 
@@ -476,9 +476,10 @@ std::string Launcher::hang_of(const Process& process, Clock::time_point now) con
       now - std::max(process.started_at, trusted_from_) <= patience)
     return {};
   for (const auto& component : process.components) {
-    const auto vouched = process.vouched_at.find(component);
+    const auto by_supervisor = process.supervisor_heard_at.find(component);
     if (process.heard_at.contains(component) ||
-        (vouched != process.vouched_at.end() && now - vouched->second <= kHang))
+        (by_supervisor != process.supervisor_heard_at.end() &&
+         now - by_supervisor->second <= kHang))
       continue;
     std::ostringstream text;
     text << component << ": has not come alive within "
@@ -582,18 +583,18 @@ void Launcher::stop(const std::function<bool()>& stands) {
     }
   };
   const bool moves = std::any_of(processes_.begin(), processes_.end(), [](const Process& p) {
-    return p.movement == Movement::kHolds && p.state == Process::State::kRunning;
+    return p.movement == Movement::kBaseDriver && p.state == Process::State::kRunning;
   });
-  in_reverse(Movement::kAsks);
+  in_reverse(Movement::kCommands);
   if (stands && moves) {
     const auto until = Clock::now() + kLongestStanding;
     while (!stands() && Clock::now() < until) std::this_thread::sleep_for(milliseconds(5));
     if (Clock::now() >= until) events_.push_back("the robot was not seen to stand within 5 s");
   }
   in_reverse(Movement::kNone);
-  wait_until_gone([](const Process& p) { return p.movement != Movement::kHolds; }, kForGood);
-  in_reverse(Movement::kHolds);
-  wait_until_gone(all(Movement::kHolds), kForGood);
+  wait_until_gone([](const Process& p) { return p.movement != Movement::kBaseDriver; }, kForGood);
+  in_reverse(Movement::kBaseDriver);
+  wait_until_gone(all(Movement::kBaseDriver), kForGood);
 }
 
 const Process* Launcher::find(const std::string& component) const {

@@ -25,7 +25,7 @@ class NavigatorComponent final : public runtime::Component {
   void take_goal_pose(const geometry_msgs::msg::PoseStamped& goal);
   void take_reply(const usher_msgs::msg::PlanReply& reply);
   Situation situation();
-  std::string hold() const;
+  std::string not_allowed_because() const;
   bool somebody_ahead() const;
   void step();
   void publish_locations();

@@ -259,7 +259,7 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
     program(name, script);
     component(name, name);
   }
-  deployment_.movement = {{"base", Movement::kHolds}, {"planner", Movement::kAsks}};
+  deployment_.movement = {{"base", Movement::kBaseDriver}, {"planner", Movement::kCommands}};
   auto made = launcher();
   ASSERT_TRUE(wait_for(made, [&] {
     return std::filesystem::exists(folder_.path() + "/ready_base") &&
@@ -280,7 +280,7 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
 
 TEST_F(Launching, DoesNotWaitForEverForARobotThatDoesNotStand) {
   component("legs", "sleeper");
-  deployment_.movement = {{"legs", Movement::kHolds}};
+  deployment_.movement = {{"legs", Movement::kBaseDriver}};
   auto made = launcher();
   ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
   const auto start = std::chrono::steady_clock::now();
@@ -470,7 +470,7 @@ TEST_F(Launching, KillsWhatDoesNotComeAlive) {
     const auto now = std::chrono::steady_clock::now();
     launcher.heard("arms", now);
     launcher.heard("map", now);
-    launcher.vouched("screen", now);
+    launcher.heard_by_supervisor("screen", now);
     return launcher.find("legs")->starts == 2;
   }));
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
