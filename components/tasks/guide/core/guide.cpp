@@ -197,7 +197,6 @@ void Guide::begin_visit(bool greeted, Time now) {
   visit_.greeted = greeted;
   visit_since_ = now;
   lost_visitor_ = false;
-  stays_ = false;
   place_ = {};
   if (greeted) ++funnel_.greeted;
 }
