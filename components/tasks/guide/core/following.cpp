@@ -72,7 +72,7 @@ void Guide::watch_following(Time now) {
   if (!navigation || navigation->goal_id != goal_id_) {
     const bool other = navigator_drives() && !own_goal();
     if (other && acknowledged_) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    return await_navigator(now, now);  // not anew with each goal
+    return await_navigator(now);  // not anew with each goal
   }
   const auto reached = goal_reached(now);
   if (!reached) return;

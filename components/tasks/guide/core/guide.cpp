@@ -66,7 +66,7 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
     place_.name = memory.place;
     if (journey()) {
       goal_id_ = memory.goal_id;
-      goal_at_ = departed_ = now;
+      departed_ = now;
       acknowledged_ = goal_id_ != 0;
       follow_.depart(now);
       sentence_ = say(Text::kOneMoment);

@@ -248,7 +248,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::optional<Text> stands_for(Time now) const;
   void tell_why_it_stands(Time now);
   bool navigator_drives() const;
-  void await_navigator(Time since, Time now);
+  void await_navigator(Time now);
   std::optional<bool> goal_reached(Time now);
   void watch_navigation(Time now);
   void arrive(Time now);
@@ -307,7 +307,6 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   // This journey.
   Location place_;
   std::uint64_t goal_id_ = 0;  ///< 0: none was given
-  Time goal_at_{};             ///< when it was given, or last given again
   Time departed_{};
   bool acknowledged_ = false;  ///< the navigator named it
   int given_again_ = 0;

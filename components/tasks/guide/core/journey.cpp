@@ -54,7 +54,6 @@ void Guide::move_when_due(Time now) {
   lift_stop();
   if (goal_id_ == 0) {
     goal_id_ = next_id_++;
-    goal_at_ = now;
     actions_.goal = Goal{goal_id_, place_.name};
   }
   actions_.remember = true;
@@ -167,9 +166,9 @@ bool Guide::navigator_drives() const {
          (navigation->state == GoalState::kActive || navigation->state == GoalState::kWaiting);
 }
 
-/// The navigator does not speak of our goal, at the earliest since `since`.
-void Guide::await_navigator(Time since, Time now) {
-  if (!unheard_since_) unheard_since_ = since;
+/// The navigator does not speak of our goal.
+void Guide::await_navigator(Time now) {
+  if (!unheard_since_) unheard_since_ = now;
   if (now - *unheard_since_ >= parameters_.acknowledge)
     fail(Text::kPartSilent, Cause::kFailure, now);
 }
@@ -208,12 +207,11 @@ void Guide::watch_navigation(Time now) {
   const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
   if (!forgot) {
     if (acknowledged_ && navigator_drives()) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    return await_navigator(acknowledged_ ? now : goal_at_, now);
+    return await_navigator(now);
   }
   if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
   acknowledged_ = false;
   unheard_since_.reset();
-  goal_at_ = now;
   actions_.goal = Goal{goal_id_, place_.name};
 }
 
