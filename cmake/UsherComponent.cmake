@@ -1,6 +1,9 @@
 # The build vocabulary of the project. Include paths start at components/, so an include names its place in the
 # architecture ("navigation/costmap/core/layers.hpp") and tests/contract can judge it.
 
+# Everything that a deployment, an experiment or a benchmark runs, with the contracts; no tests.
+add_custom_target(usher-programs)
+
 # usher_library(NAME SOURCES a.cpp ... DEPENDS lib ...)
 # A plain library; header-only when there are no sources.
 function(usher_library NAME)
@@ -62,6 +65,7 @@ function(usher_benchmark NAME)
   add_executable(usher-bench-${NAME} ${ARG_SOURCES})
   target_link_libraries(usher-bench-${NAME} PRIVATE ${ARG_DEPENDS} benchmark::benchmark usher_warnings)
   target_include_directories(usher-bench-${NAME} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  add_dependencies(usher-programs usher-bench-${NAME})
 endfunction()
 
 # usher_component(NAME CLASS HEADER CORE ... SHELL ... [CORE_DEPENDS ...] [SHELL_DEPENDS ...]
@@ -98,6 +102,7 @@ function(usher_component NAME)
     COMMAND usher-${NAME} --contract > ${CONTRACT}
     BYPRODUCTS ${CONTRACT} VERBATIM)
 
+  add_dependencies(usher-programs usher-${NAME})
   install(TARGETS usher-${NAME} DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(FILES ${CONTRACT} DESTINATION share/usher/contracts)
   set_property(GLOBAL APPEND PROPERTY USHER_COMPONENTS ${NAME})

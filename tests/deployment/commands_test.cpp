@@ -146,6 +146,31 @@ TEST_F(Commands, StopHoldsTheRobotUntilMove) {
   EXPECT_TRUE(robot_->wait_for([] { return robot_->status()->enable_movement(); }, Seconds(5)));
 }
 
+TEST_F(Commands, WithoutADomainTheOnlyRobotOfThisMachineIsMeant) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  Process stop({usher_program(), "stop"});
+  EXPECT_EQ(stop.wait(), 0) << stop.errors();
+  EXPECT_EQ(stop.errors(), "usher: in domain " + std::to_string(robot_->domain()) +
+                               ", where the only robot of this machine was launched\n");
+  EXPECT_TRUE(robot_->wait_for([] { return !robot_->status()->enable_movement(); }, Seconds(5)));
+  Process move({usher_program(), "move"});
+  EXPECT_EQ(move.wait(), 0) << move.errors();
+}
+
+/// Long before it gives up, after 25 s.
+TEST_F(Commands, AStopInAnotherDomainSaysAtOnceWhereTheRobotIs) {
+  const auto nowhere = std::to_string((robot_->domain() + 110) % 232);
+  const Process stop({usher_program(), "stop", "--domain", nowhere});
+  EXPECT_TRUE(robot_->wait_for(
+      [&] {
+        return contains(stop.errors(), "no robot was launched on this machine in domain " +
+                                           nowhere + "; one was in domain " +
+                                           std::to_string(robot_->domain()) + " (--domain ");
+      },
+      Seconds(10)))
+      << stop.errors();
+}
+
 TEST_F(Commands, AnEmergencyStopEndsAGoto) {
   ASSERT_TRUE(well()) << robot_->complaints();
   const auto drive = robot_->command({"goto", "--pose", "4.5", "3.6", "0.0"});

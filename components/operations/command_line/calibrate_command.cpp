@@ -35,7 +35,7 @@ constexpr double kFar = 12.0;  // [m] of an 8-bit image
 constexpr double kDegree = geometry::kPi / 180.0;
 
 struct Settings {
-  std::uint32_t domain = 0;
+  std::optional<std::uint32_t> domain;
   std::string robot = Installation::of_this_program().share + "/config/robots/marvin.yaml";
   bool write = false;
   std::string plot = "kinect_calibration.png";
@@ -168,7 +168,7 @@ int calibrate(const Settings& settings) {
             << " m ahead of the axle, axle " << format("%.4f", mount->axle)
             << " m above the floor; so far the Kinect " << format("%.4f", mount->z)
             << " m above the axle\n";
-  auto robot = Robot::find(settings.domain);
+  auto robot = Robot::find(meant_domain(settings.domain));
   if (!robot) return fail(robot.error());
   const auto samples = sweep_servo(*robot, *mount);
   if (!samples) return fail(samples.error());
@@ -209,7 +209,7 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
       "Sweeps the tilt servo of a standing robot over free floor, fits mount height and angle");
   add_calibrate_faces(*command, exit_code);
   command->require_subcommand(1);
-  kinect->add_option("--domain", settings->domain, "DDS domain of the robot");
+  add_domain_option(*kinect, settings->domain);
   kinect
       ->add_option("--robot", settings->robot,
                    "The robot's file: kinect.mount_x and wheel_radius are taken from it")

@@ -5,9 +5,11 @@
 namespace usher::operations {
 
 /// Each adds its subcommands. A command sets `exit_code`; 0 only when what was asked happened.
-void add_deployment_commands(CLI::App& app, int& exit_code);  ///< check components launch graph
+void add_deployment_commands(CLI::App& app, int& exit_code);  ///< check components graph
+void add_launch_command(CLI::App& app, int& exit_code);       ///< launch
 void add_inspection_commands(CLI::App& app, int& exit_code);  ///< status topics
-void add_operator_commands(CLI::App& app, int& exit_code);    ///< goto stop clear map
+void add_goto_command(CLI::App& app, int& exit_code);         ///< goto
+void add_operator_commands(CLI::App& app, int& exit_code);    ///< stop move clear map
 void add_meeting_command(CLI::App& app, int& exit_code);      ///< meet
 void add_teleop_command(CLI::App& app, int& exit_code);       ///< teleop
 void add_host_commands(CLI::App& app, int& exit_code);        ///< keys install doctor

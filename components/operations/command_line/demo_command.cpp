@@ -88,6 +88,110 @@ struct DemoArguments {
   std::uint64_t seed = 1;
 };
 
+/// Subscriptions to topics of all types. Must end before its observer.
+class Subscriptions {
+ public:
+  explicit Subscriptions(Observer& observer) : observer_(observer) {}
+
+  template <class Message, class Take>
+  void add(const topics::Topic<Message>& topic, Take take) {
+    if (!status_) return;
+    auto reader =
+        observer_.reader(topic, [take](const auto& message, const auto&) { take(message); });
+    if (reader)
+      readers_.push_back(std::make_shared<Observer::Reader<Message>>(std::move(reader).value()));
+    else
+      status_ = Error{reader.error()};
+  }
+  /// Of all that was added.
+  const Status& status() const { return status_; }
+
+ private:
+  Observer& observer_;
+  Status status_;
+  std::vector<std::shared_ptr<void>> readers_;
+};
+
+/// Everything that the record of a run is made of.
+void listen(Watch& watch, Subscriptions& subscriptions) {
+  const auto record = [&watch](const auto& message) { watch.take(message); };
+  subscriptions.add(topics::kSimGroundTruth, record);
+  subscriptions.add(topics::kAmclPose, record);
+  subscriptions.add(topics::kPlan, record);
+  subscriptions.add(topics::kNavigateStatus, record);
+  subscriptions.add(topics::kDialogueScreen, record);
+  subscriptions.add(topics::kCmdVelNavigation, record);
+  subscriptions.add(topics::kDriveCommand, record);
+  subscriptions.add(topics::kWhiskers, record);
+  subscriptions.add(topics::kSupervisorStatus,
+                    [&watch](const auto& message) { take_grant(watch, message); });
+  subscriptions.add(topics::kMap, [&watch](const auto& message) {
+    if (auto grid = wire::from_message(message)) {
+      const std::lock_guard lock(watch.mutex);
+      watch.map = std::move(grid).value();
+    }
+  });
+}
+
+/// The demo's deployment; its tablet's pictures go to `out`.
+Result<Deployment> deployment_for(const Demo& demo, const Installation& installation,
+                                  const std::string& out, std::uint64_t seed) {
+  const std::string manifest =
+      std::filesystem::weakly_canonical(installation.share + "/deploy/" + demo.text().manifest)
+          .string();
+  std::vector<Override> overrides = demo.overrides();
+  overrides.push_back(
+      {"tablet", "pictures", std::filesystem::absolute(out + "/screens").lexically_normal()});
+  auto deployment = load_deployment(manifest, installation, overrides);
+  if (!deployment) return deployment;
+  for (auto& file : deployment->files) file.seed = seed;
+  for (const auto& finding : deployment->findings) std::cerr << to_string(finding) << "\n";
+  return deployment;
+}
+
+/// Until the demo is over, somebody stops it or a component cannot be kept running.
+void run(Demo& demo, Launcher& launcher, Watch& watch) {
+  const auto start = std::chrono::steady_clock::now();
+  auto next_line = start;
+  const auto goes_on = [&] {
+    const std::lock_guard lock(watch.mutex);
+    demo.step();
+    return !demo.over(watch.record) && std::chrono::steady_clock::now() - start < demo.longest();
+  };
+  while (!stop_asked && !launcher.incomplete() && goes_on()) {
+    launcher.poll();
+    for (const auto& event : launcher.events()) {
+      if (!event.ends_with(": started")) std::cout << "  " << event << "\n";
+    }
+    if (std::chrono::steady_clock::now() >= next_line) {
+      next_line += milliseconds(1000);
+      const std::lock_guard lock(watch.mutex);
+      watch.load.sample();
+      if (const auto line = demo.progress(watch.record); !line.empty())
+        std::cout << "  " << line << "\n";
+    }
+    std::cout << std::flush;
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+}
+
+/// Writes and shows how it went; the exit code.
+int conclude(const Demo& demo, Watch& watch, std::uint64_t seed, const std::string& out) {
+  const ResultSheet sheet = judge(demo, watch, seed);
+  const std::lock_guard lock(watch.mutex);
+  Status saved = write_file(out + "/result.json", sheet.json());
+  if (saved) saved = write_file(out + "/table.md", sheet.markdown());
+  if (saved) saved = write_file(out + "/run.csv", run_csv(watch.record));
+  if (saved && watch.map)
+    saved = draw_run(watch.record, *watch.map, demo.text().title, out + "/run.png");
+  std::cout << "\n" << sheet.markdown() << "\n";
+  if (!saved) return fail(saved.error());
+  std::cout << (sheet.pass() ? demo.text().kept : demo.text().broken)
+            << "; picture, table, result.json and the tablet's screens are in " << out << "\n";
+  if (!sheet.pass() && watch.load.too_busy()) return fail(watch.load.verdict());
+  return sheet.pass() ? 0 : 1;
+}
+
 int demo(const DemoArguments& arguments) {
   const bool meets = arguments.what == kMeeting;
   if (meets && !arguments.destination.empty())
@@ -96,28 +200,17 @@ int demo(const DemoArguments& arguments) {
       !arguments.out.empty() ? arguments.out : (meets ? "build/demo-meeting" : "build/demo");
   auto made = meets ? meeting_demo() : guide_demo(arguments.destination);
   const auto installation = Installation::of_this_program();
-  const std::string manifest =
-      std::filesystem::weakly_canonical(installation.share + "/deploy/" + made->text().manifest)
-          .string();
-  std::vector<Override> overrides = made->overrides();
-  overrides.push_back(
-      {"tablet", "pictures", std::filesystem::absolute(out + "/screens").lexically_normal()});
   // What an earlier run left would pass for this one's.
   std::error_code ignored;
   std::filesystem::remove_all(out + "/screens", ignored);
   std::filesystem::remove(out + "/result.json", ignored);
-  auto deployment = load_deployment(manifest, installation, overrides);
+  const auto deployment = deployment_for(*made, installation, out, arguments.seed);
   if (!deployment) return fail(deployment.error());
-  for (auto& file : deployment->files) file.seed = arguments.seed;
-  for (const auto& finding : deployment->findings) {
-    std::cerr << to_string(finding) << "\n";
-  }
-  auto launcher = Launcher::create(
-      *deployment,
-      {"", installation.programs, default_run_directory(deployment->manifest.domain, "")});
+  const std::uint32_t domain = deployment->manifest.domain;
+  auto launcher =
+      Launcher::create(*deployment, {"", installation.programs, default_run_directory(domain, "")});
   if (!launcher) return fail(launcher.error());
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
+  std::filesystem::create_directories(out, ignored);  // where it fails, so does the writing
 
   struct sigaction action {};
   action.sa_handler = [](int) { stop_asked = true; };
@@ -125,56 +218,19 @@ int demo(const DemoArguments& arguments) {
   sigaction(SIGTERM, &action, nullptr);
 
   Watch watch;
-  auto observer = Observer::create({.name = "judge", .domain = deployment->manifest.domain});
+  auto observer = Observer::create({.name = "judge", .domain = domain});
   if (!observer) return fail(observer.error());
   const auto demo = std::move(made);  // ends before the observer
-  const auto take = [&](const auto& message, const auto&) { watch.take(message); };
-  const auto truth = (*observer)->reader(topics::kSimGroundTruth, take);
-  const auto pose = (*observer)->reader(topics::kAmclPose, take);
-  const auto plan = (*observer)->reader(topics::kPlan, take);
-  const auto status = (*observer)->reader(topics::kNavigateStatus, take);
-  const auto screen = (*observer)->reader(topics::kDialogueScreen, take);
-  const auto wanted = (*observer)->reader(topics::kCmdVelNavigation, take);
-  const auto command = (*observer)->reader(topics::kDriveCommand, take);
-  const auto whiskers = (*observer)->reader(topics::kWhiskers, take);
-  const auto supervisor =
-      (*observer)->reader(topics::kSupervisorStatus,
-                          [&](const auto& message, const auto&) { take_grant(watch, message); });
-  auto map = (*observer)->reader(topics::kMap, [&](const auto& message, const auto&) {
-    if (auto grid = wire::from_message(message)) {
-      const std::lock_guard lock(watch.mutex);
-      watch.map = std::move(grid).value();
-    }
-  });
-
+  Subscriptions subscriptions(**observer);
+  listen(watch, subscriptions);
+  if (!subscriptions.status()) return fail(subscriptions.status().error());
   if (const Status attached = demo->attach(*deployment, **observer, watch.mutex); !attached)
     return fail(attached.error());
 
   std::cout << demo->text().title << ": " << deployment->manifest.components.size()
-            << " components as processes, DDS domain " << deployment->manifest.domain << "\n"
+            << " components as processes, DDS domain " << domain << "\n"
             << std::flush;
-  const auto start = std::chrono::steady_clock::now();
-  auto next_line = start;
-  const auto goes_on = [&] {
-    const std::lock_guard lock(watch.mutex);
-    demo->step();
-    return !demo->over(watch.record) && std::chrono::steady_clock::now() - start < demo->longest();
-  };
-  while (!stop_asked && !launcher->incomplete() && goes_on()) {
-    launcher->poll();
-    for (const auto& event : launcher->events()) {
-      if (!event.ends_with(": started")) std::cout << "  " << event << "\n";
-    }
-    if (std::chrono::steady_clock::now() >= next_line) {
-      next_line += milliseconds(1000);
-      const std::lock_guard lock(watch.mutex);
-      watch.load.sample();
-      if (const auto line = demo->progress(watch.record); !line.empty())
-        std::cout << "  " << line << "\n";
-    }
-    std::cout << std::flush;
-    std::this_thread::sleep_for(milliseconds(20));
-  }
+  run(*demo, *launcher, watch);
   const bool broken = launcher->incomplete();
   launcher->stop();
   if (stop_asked) return fail("stopped before the end");
@@ -184,20 +240,7 @@ int demo(const DemoArguments& arguments) {
     return fail("a component cannot be kept running; its log is in " + launcher->run_directory() +
                 (load.empty() ? "" : "\nusher: " + load));
   }
-
-  const ResultSheet sheet = judge(*demo, watch, arguments.seed);
-  const std::lock_guard lock(watch.mutex);
-  Status saved = write_file(out + "/result.json", sheet.json());
-  if (saved) saved = write_file(out + "/table.md", sheet.markdown());
-  if (saved) saved = write_file(out + "/run.csv", run_csv(watch.record));
-  if (saved && watch.map)
-    saved = draw_run(watch.record, *watch.map, demo->text().title, out + "/run.png");
-  std::cout << "\n" << sheet.markdown() << "\n";
-  if (!saved) return fail(saved.error());
-  std::cout << (sheet.pass() ? demo->text().kept : demo->text().broken)
-            << "; picture, table, result.json and the tablet's screens are in " << out << "\n";
-  if (!sheet.pass() && watch.load.too_busy()) return fail(watch.load.verdict());
-  return sheet.pass() ? 0 : 1;
+  return conclude(*demo, watch, arguments.seed, out);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ int list_topics(std::uint32_t domain, double duration) {
                joined(row.writers), joined(row.readers)});
   }
   std::cout << table.text();
-  return rows.empty() ? fail("no topic in domain " + std::to_string(domain)) : 0;
+  return rows.empty() ? fail(nobody_there("topic", domain)) : 0;
 }
 
 struct EchoArguments {
@@ -182,22 +182,23 @@ int echo(std::uint32_t domain, const EchoArguments& arguments) {
 }  // namespace
 
 void add_inspection_commands(CLI::App& app, int& exit_code) {
-  auto domain = std::make_shared<std::uint32_t>(0);
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
   auto seconds = std::make_shared<double>(2.0);
   auto* status_command =
       app.add_subcommand("status", "What the supervisor thinks of the running robot");
-  status_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  add_domain_option(*status_command, *domain);
   status_command->add_option("--seconds", *seconds, "How long to look for it")
       ->capture_default_str();
-  status_command->callback([=, &exit_code] { exit_code = status(*domain, *seconds); });
+  status_command->callback(
+      [=, &exit_code] { exit_code = status(meant_domain(*domain), *seconds); });
 
   auto arguments = std::make_shared<EchoArguments>();
   auto* topics_command = app.add_subcommand(
       "topics", "Topics with type, quality of service, rate, latency, writers and readers");
-  topics_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  add_domain_option(*topics_command, *domain);
   topics_command->add_option("--seconds", *seconds, "How long to measure")->capture_default_str();
   auto* echo_command = topics_command->add_subcommand("echo", "Print the samples of a topic");
-  echo_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  add_domain_option(*echo_command, *domain);
   echo_command->add_option("topic", arguments->topic, "Name, for example scan/filtered")
       ->required();
   echo_command->add_option("--count", arguments->count, "How many; 0 = until Ctrl-C")
@@ -206,7 +207,8 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
       ->add_option("--patience", arguments->patience, "Seconds to wait for a writer or a sample")
       ->capture_default_str();
   topics_command->callback([=, &exit_code] {
-    exit_code = echo_command->parsed() ? echo(*domain, *arguments) : list_topics(*domain, *seconds);
+    const std::uint32_t meant = meant_domain(*domain);
+    exit_code = echo_command->parsed() ? echo(meant, *arguments) : list_topics(meant, *seconds);
   });
 }
 

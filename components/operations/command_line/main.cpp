@@ -27,7 +27,9 @@ int main(int argc, char** argv) {
   usher::operations::add_robot_options(app);
   int exit_code = 0;
   usher::operations::add_deployment_commands(app, exit_code);
+  usher::operations::add_launch_command(app, exit_code);
   usher::operations::add_inspection_commands(app, exit_code);
+  usher::operations::add_goto_command(app, exit_code);
   usher::operations::add_operator_commands(app, exit_code);
   usher::operations::add_meeting_command(app, exit_code);
   usher::operations::add_teleop_command(app, exit_code);

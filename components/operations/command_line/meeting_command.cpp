@@ -135,7 +135,8 @@ void add_meeting_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<MeetingArguments>();
   auto* command = app.add_subcommand(
       "meet", "Call a meeting: the assistant finds a free room, finds people and brings them");
-  command->add_option("--domain", arguments->domain, "DDS domain")->capture_default_str();
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
+  add_domain_option(*command, *domain);
   command->add_option("--persons", arguments->persons, "How many it brings")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
@@ -146,7 +147,8 @@ void add_meeting_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--no-wait", arguments->no_wait, "Return when the assistant took it");
   command->add_flag("--cancel", arguments->cancel, "End the meeting that is called, by whomever");
-  command->callback([arguments, &exit_code] {
+  command->callback([=, &exit_code] {
+    arguments->domain = meant_domain(*domain);
     exit_code = arguments->cancel ? cancel_meeting(*arguments) : meet(*arguments);
   });
 }

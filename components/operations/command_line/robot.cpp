@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iostream>
 
 #include "operations/launcher/launcher.hpp"
 #include "operations/security/permissions.hpp"
@@ -49,14 +51,41 @@ runtime::Observer::Options reach_robot(const std::string& name, std::uint32_t do
   return options;
 }
 
-std::string nobody_there(const std::string& who, std::uint32_t domain) {
-  std::string text = "no " + who + " in domain " + std::to_string(domain);
-  for (const std::uint32_t other : launched_domains()) {
-    if (other == domain) continue;
-    text += "; a robot was launched here in domain " + std::to_string(other) + ": --domain " +
-            std::to_string(other);
+void add_domain_option(CLI::App& command, std::optional<std::uint32_t>& given) {
+  command.add_option("--domain", given,
+                     "DDS domain; else that of the only robot launched on this machine, else 0");
+}
+
+MeantDomain meant_domain(const std::optional<std::uint32_t>& given,
+                         const std::vector<std::uint32_t>& launched) {
+  if (!given && launched.size() == 1) {
+    const std::uint32_t only = launched.front();
+    const std::string text =
+        "in domain " + std::to_string(only) + ", where the only robot of this machine was launched";
+    return {only, only == 0 ? "" : text};
   }
-  return text;
+  const std::uint32_t domain = given.value_or(0);
+  const bool there = std::ranges::find(launched, domain) != launched.end();
+  if (launched.empty() || (given && there)) return {domain, ""};
+  std::string text = (there ? "in domain " : "no robot was launched on this machine in domain ") +
+                     std::to_string(domain);
+  const char* before = "; one was in domain ";
+  for (const std::uint32_t other : launched) {
+    if (other == domain) continue;
+    text += before + std::to_string(other) + " (--domain " + std::to_string(other) + ")";
+    before = ", one in domain ";
+  }
+  return {domain, text};
+}
+
+std::uint32_t meant_domain(const std::optional<std::uint32_t>& given) {
+  const MeantDomain meant = meant_domain(given, launched_domains());
+  if (!meant.remark.empty()) std::cerr << "usher: " << meant.remark << "\n";
+  return meant.domain;
+}
+
+std::string nobody_there(const std::string& who, std::uint32_t domain) {
+  return "no " + who + " in domain " + std::to_string(domain);
 }
 
 }  // namespace usher::operations

@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/dds/observer.hpp"
 
@@ -19,7 +21,25 @@ std::string keys_folder();
 /// `operator`, whatever its name.
 runtime::Observer::Options reach_robot(const std::string& name, std::uint32_t domain);
 
-/// "no WHO in domain N", and where on this machine robots were launched instead.
+/// Adds --domain to a command that talks to a robot.
+void add_domain_option(CLI::App& command, std::optional<std::uint32_t>& given);
+
+/// The DDS domain of the robot that an operator means, and what he should read at once; empty:
+/// nothing.
+struct MeantDomain {
+  std::uint32_t domain = 0;
+  std::string remark;
+};
+
+/// What was given, else the domain of the only robot that was launched on this machine, else 0. The
+/// remark says that it took another one than 0 by itself, or where robots were launched instead.
+/// @param launched as launched_domains()
+MeantDomain meant_domain(const std::optional<std::uint32_t>& given,
+                         const std::vector<std::uint32_t>& launched);
+/// The same on this machine; the remark goes to stderr.
+std::uint32_t meant_domain(const std::optional<std::uint32_t>& given);
+
+/// "no WHO in domain N".
 std::string nobody_there(const std::string& who, std::uint32_t domain);
 
 }  // namespace usher::operations

@@ -160,7 +160,7 @@ int teleop(std::uint32_t domain, milliseconds hold) {
   if (!joy) return fail(joy.error());
   if (!movement) return fail(movement.error());
   if (!joy->wait_for_readers(1, std::chrono::seconds(3)))
-    return fail("no manual_control in domain " + std::to_string(domain));
+    return fail(nobody_there("manual_control", domain));
   if (const auto told = tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_MANUAL_ON);
       !told)
     return fail(told.error());
@@ -202,18 +202,19 @@ int teleop(std::uint32_t domain, milliseconds hold) {
 }  // namespace
 
 void add_teleop_command(CLI::App& app, int& exit_code) {
-  auto domain = std::make_shared<std::uint32_t>(0);
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
   auto hold = std::make_shared<int>(500);
   auto* command = app.add_subcommand(
       "teleop", "Drive from the keyboard while a key is held; needs manual_control");
-  command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  add_domain_option(*command, *domain);
   command
       ->add_option("--hold", *hold,
                    "How long a key counts as held after its last repeat [ms]; longer than the "
                    "keyboard's delay before it repeats")
       ->check(CLI::Range(100, 1000))
       ->capture_default_str();
-  command->callback([=, &exit_code] { exit_code = teleop(*domain, milliseconds(*hold)); });
+  command->callback(
+      [=, &exit_code] { exit_code = teleop(meant_domain(*domain), milliseconds(*hold)); });
 }
 
 }  // namespace usher::operations

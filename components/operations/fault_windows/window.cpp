@@ -229,7 +229,7 @@ Result<WindowSetting::Robot> robot_from(const std::string& share, bool sees) {
   FaultTargets& targets = robot.targets;
   targets.sees = sees;
   for (const auto& [name, movement] : robot.deployment.movement) {
-    if (movement == Movement::kHolds) targets.base_driver = name;
+    if (movement == Movement::kBaseDriver) targets.base_driver = name;
   }
   for (const auto& component : robot.deployment.manifest.components) {
     if (component.name == "world") continue;  // not of the robot

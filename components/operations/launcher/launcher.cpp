@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <thread>
@@ -40,7 +41,8 @@ constexpr std::uintmax_t kLeastRoom = 100'000;     // bytes; less is a full disk
 constexpr auto kLongestPollPause = milliseconds(500);
 constexpr const char* kOperator = "operator";
 constexpr const char* kDiscoveryServer = "discovery_server";
-constexpr int kWrongParameters = 2;  // exit code of a component program
+constexpr const char* kServiceDirectory = "/run/usher";  // RuntimeDirectory of the units
+constexpr int kWrongParameters = 2;                      // exit code of a component program
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -131,6 +133,34 @@ Status make_runtime_directory(const std::string& path) {
   return {};
 }
 
+std::string operator_file_of(std::uint32_t domain) {
+  return "/domain-" + std::to_string(domain) + "-operator.yaml";
+}
+
+/// The lock of a host's launcher in a domain.
+std::string lock_of(std::uint32_t domain, const std::string& host) {
+  return "domain-" + std::to_string(domain) + "-" + host + ".lock";
+}
+
+/// The inverse; nothing: it is no such name.
+std::optional<std::uint32_t> domain_of_lock(const std::string& name) {
+  constexpr std::string_view kBefore = "domain-", kAfter = ".lock";
+  if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return std::nullopt;
+  std::uint32_t domain = 0;
+  const auto read =
+      std::from_chars(name.data() + kBefore.size(), name.data() + name.size(), domain);
+  if (read.ec != std::errc() || *read.ptr != '-') return std::nullopt;
+  return domain;
+}
+
+/// Whether the process lives that wrote its number into a lock: a launcher that was killed leaves
+/// its files. To try the lock itself could refuse it to one who starts now.
+bool holder_lives(const std::string& lock) {
+  pid_t pid = 0;
+  std::ifstream(lock) >> pid;
+  return pid > 0 && (kill(pid, 0) == 0 || errno == EPERM);
+}
+
 }  // namespace
 
 std::string default_run_directory(std::uint32_t domain, const std::string& host) {
@@ -139,28 +169,22 @@ std::string default_run_directory(std::uint32_t domain, const std::string& host)
 }
 
 std::vector<std::string> operator_files(std::uint32_t domain) {
-  constexpr const char* kServiceDirectory = "/run/usher";  // RuntimeDirectory of the units
-  const std::string name = "/domain-" + std::to_string(domain) + "-operator.yaml";
+  const std::string name = operator_file_of(domain);
   return {runtime_directory() + name, kServiceDirectory + name};
 }
 
 std::vector<std::uint32_t> launched_domains() {
-  std::vector<std::uint32_t> domains;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(runtime_directory(), error)) {
-    constexpr std::string_view kBefore = "domain-";
-    constexpr std::string_view kAfter = "-operator.yaml";
-    const std::string name = entry.path().filename();
-    const bool ours = name.size() > kBefore.size() + kAfter.size() && name.starts_with(kBefore) &&
-                      name.ends_with(kAfter);
-    if (!ours) continue;
-    const char* const end = name.data() + name.size() - kAfter.size();
-    std::uint32_t domain = 0;
-    const auto read = std::from_chars(name.data() + kBefore.size(), end, domain);
-    if (read.ec == std::errc() && read.ptr == end) domains.push_back(domain);
+  std::set<std::uint32_t> domains;
+  for (const std::string& directory : {runtime_directory(), std::string(kServiceDirectory)}) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+      const auto domain = domain_of_lock(entry.path().filename());
+      if (domain && holder_lives(entry.path()) &&
+          access((directory + operator_file_of(*domain)).c_str(), F_OK) == 0)
+        domains.insert(*domain);
+    }
   }
-  std::ranges::sort(domains);
-  return domains;
+  return {domains.begin(), domains.end()};
 }
 
 std::string to_yaml(const runtime::ParameterFile& file) {
@@ -227,9 +251,8 @@ Status Launcher::lock(const Deployment& deployment) {
   if (auto status = lock_file(options_.run_directory + "/lock"); !status) return status;
   for (const auto& host : deployment.manifest.hosts) {
     if (!options_.host.empty() && host.name != options_.host) continue;
-    const std::string name =
-        "domain-" + std::to_string(deployment.manifest.domain) + "-" + host.name + ".lock";
-    const std::string path = runtime_directory() + "/" + name;
+    const std::string path =
+        runtime_directory() + "/" + lock_of(deployment.manifest.domain, host.name);
     since_boot_ = since_boot_ || access(path.c_str(), F_OK) == 0;  // a boot empties that folder
     if (auto status = lock_file(path); !status) return status;
   }
@@ -461,11 +484,11 @@ void Launcher::heard(const std::string& component, Clock::time_point at) {
   }
 }
 
-void Launcher::vouched(const std::string& component, Clock::time_point at) {
+void Launcher::heard_by_supervisor(const std::string& component, Clock::time_point at) {
   for (auto& process : processes_) {
     const auto& names = process.components;
     if (std::find(names.begin(), names.end(), component) != names.end())
-      process.vouched_at[component] = at;
+      process.supervisor_heard_at[component] = at;
   }
 }
 
@@ -478,9 +501,10 @@ std::string Launcher::hang_of(const Process& process, Clock::time_point now) con
       now - std::max(process.started_at, trusted_from_) <= patience)
     return {};
   for (const auto& component : process.components) {
-    const auto vouched = process.vouched_at.find(component);
+    const auto by_supervisor = process.supervisor_heard_at.find(component);
     if (process.heard_at.contains(component) ||
-        (vouched != process.vouched_at.end() && now - vouched->second <= kHang))
+        (by_supervisor != process.supervisor_heard_at.end() &&
+         now - by_supervisor->second <= kHang))
       continue;
     std::ostringstream text;
     text << component << ": has not come alive within "
@@ -584,18 +608,18 @@ void Launcher::stop(const std::function<bool()>& stands) {
     }
   };
   const bool moves = std::any_of(processes_.begin(), processes_.end(), [](const Process& p) {
-    return p.movement == Movement::kHolds && p.state == Process::State::kRunning;
+    return p.movement == Movement::kBaseDriver && p.state == Process::State::kRunning;
   });
-  in_reverse(Movement::kAsks);
+  in_reverse(Movement::kCommands);
   if (stands && moves) {
     const auto until = Clock::now() + kLongestStanding;
     while (!stands() && Clock::now() < until) std::this_thread::sleep_for(milliseconds(5));
     if (Clock::now() >= until) events_.push_back("the robot was not seen to stand within 5 s");
   }
   in_reverse(Movement::kNone);
-  wait_until_gone([](const Process& p) { return p.movement != Movement::kHolds; }, kForGood);
-  in_reverse(Movement::kHolds);
-  wait_until_gone(all(Movement::kHolds), kForGood);
+  wait_until_gone([](const Process& p) { return p.movement != Movement::kBaseDriver; }, kForGood);
+  in_reverse(Movement::kBaseDriver);
+  wait_until_gone(all(Movement::kBaseDriver), kForGood);
 }
 
 const Process* Launcher::find(const std::string& component) const {

@@ -55,8 +55,8 @@ struct Process {
   std::deque<std::chrono::steady_clock::time_point> recent_starts;
   /// When its components were last heard, since this start; by name.
   std::map<std::string, std::chrono::steady_clock::time_point> heard_at;
-  /// When somebody else last said that they live, by name.
-  std::map<std::string, std::chrono::steady_clock::time_point> vouched_at;
+  /// When the supervisor last heard them, by name.
+  std::map<std::string, std::chrono::steady_clock::time_point> supervisor_heard_at;
 };
 
 /// Runs one host's part of a deployment as child processes: starts them in the manifest's order,
@@ -78,10 +78,10 @@ class Launcher {
   /// and its restart policy decides.
   void heard(const std::string& component, std::chrono::steady_clock::time_point at);
   static constexpr auto kHang = std::chrono::seconds(5);
-  /// The supervisor hears a component, though it may not be heard here. One for which nobody has
-  /// vouched for `kHang`, and that was not heard since its start for its start patience, is killed
-  /// too, as long as anybody is heard at all: a launcher that hears nobody knows nothing.
-  void vouched(const std::string& component, std::chrono::steady_clock::time_point at);
+  /// The supervisor hears a component, though it may not be heard here. One that the supervisor has
+  /// not heard for `kHang`, and that was not heard here since its start for its start patience, is
+  /// killed too, as long as anybody is heard at all: a launcher that hears nobody knows nothing.
+  void heard_by_supervisor(const std::string& component, std::chrono::steady_clock::time_point at);
 
   /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.
   /// What happened since the last call is in events().
@@ -150,7 +150,8 @@ std::string default_run_directory(std::uint32_t domain, const std::string& host)
 /// Where a launcher leaves how its robot is reached (a parameter file without parameters), and
 /// where it is looked for: that of this user first, then that of a service.
 std::vector<std::string> operator_files(std::uint32_t domain);
-/// Domains that this user launched a robot in on this machine and that have such a file, rising.
+/// Domains in which a robot was launched on this machine, by this user or as a service, and whose
+/// launcher lives; rising.
 std::vector<std::uint32_t> launched_domains();
 
 /// The file that a component gets with --parameters.

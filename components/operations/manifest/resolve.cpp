@@ -34,8 +34,8 @@ struct Layer {
 Movement movement_of(const Contract& contract) {
   Movement movement = Movement::kNone;
   for (const auto& output : contract.outputs) {
-    if (output.topic == topics::kBaseStatus.name) return Movement::kHolds;
-    if (output.topic.starts_with("cmd_vel/")) movement = Movement::kAsks;
+    if (output.topic == topics::kBaseStatus.name) return Movement::kBaseDriver;
+    if (output.topic.starts_with("cmd_vel/")) movement = Movement::kCommands;
   }
   return movement;
 }

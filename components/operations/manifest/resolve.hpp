@@ -25,8 +25,8 @@ struct Override {
 /// What a component has to do with the robot's movement, from its contract.
 enum class Movement {
   kNone,
-  kAsks,   ///< writes cmd_vel/*: without it nobody wants the robot to move
-  kHolds,  ///< writes base/status: it keeps the base standing, and is the last to be stopped
+  kCommands,    ///< writes cmd_vel/*: without it nobody wants the robot to move
+  kBaseDriver,  ///< writes base/status: it keeps the base standing, and is the last to be stopped
 };
 
 /// A manifest with every component's parameters in place, and everything that is wrong with it.

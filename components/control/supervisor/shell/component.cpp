@@ -41,7 +41,7 @@ std::string refusal_of(const usher_msgs::msg::BaseStatus& status) {
 }
 
 /// Why movement_control lets the robot not go forward; empty when it does, or nobody wants it.
-std::string bar_of(const usher_msgs::msg::MovementStatus& status) {
+std::string limit_reason_of(const usher_msgs::msg::MovementStatus& status) {
   if (status.velocity_current_linear() > 0.0F) return {};
   // The planner minds a touch, too, and then wants nothing that could be barred.
   const bool touched =
@@ -206,7 +206,7 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
   movement_ = host.input(
       topics::kMovementStatus,
       {.max_age = kMovementAge, .on_loss = "does not tell why it stands", .optional = true},
-      [this](const auto& message, const auto&) { core_.movement(bar_of(message), now()); },
+      [this](const auto& message, const auto&) { core_.movement(limit_reason_of(message), now()); },
       [this] { core_.movement({}, now()); });
   navigation_ = host.input(
       topics::kNavigateStatus, {.optional = true}, [this](const auto& message, const auto&) {

@@ -39,10 +39,7 @@ GridPlannerConfig GlobalPlannerComponent::read_parameters(runtime::Parameters& p
 }
 
 GlobalPlannerComponent::GlobalPlannerComponent(runtime::Host& host)
-    : host_(host),
-      rejected_costs_(host.health().counter("costs: rejected")),
-      plans_(host.health().counter("plans")),
-      failures_(host.health().counter("plans: failed")) {
+    : host_(host), rejected_costs_(host.health().counter("costs: rejected")) {
   auto planner = GridPlanner::create(read_parameters(host.parameters()));
   if (!planner) host.fault(planner.error());
   planner_.emplace(std::move(planner).value());
@@ -51,10 +48,7 @@ GlobalPlannerComponent::GlobalPlannerComponent(runtime::Host& host)
       topics::kGlobalCosts, {.max_age = kCostsAge, .on_loss = "answers requests with a failure"},
       [this](const auto& message, const auto&) { take_costs(message); },
       [this] { host_.health().set(HealthState::kDegraded, "no global costs"); });
-  request_ = host.input(topics::kPlanRequest, {.optional = true},
-                        [this](const auto& request, const auto&) { answer(request); });
-  reply_ = host.output(topics::kPlanReply);
-  view_ = host.output(topics::kPlan);
+  server_.emplace(host, [this](const auto& start, const auto& goal) { return plan(start, goal); });
 }
 
 void GlobalPlannerComponent::take_costs(const usher_msgs::msg::Costmap& message) {
@@ -70,45 +64,12 @@ void GlobalPlannerComponent::take_costs(const usher_msgs::msg::Costmap& message)
   host_.health().set(HealthState::kOk);
 }
 
-void GlobalPlannerComponent::answer(const usher_msgs::msg::PlanRequest& request) {
-  const bool repeated =
-      request.id() != 0 && request.id() == last_reply_.id() && request.client() == last_client_;
-  if (!repeated) {
-    last_reply_ = plan(request);
-    last_client_ = request.client();
-    ++plans_;
-    if (last_reply_.state() == usher_msgs::msg::GoalStatus_Constants::STATE_FAILED) ++failures_;
-    view_.publish(last_reply_.path());
-  }
-  reply_.publish(last_reply_);
-}
-
-usher_msgs::msg::PlanReply GlobalPlannerComponent::plan(
-    const usher_msgs::msg::PlanRequest& request) {
-  using namespace usher_msgs::msg::GoalStatus_Constants;
-  usher_msgs::msg::PlanReply reply;
-  reply.id(request.id());
-  reply.state(STATE_FAILED);
-  reply.path(wire::to_message(host_.now(), frames::kMap, std::span<const geometry::Pose2>()));
-  const auto start = wire::to_planar(request.start().pose());
-  const auto goal = wire::to_planar(request.goal().pose());
-  if (!map_costs_.fresh() || !costs_) {
-    reply.reason("no global costs");
-  } else if (!start || !goal) {
-    reply.reason("start or goal is no pose: " + (start ? goal.error() : start.error()));
-  } else if (request.start().header().frame_id() != frames::kMap ||
-             request.goal().header().frame_id() != frames::kMap) {
-    reply.reason("start and goal must be in the frame map");
-  } else {
-    const Plan& plan = planner_->plan(*costs_, *start, *goal);
-    reply.reason(plan.reason);
-    if (plan.ok()) {
-      reply.state(STATE_SUCCEEDED);
-      reply.path(wire::to_message(host_.now(), frames::kMap, plan.path));
-      reply.length(static_cast<float>(plan.length));
-    }
-  }
-  return reply;
+Result<wire::PlannedPath> GlobalPlannerComponent::plan(const geometry::Pose2& start,
+                                                       const geometry::Pose2& goal) {
+  if (!map_costs_.fresh() || !costs_) return Error{"no global costs"};
+  const Plan& plan = planner_->plan(*costs_, start, goal);
+  if (!plan.ok()) return Error{plan.reason};
+  return wire::PlannedPath{plan.path, plan.length};
 }
 
 }  // namespace usher::global_planner

@@ -6,6 +6,7 @@
 #include "idl/topics.hpp"
 #include "navigation/global_planner/core/grid_planner.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/plan_server.hpp"
 
 namespace usher::global_planner {
 
@@ -17,22 +18,15 @@ class GlobalPlannerComponent final : public runtime::Component {
  private:
   static GridPlannerConfig read_parameters(runtime::Parameters& parameters);
   void take_costs(const usher_msgs::msg::Costmap& message);
-  void answer(const usher_msgs::msg::PlanRequest& request);
-  usher_msgs::msg::PlanReply plan(const usher_msgs::msg::PlanRequest& request);
+  Result<wire::PlannedPath> plan(const geometry::Pose2& start, const geometry::Pose2& goal);
 
   runtime::Host& host_;
   std::optional<GridPlanner> planner_;
   std::optional<CostGrid> costs_;
-  usher_msgs::msg::PlanReply last_reply_;
-  std::string last_client_;  ///< who was given it
   std::uint64_t& rejected_costs_;
-  std::uint64_t& plans_;
-  std::uint64_t& failures_;
 
   runtime::Input<usher_msgs::msg::Costmap> map_costs_;
-  runtime::Input<usher_msgs::msg::PlanRequest> request_;
-  runtime::Output<usher_msgs::msg::PlanReply> reply_;
-  runtime::Output<nav_msgs::msg::Path> view_;
+  std::optional<wire::PlanServer> server_;
 };
 
 }  // namespace usher::global_planner

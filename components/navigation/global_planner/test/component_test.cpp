@@ -15,7 +15,6 @@ using geometry::Pose2;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::SizeIs;
 using namespace usher_msgs::msg::GoalStatus_Constants;
 
 /// A free floor of 10 x 10 m, and a client that wants to cross it.
@@ -94,42 +93,6 @@ TEST_F(Component, RefusesCostsThatAreNone) {
   EXPECT_EQ(reason(), "global costs refused: expected the frame map, got 'odom'");
   EXPECT_EQ(host.counter("costs: rejected"), 2U);
   EXPECT_EQ(ask({1, 1, 0}, {9, 1, 0}).state(), STATE_SUCCEEDED) << "on the last ones";
-}
-
-TEST_F(Component, RefusesPosesThatAreNone) {
-  give_costs();
-  auto nowhere = request({1, 1, 0}, {9, 1, 0});
-  nowhere.goal().pose().position().x(std::numeric_limits<double>::infinity());
-  EXPECT_THAT(ask(nowhere).reason(), HasSubstr("start or goal is no pose"));
-  auto elsewhere = request({1, 1, 0}, {9, 1, 0});
-  elsewhere.start().header().frame_id(frames::kOdom);
-  EXPECT_EQ(ask(elsewhere).reason(), "start and goal must be in the frame map");
-  EXPECT_EQ(host.last(topics::kPlanReply)->state(), STATE_FAILED);
-}
-
-TEST_F(Component, RepeatsTheReplyToARepeatedRequest) {
-  give_costs();
-  const auto message = request({1, 1, 0}, {9, 1, 0});
-  const auto first = ask(message);
-  costs.at({50, 10}) = 254;  // something stands there now
-  give_costs();
-  const auto again = ask(message);
-  EXPECT_EQ(again, first);
-  EXPECT_THAT(host.written(topics::kPlanReply), SizeIs(2));
-  EXPECT_THAT(host.written(topics::kPlan), SizeIs(1)) << "planned once";
-  EXPECT_EQ(reason(), "");
-  EXPECT_EQ(host.counter("plans"), 1U);
-}
-
-TEST_F(Component, TwoClientsWithOneIdGetTheirOwnPaths) {
-  give_costs();
-  const auto ours = request({1, 1, 0}, {9, 1, 0});
-  auto theirs = request({1, 1, 0}, {1, 3, 0});
-  theirs.id(ours.id());
-  theirs.client("somebody else");
-  EXPECT_NEAR(ask(ours).length(), 8.0F, 0.1F);
-  EXPECT_NEAR(ask(theirs).length(), 2.0F, 0.1F);
-  EXPECT_NEAR(ask(ours).length(), 8.0F, 0.1F);
 }
 
 TEST_F(Component, SaysWhyThereIsNoPath) {

@@ -328,9 +328,9 @@ bool Navigator::pause_if_unfit(const Situation& s) {
   } else if (s.localization == Localization::kLost || !s.pose || !s.pose->finite()) {
     cause = Failure::kLocalizationLost;
     reason = "robot not localized";
-  } else if (!s.hold.empty()) {
+  } else if (!s.not_allowed_because.empty()) {
     cause = Failure::kHeld;
-    reason = s.hold;
+    reason = s.not_allowed_because;
   } else if (phase_ == Phase::kPaused) {
     failed_plans_ = 0;
     next_attempt_ = s.time;

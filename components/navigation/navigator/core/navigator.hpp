@@ -125,8 +125,8 @@ struct Situation {
   std::string missing;  ///< a planner that is not there ("the global planner"); empty = all are
                         ///< there (Initialise ends)
   std::string stale;    ///< an input that is too old to drive on ("the odometry"); empty = none
-  std::string hold;  ///< why the robot may not drive now, for people ("movement is switched off");
-                     ///< empty = it may
+  /// Why the robot may not drive now, for people ("movement is switched off"); empty = it may.
+  std::string not_allowed_because;
   Localization localization = Localization::kLost;
   std::optional<geometry::Pose2> pose;  ///< in map; absent or not finite counts as lost
   geometry::Twist2 velocity;            ///< measured

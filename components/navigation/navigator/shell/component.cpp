@@ -230,7 +230,7 @@ void NavigatorComponent::take_reply(const usher_msgs::msg::PlanReply& reply) {
 }
 
 /// In words, why nothing may drive now; the supervisor enables the navigation in one state only.
-std::string NavigatorComponent::hold() const {
+std::string NavigatorComponent::not_allowed_because() const {
   const auto* supervisor = supervisor_.fresh();
   if (supervisor == nullptr) return "no supervisor";
   if (!supervisor->granted())
@@ -291,7 +291,7 @@ Situation NavigatorComponent::situation() {
       (!(t->back_left() && t->back_right()) || (t->front_left() && t->front_right())))
     s.rear_clearance = kTrail;
   s.person_ahead = somebody_ahead();
-  s.hold = hold();
+  s.not_allowed_because = not_allowed_because();
   return s;
 }
 

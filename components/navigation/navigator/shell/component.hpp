@@ -29,7 +29,7 @@ class NavigatorComponent final : public runtime::Component {
   void watch_viewer();
   void take_reply(const usher_msgs::msg::PlanReply& reply);
   Situation situation();
-  std::string hold() const;
+  std::string not_allowed_because() const;
   bool somebody_ahead() const;
   void step();
   void publish_locations();

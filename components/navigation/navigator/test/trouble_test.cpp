@@ -107,8 +107,8 @@ TEST(NavigatorInTrouble, FailsInTheEndWithTheReason) {
        63.0},
       {"stale", [](Rig&) {}, [](Rig& r) { r.s.stale = "the odometry"; }, Failure::kInputsStale,
        "no word from the odometry for 60 s", 60.0, 63.0},
-      {"held", [](Rig&) {}, [](Rig& r) { r.s.hold = "movement is switched off"; }, Failure::kHeld,
-       "movement is switched off for 300 s", 300.0, 303.0},
+      {"held", [](Rig&) {}, [](Rig& r) { r.s.not_allowed_because = "movement is switched off"; },
+       Failure::kHeld, "movement is switched off for 300 s", 300.0, 303.0},
       {"the global planner dies before there is a path", [](Rig& r) { r.answer = Rig::silence; },
        [](Rig& r) { r.s.missing = "the global planner"; }, Failure::kInputsStale,
        "no word from the global planner for 60 s", 60.0, 63.0},
@@ -344,8 +344,8 @@ TEST(NavigatorInTrouble, PausesAndGoesOnWithANewPath) {
        "robot not localized"},
       {"odom", [](Rig& r) { r.s.stale = "the odometry"; }, [](Rig& r) { r.s.stale.clear(); },
        "no word from the odometry"},
-      {"permission", [](Rig& r) { r.s.hold = "movement is switched off"; },
-       [](Rig& r) { r.s.hold.clear(); }, "movement is switched off"},
+      {"permission", [](Rig& r) { r.s.not_allowed_because = "movement is switched off"; },
+       [](Rig& r) { r.s.not_allowed_because.clear(); }, "movement is switched off"},
   };
   for (const auto& row : table) {
     Rig rig;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "wire/conversions.hpp"
-#include "wire/frames.hpp"
 
 namespace usher::roadmap {
 
@@ -67,8 +66,6 @@ RoadmapComponent::RoadmapComponent(runtime::Host& host)
           "obstacle_tolerance", "m", {0, 1}, 0.15,
           "What is seen this near to something in the map is taken for it.")),
       rejected_(host.health().counter("inputs: rejected")),
-      plans_(host.health().counter("plans")),
-      failures_(host.health().counter("plans: failed")),
       regenerations_(host.health().counter("roadmaps: regenerated")) {
   auto planner =
       RoadmapPlanner::create(read_parameters(host.parameters()), host.random("roadmap").next());
@@ -83,10 +80,7 @@ RoadmapComponent::RoadmapComponent(runtime::Host& host)
       [this] { host_.health().set(HealthState::kDegraded, "no global costs"); });
   outcome_ = host.input(topics::kNavigateStatus, {.optional = true},
                         [this](const auto& status, const auto&) { take_outcome(status); });
-  request_ = host.input(topics::kPlanRequest, {.optional = true},
-                        [this](const auto& request, const auto&) { answer(request); });
-  reply_ = host.output(topics::kPlanReply);
-  view_ = host.output(topics::kPlan);
+  server_.emplace(host, [this](const auto& start, const auto& goal) { return plan(start, goal); });
 }
 
 void RoadmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
@@ -131,49 +125,15 @@ void RoadmapComponent::look_for_obstacles(const Point2& robot) {
   planner_->set_obstacles(obstacles_);
 }
 
-void RoadmapComponent::answer(const usher_msgs::msg::PlanRequest& request) {
-  const bool repeated =
-      request.id() != 0 && request.id() == last_reply_.id() && request.client() == last_client_;
-  if (!repeated) {
-    last_reply_ = plan(request);
-    last_client_ = request.client();
-    ++plans_;
-    if (last_reply_.state() == usher_msgs::msg::GoalStatus_Constants::STATE_FAILED) ++failures_;
-    view_.publish(last_reply_.path());
-  }
-  reply_.publish(last_reply_);
-}
-
-usher_msgs::msg::PlanReply RoadmapComponent::plan(const usher_msgs::msg::PlanRequest& request) {
-  using namespace usher_msgs::msg::GoalStatus_Constants;
-  usher_msgs::msg::PlanReply reply;
-  reply.id(request.id());
-  reply.state(STATE_FAILED);
-  reply.path(wire::to_message(host_.now(), frames::kMap, std::span<const geometry::Pose2>()));
-  const auto start = wire::to_planar(request.start().pose());
-  const auto goal = wire::to_planar(request.goal().pose());
-  if (!planner_->has_map()) {
-    reply.reason("no map");
-  } else if (!map_costs_.fresh() || !costs_) {
-    reply.reason("no global costs");
-  } else if (!start || !goal) {
-    reply.reason("start or goal is no pose: " + (start ? goal.error() : start.error()));
-  } else if (request.start().header().frame_id() != frames::kMap ||
-             request.goal().header().frame_id() != frames::kMap) {
-    reply.reason("start and goal must be in the frame map");
-  } else {
-    look_for_obstacles(start->position());
-    const Route& route = planner_->plan(start->position(), goal->position());
-    regenerations_ += static_cast<std::uint64_t>(route.regenerations);
-    reply.reason(route.reason);
-    if (route.found) {
-      reply.state(STATE_SUCCEEDED);
-      reply.path(wire::to_message(host_.now(), frames::kMap,
-                                  to_poses(route.way_points, resolution_, goal->yaw)));
-      reply.length(static_cast<float>(route.length));
-    }
-  }
-  return reply;
+Result<wire::PlannedPath> RoadmapComponent::plan(const geometry::Pose2& start,
+                                                 const geometry::Pose2& goal) {
+  if (!planner_->has_map()) return Error{"no map"};
+  if (!map_costs_.fresh() || !costs_) return Error{"no global costs"};
+  look_for_obstacles(start.position());
+  const Route& route = planner_->plan(start.position(), goal.position());
+  regenerations_ += static_cast<std::uint64_t>(route.regenerations);
+  if (!route.found) return Error{route.reason};
+  return wire::PlannedPath{to_poses(route.way_points, resolution_, goal.yaw), route.length};
 }
 
 }  // namespace usher::roadmap

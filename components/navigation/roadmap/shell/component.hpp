@@ -8,6 +8,7 @@
 #include "navigation/roadmap/core/new_obstacles.hpp"
 #include "navigation/roadmap/core/roadmap_planner.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/plan_server.hpp"
 
 namespace usher::roadmap {
 
@@ -22,8 +23,7 @@ class RoadmapComponent final : public runtime::Component {
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void take_costs(const usher_msgs::msg::Costmap& message);
   void take_outcome(const usher_msgs::msg::NavigateStatus& status);
-  void answer(const usher_msgs::msg::PlanRequest& request);
-  usher_msgs::msg::PlanReply plan(const usher_msgs::msg::PlanRequest& request);
+  Result<wire::PlannedPath> plan(const geometry::Pose2& start, const geometry::Pose2& goal);
   void look_for_obstacles(const Point2& robot);
 
   runtime::Host& host_;
@@ -35,19 +35,13 @@ class RoadmapComponent final : public runtime::Component {
   grid::DistanceField map_distances_;
   std::optional<grid::Grid<std::uint8_t>> costs_;
   std::vector<Point2> obstacles_;
-  usher_msgs::msg::PlanReply last_reply_;
-  std::string last_client_;  ///< who was given it
   std::uint64_t& rejected_;
-  std::uint64_t& plans_;
-  std::uint64_t& failures_;
   std::uint64_t& regenerations_;
 
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;
   runtime::Input<usher_msgs::msg::Costmap> map_costs_;
   runtime::Input<usher_msgs::msg::NavigateStatus> outcome_;
-  runtime::Input<usher_msgs::msg::PlanRequest> request_;
-  runtime::Output<usher_msgs::msg::PlanReply> reply_;
-  runtime::Output<nav_msgs::msg::Path> view_;
+  std::optional<wire::PlanServer> server_;
 };
 
 }  // namespace usher::roadmap

@@ -31,7 +31,7 @@ class Component : public testing::Test {
   usher_msgs::msg::PlanReply ask(const geometry::Pose2& start, const geometry::Pose2& goal) {
     usher_msgs::msg::PlanRequest request;
     request.id(++id);
-    request.client(client);
+    request.client("test");
     request.start().header(wire::header(host.now(), "map"));
     request.start().pose(wire::to_message(start));
     request.goal().header(wire::header(host.now(), "map"));
@@ -48,7 +48,6 @@ class Component : public testing::Test {
 
   runtime::TestHost host{runtime::component_factory<RoadmapComponent>("roadmap")};
   std::uint64_t id = 0;
-  std::string client = "test";
 };
 
 TEST_F(Component, AnswersWithAPathOnceItHasMapAndCosts) {
@@ -71,17 +70,6 @@ TEST_F(Component, FailsWhenTheCostsAreStale) {
   give_costs(two_rooms());
   host.run_for(std::chrono::seconds(4));
   EXPECT_EQ(ask({2, 2, 0}, {12, 9, 1}).reason(), "no global costs");
-}
-
-TEST_F(Component, TwoClientsWithOneIdGetTheirOwnPaths) {
-  give_map(two_rooms());
-  give_costs(two_rooms());
-  const auto first = ask({2, 2, 0}, {12, 9, 1});
-  --id;
-  client = "another";
-  const auto second = ask({2, 2, 0}, {3, 3, 0});
-  EXPECT_EQ(second.id(), first.id());
-  EXPECT_LT(second.length(), 3.0F);
 }
 
 TEST_F(Component, AClosedDoorIsAWayOnlyFromAfar) {

@@ -259,7 +259,7 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
     program(name, script);
     component(name, name);
   }
-  deployment_.movement = {{"base", Movement::kHolds}, {"planner", Movement::kAsks}};
+  deployment_.movement = {{"base", Movement::kBaseDriver}, {"planner", Movement::kCommands}};
   auto made = launcher();
   ASSERT_TRUE(wait_for(made, [&] {
     return std::filesystem::exists(folder_.path() + "/ready_base") &&
@@ -280,7 +280,7 @@ TEST_F(Launching, StopsTheRobotFirstAndTheBaseLast) {
 
 TEST_F(Launching, DoesNotWaitForEverForARobotThatDoesNotStand) {
   component("legs", "sleeper");
-  deployment_.movement = {{"legs", Movement::kHolds}};
+  deployment_.movement = {{"legs", Movement::kBaseDriver}};
   auto made = launcher();
   ASSERT_TRUE(wait_for(made, [&] { return made.find("legs")->pid > 0; }));
   const auto start = std::chrono::steady_clock::now();
@@ -345,6 +345,28 @@ TEST_F(Launching, KeepsItsFilesWhereNobodyElseCanPutAny) {
   const std::string found = default_run_directory(7, "nuc");
   EXPECT_THAT(found, testing::AnyOf("/run/user/" + user + "/usher/domain-7-nuc",
                                     "/tmp/usher-" + user + "/domain-7-nuc"));
+}
+
+TEST_F(Launching, NamesTheDomainsWhereALauncherLives) {
+  component("legs", "sleeper");
+  const std::string runtime = folder_.path() + "/runtime";
+  std::filesystem::create_directory(runtime);
+  ::setenv("XDG_RUNTIME_DIR", runtime.c_str(), 1);
+  const std::uint32_t domain = deployment_.manifest.domain;
+  {
+    const auto lives = launcher();
+    EXPECT_THAT(launched_domains(), testing::Contains(domain));
+    folder_.file("runtime/usher/domain-99-nuc.lock", "999999999\n");  // more than any process has
+    folder_.file("runtime/usher/domain-99-operator.yaml", "");
+    folder_.file("runtime/usher/domain-x-nuc.lock", "1\n");
+    folder_.file("runtime/usher/domain-98.lock", std::to_string(::getpid()) + "\n");
+    folder_.file("runtime/usher/domain-98-operator.yaml", "");
+    EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(99U))) << "it was killed";
+    EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(98U)))
+        << "that is no lock of ours";
+  }
+  EXPECT_THAT(launched_domains(), testing::Not(testing::Contains(domain))) << "it has ended";
+  ::unsetenv("XDG_RUNTIME_DIR");
 }
 
 TEST_F(Launching, StopsWhatIsHalted) {
@@ -463,7 +485,7 @@ TEST_F(Launching, KillsWhatDoesNotComeAlive) {
     const auto now = std::chrono::steady_clock::now();
     launcher.heard("arms", now);
     launcher.heard("map", now);
-    launcher.vouched("screen", now);
+    launcher.heard_by_supervisor("screen", now);
     return launcher.find("legs")->starts == 2;
   }));
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));

@@ -33,7 +33,7 @@ bool Guide::choose_following(const std::string& option, Time now) {
   trail_ = {};
   going_to_.reset();
   unseen_since_.reset();
-  held_since_.reset();
+  not_allowed_since_.reset();
   stands_told_.reset();
   unheard_since_.reset();
   departed_ = asked_again_ = moved_at_ = drove_at_ = now;
@@ -55,9 +55,7 @@ void Guide::start_navigation() {
 /// The goal of this guide that the navigator pursues, if it does.
 std::optional<std::uint64_t> Guide::own_goal() const {
   const auto& navigation = surroundings_.navigation;
-  const bool runs = navigation && (navigation->state == GoalState::kActive ||
-                                   navigation->state == GoalState::kWaiting);
-  const bool ours = runs && first_goal_ != 0 && navigation->goal_id >= first_goal_ &&
+  const bool ours = navigator_drives() && first_goal_ != 0 && navigation->goal_id >= first_goal_ &&
                     navigation->goal_id < next_id_;
   return ours ? std::optional(navigation->goal_id) : std::nullopt;
 }
@@ -72,38 +70,20 @@ void Guide::watch_following(Time now) {
     return;
   }
   if (!navigation || navigation->goal_id != goal_id_) {
-    const bool taken = navigation && (navigation->state == GoalState::kActive ||
-                                      navigation->state == GoalState::kWaiting);
-    const bool ours = own_goal().has_value();
-    if (taken && !ours && acknowledged_) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    if (!unheard_since_) unheard_since_ = now;  // not anew with each goal
-    if (now - *unheard_since_ >= parameters_.acknowledge)
-      fail(Text::kPartSilent, Cause::kFailure, now);
+    const bool other = navigator_drives() && !own_goal();
+    if (other && acknowledged_) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    return await_navigator(now);  // not anew with each goal
+  }
+  const auto reached = goal_reached(now);
+  if (!reached) return;
+  goal_id_ = 0;
+  actions_.remember = true;
+  if (*reached) {
+    goals_failed_ = 0;
     return;
   }
-  acknowledged_ = true;
-  unheard_since_.reset();
-  switch (navigation->state) {
-    case GoalState::kSucceeded:
-      goals_failed_ = 0;
-      goal_id_ = 0;
-      actions_.remember = true;
-      break;
-    case GoalState::kFailed:
-      goal_id_ = 0;
-      actions_.remember = true;
-      going_to_.reset();
-      if (++goals_failed_ >= kMostGoalsFailed) fail(Text::kNoWay, Cause::kFailure, now);
-      break;
-    case GoalState::kCancelled:  // not by this guide, which forgets what it cancels
-    case GoalState::kReplaced:
-      fail(Text::kOtherGoal, Cause::kFailure, now);
-      break;
-    case GoalState::kIdle:
-    case GoalState::kActive:
-    case GoalState::kWaiting:
-      break;
-  }
+  going_to_.reset();
+  if (++goals_failed_ >= kMostGoalsFailed) fail(Text::kNoWay, Cause::kFailure, now);
 }
 
 void Guide::follow_visitor(Time now) {

@@ -58,6 +58,7 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
   assert(parameters.options_on_screen >= 4);
   state_ = resumed(state_of(memory.state));
   stopped_ = memory.stopped;
+  stays_ = memory.stays;
   if (state_ != State::kInitialise) {
     language_ = phrases_.find(memory.language);
     visit_ = memory.visit;
@@ -65,7 +66,7 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
     place_.name = memory.place;
     if (journey()) {
       goal_id_ = memory.goal_id;
-      goal_at_ = departed_ = now;
+      departed_ = now;
       acknowledged_ = goal_id_ != 0;
       follow_.depart(now);
       sentence_ = say(Text::kOneMoment);
@@ -150,6 +151,7 @@ Memory Guide::memory() const {
                 place_.name,
                 goal_id_,
                 stopped_,
+                stays_,
                 visit_,
                 funnel_,
                 recent_};
@@ -200,6 +202,10 @@ void Guide::begin_visit(bool greeted, Time now) {
 }
 
 void Guide::end_visit(Cause cause, Time now) {
+  // Who stopped it and says nothing any more may lie before it. The next visitor finds a robot that
+  // can go; by itself it does not turn.
+  const bool answered = cause == Cause::kNo || cause == Cause::kYes;
+  stays_ = !answered && (stopped_ || surroundings_.permission == Permission::kStopped);
   lift_stop();
   visit_.duration = now - visit_since_;
   visit_.outcome = visit_.arrived > 0    ? Outcome::kArrived
@@ -370,7 +376,7 @@ bool Guide::choose_place(const std::string& option, Time now) {
     return true;
   }
   visit_.place = place_.name;
-  held_since_.reset();
+  not_allowed_since_.reset();
   goal_id_ = 0;
   actions_.requests.push_back({RequestKind::kNavigationStart, place_.name});
   enter(State::kGuideStart, Cause::kChoice, now);
@@ -541,6 +547,7 @@ void Guide::pass_time(Time now) {
   switch (state_) {
     case State::kInitialise:
       if (ready()) {
+        stays_ = stays_ || stopped_;
         lift_stop();  // of a visit that a restart has ended
         language_ = 0;
         enter(State::kInactive, Cause::kReady, now);

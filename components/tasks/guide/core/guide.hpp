@@ -64,10 +64,10 @@ struct Navigation {
   std::uint32_t replans = 0;
 };
 
-/// What holds a robot that wants to drive.
-enum class Hold : std::uint8_t {
-  kNone,
-  kStopped,  ///< somebody else's stop
+/// Whether the robot may drive where it wants to.
+enum class Permission : std::uint8_t {
+  kGiven,
+  kStopped,  ///< not while somebody else's stop lasts
   kRefused,  ///< the supervisor gives nobody the right to drive
 };
 
@@ -91,7 +91,7 @@ struct VisitorSighting {
 /// What is known of the rest of the robot.
 struct Surroundings {
   Supervisor supervisor = Supervisor::kUnknown;
-  Hold hold = Hold::kNone;
+  Permission permission = Permission::kGiven;
   std::optional<Navigation> navigation;    ///< nothing: the navigator is silent
   std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
   std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
@@ -149,7 +149,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   const Surroundings& surroundings() const { return surroundings_; }
   /// Nobody is served, and somebody looks but sees nobody: the robot may turn slowly to look for
   /// people. Where nobody looks, a turn would find nobody.
-  /// Not before the tone has sounded.
+  /// Not before the tone has sounded, and not after a stop that nobody has answered: then the robot
+  /// stays as it stands until somebody begins a visit, who is greeted, or touches the screen.
   bool seeks() const { return turns_now_ && may_seek(); }
   /// A visit goes on.
   bool serves() const { return visit_.id != 0 && visit_.outcome == Outcome::kOpen; }
@@ -181,12 +182,21 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
 
   // Screens.
   Screen build(Time now) const;
+  void build_state(Screen& screen) const;
+  void build_offer(Screen& screen) const;
+  void build_start(Screen& screen) const;
+  void build_following(Screen& screen) const;
+  void build_failure(Screen& screen) const;
+  void build_goodbye(Screen& screen) const;
   void build_places(Screen& screen) const;
   void build_journey(Screen& screen) const;
   void build_map(Screen& screen) const;
   void build_languages(Screen& screen) const;
   void build_statement(Screen& screen) const;
   const std::string& tag() const { return phrases_.languages()[language_].tag; }
+  void add_services(Screen& screen, Time now) const;
+  void add_yes_and_no(Screen& screen) const;
+  void add_secondary(Screen& screen, const char* id, Text label) const;
   bool stands() const;
   std::string status() const;
   void add(Screen& screen, const char* id, Text label, OptionKind kind, Panel panel) const;
@@ -223,7 +233,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::string goal_name() const { return follows() ? "visitor" : place_.name; }
   bool question() const;
   bool may_seek() const {
-    return state_ == State::kInactive && human() == Human::kNo && surroundings_.hold == Hold::kNone;
+    return state_ == State::kInactive && human() == Human::kNo &&
+           surroundings_.permission == Permission::kGiven && !stays_;
   }
   Time patience() const {
     return state_ == State::kGuidePaused ? parameters_.pause : parameters_.answer;
@@ -236,7 +247,11 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void watch_robot(Time now);
   std::optional<Text> stands_for(Time now) const;
   void tell_why_it_stands(Time now);
+  bool navigator_drives() const;
+  void await_navigator(Time now);
+  std::optional<bool> goal_reached(Time now);
   void watch_navigation(Time now);
+  void arrive(Time now);
   void watch_follower(Time now);
   void follow_visitor(Time now);
   void watch_following(Time now);
@@ -292,16 +307,16 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   // This journey.
   Location place_;
   std::uint64_t goal_id_ = 0;  ///< 0: none was given
-  Time goal_at_{};             ///< when it was given, or last given again
   Time departed_{};
   bool acknowledged_ = false;  ///< the navigator named it
   int given_again_ = 0;
   std::optional<Time> move_at_;        ///< after the tone
   bool stopped_ = false;               ///< this guide has asked the supervisor to stop
+  bool stays_ = false;                 ///< a visit ended, unanswered, while somebody's stop held it
   std::optional<Time> unheard_since_;  ///< the navigator's silence
-  std::optional<Time> held_since_;     ///< the supervisor lets nothing move, or somebody's stop
-  std::optional<Time> waits_since_;    ///< the navigator, for something else than the way
-  std::optional<Text> stands_told_;    ///< why it stands, as the visitor was told last
+  std::optional<Time> not_allowed_since_;  ///< the supervisor lets nothing move, or somebody's stop
+  std::optional<Time> waits_since_;        ///< the navigator, for something else than the way
+  std::optional<Text> stands_told_;        ///< why it stands, as the visitor was told last
   Time asked_again_{};
   std::optional<Time> blocked_since_;
   Time pleaded_{};

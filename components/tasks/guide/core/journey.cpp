@@ -54,7 +54,6 @@ void Guide::move_when_due(Time now) {
   lift_stop();
   if (goal_id_ == 0) {
     goal_id_ = next_id_++;
-    goal_at_ = now;
     actions_.goal = Goal{goal_id_, place_.name};
   }
   actions_.remember = true;
@@ -106,17 +105,17 @@ void Guide::watch_robot(Time now) {
   }
   // On the way, a supervisor that does not navigate holds the robot just as one that is missing.
   // A visitor who stopped it himself has his own time.
-  const bool refused =
-      surroundings_.hold != Hold::kNone && (state_ == State::kGuideActive || follows());
+  const bool refused = surroundings_.permission != Permission::kGiven &&
+                       (state_ == State::kGuideActive || follows());
   const bool held = refused || (supervisor != Supervisor::kNavigation &&
                                 (supervisor != Supervisor::kAvailable || on_the_way()));
   if (!held) {
-    held_since_.reset();
+    not_allowed_since_.reset();
     return;
   }
-  if (!held_since_) held_since_ = now;
-  const Time lasted = now - *held_since_;
-  const bool stopped = surroundings_.hold == Hold::kStopped;
+  if (!not_allowed_since_) not_allowed_since_ = now;
+  const Time lasted = now - *not_allowed_since_;
+  const bool stopped = surroundings_.permission == Permission::kStopped;
   if (lasted >= (stopped ? parameters_.pause : parameters_.recovery)) {
     return fail(stopped ? Text::kStoppedMe : Text::kPartSilent, Cause::kFailure, now);
   }
@@ -130,8 +129,8 @@ void Guide::watch_robot(Time now) {
 
 /// Why a robot stands that wants to drive; nothing: it drives, or waits for the visitor or the way.
 std::optional<Text> Guide::stands_for(Time now) const {
-  if (held_since_ && now - *held_since_ >= parameters_.refresh) {
-    return surroundings_.hold == Hold::kStopped ? Text::kStoppedMe : Text::kOneMoment;
+  if (not_allowed_since_ && now - *not_allowed_since_ >= parameters_.refresh) {
+    return surroundings_.permission == Permission::kStopped ? Text::kStoppedMe : Text::kOneMoment;
   }
   const bool lost = waits_since_ && now - *waits_since_ >= parameters_.refresh;
   const bool waits = stopped_ && !stands_told_;  // for the visitor
@@ -159,50 +158,33 @@ void Guide::tell_why_it_stands(Time now) {
   if (stopped_) move_at_ = now + parameters_.tone;
 }
 
-void Guide::watch_navigation(Time now) {
+/// The navigator pursues a goal, whoever gave it. One that it refused is in its status for a moment
+/// only.
+bool Guide::navigator_drives() const {
   const auto& navigation = surroundings_.navigation;
-  const bool ours = navigation && navigation->goal_id == goal_id_;
-  if (!ours) {
-    const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
-    if (forgot) {
-      if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
-      acknowledged_ = false;
-      unheard_since_.reset();
-      goal_at_ = now;
-      actions_.goal = Goal{goal_id_, place_.name};
-      return;
-    }
-    // One that was refused leaves ours alone; it is in the status for a moment only.
-    const bool taken = navigation && (navigation->state == GoalState::kActive ||
-                                      navigation->state == GoalState::kWaiting);
-    if (acknowledged_ && taken) return fail(Text::kOtherGoal, Cause::kFailure, now);
-    if (!unheard_since_) unheard_since_ = acknowledged_ ? now : goal_at_;
-    if (now - *unheard_since_ >= parameters_.acknowledge) {
-      fail(Text::kPartSilent, Cause::kFailure, now);
-    }
-    return;
-  }
+  return navigation &&
+         (navigation->state == GoalState::kActive || navigation->state == GoalState::kWaiting);
+}
+
+/// The navigator does not speak of our goal.
+void Guide::await_navigator(Time now) {
+  if (!unheard_since_) unheard_since_ = now;
+  if (now - *unheard_since_ >= parameters_.acknowledge)
+    fail(Text::kPartSilent, Cause::kFailure, now);
+}
+
+/// What became of our newest goal, of which the navigator speaks: whether it was reached; nothing
+/// while it runs. Who cancelled or replaced it has ended the journey: it was not this guide, which
+/// forgets what it cancels.
+std::optional<bool> Guide::goal_reached(Time now) {
   acknowledged_ = true;
   unheard_since_.reset();
-  switch (navigation->state) {
+  switch (surroundings_.navigation->state) {
     case GoalState::kSucceeded:
-      goal_id_ = 0;
-      leave_journey();
-      visit_.travel_time += now - departed_;
-      if (visit_.arrived++ == 0) ++funnel_.arrived;
-      if (first_eta_ > 0.0) {
-        const double took = std::chrono::duration<double>(now - first_eta_at_).count();
-        visit_.eta_error = took / first_eta_ - 1.0;
-      }
-      std::erase(recent_, place_.name);
-      recent_.insert(recent_.begin(), place_.name);
-      if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
-      enter(State::kGuideSuccess, Cause::kArrived, now);
-      break;
+      return true;
     case GoalState::kFailed:
-      fail(Text::kNoWay, Cause::kFailure, now);
-      break;
-    case GoalState::kCancelled:  // not by this guide, which forgets what it cancels
+      return false;
+    case GoalState::kCancelled:
     case GoalState::kReplaced:
       fail(Text::kOtherGoal, Cause::kFailure, now);
       break;
@@ -211,6 +193,41 @@ void Guide::watch_navigation(Time now) {
     case GoalState::kWaiting:
       break;
   }
+  return std::nullopt;
+}
+
+void Guide::watch_navigation(Time now) {
+  const auto& navigation = surroundings_.navigation;
+  if (navigation && navigation->goal_id == goal_id_) {
+    const auto reached = goal_reached(now);
+    if (reached && *reached) arrive(now);
+    if (reached && !*reached) fail(Text::kNoWay, Cause::kFailure, now);
+    return;
+  }
+  const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
+  if (!forgot) {
+    if (acknowledged_ && navigator_drives()) return fail(Text::kOtherGoal, Cause::kFailure, now);
+    return await_navigator(now);
+  }
+  if (given_again_++ >= kMostGivenAgain) return fail(Text::kPartSilent, Cause::kFailure, now);
+  acknowledged_ = false;
+  unheard_since_.reset();
+  actions_.goal = Goal{goal_id_, place_.name};
+}
+
+void Guide::arrive(Time now) {
+  goal_id_ = 0;
+  leave_journey();
+  visit_.travel_time += now - departed_;
+  if (visit_.arrived++ == 0) ++funnel_.arrived;
+  if (first_eta_ > 0.0) {
+    const double took = std::chrono::duration<double>(now - first_eta_at_).count();
+    visit_.eta_error = took / first_eta_ - 1.0;
+  }
+  std::erase(recent_, place_.name);
+  recent_.insert(recent_.begin(), place_.name);
+  if (recent_.size() > kMostRemembered) recent_.resize(kMostRemembered);
+  enter(State::kGuideSuccess, Cause::kArrived, now);
 }
 
 void Guide::watch_follower(Time now) {

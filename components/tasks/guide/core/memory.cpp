@@ -34,6 +34,7 @@ std::string to_text(const Memory& memory) {
   line("place", memory.place);
   number("goal", memory.goal_id);
   number("stopped", memory.stopped ? 1 : 0);
+  number("stays", memory.stays ? 1 : 0);
   const Visit& visit = memory.visit;
   line("visit_place", visit.place);
   number("visit", visit.id);
@@ -59,9 +60,10 @@ std::string to_text(const Memory& memory) {
 
 Result<Memory> memory_from_text(std::string_view text) {
   Memory m;
-  std::uint64_t stopped = 0, greeted = 0;
+  std::uint64_t stopped = 0, stays = 0, greeted = 0;
   std::map<std::string_view, std::uint64_t*> numbers{{"goal", &m.goal_id},
                                                      {"stopped", &stopped},
+                                                     {"stays", &stays},
                                                      {"visit", &m.visit.id},
                                                      {"visit_greeted", &greeted},
                                                      {"greeted", &m.funnel.greeted},
@@ -116,6 +118,7 @@ Result<Memory> memory_from_text(std::string_view text) {
   }
   if (number == 0) return Error{"line 1: expected \"" + std::string(kHead) + "\", got nothing"};
   m.stopped = stopped != 0;
+  m.stays = stays != 0;
   m.visit.greeted = greeted != 0;
   return m;
 }

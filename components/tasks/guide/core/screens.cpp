@@ -68,7 +68,7 @@ bool Guide::stands() const {
   const auto& navigation = surroundings_.navigation;
   const bool waits = navigation && goal_id_ != 0 && navigation->goal_id == goal_id_ &&
                      navigation->state == GoalState::kWaiting;
-  return stopped_ || move_at_ || held_since_ || waits;
+  return stopped_ || move_at_ || not_allowed_since_ || waits;
 }
 
 std::string Guide::status() const {
@@ -186,6 +186,7 @@ void Guide::build_statement(Screen& screen) const {
 
 void Guide::build_journey(Screen& screen) const {
   screen.content = Content::kJourney;
+  screen.place = place_.name;
   screen.progress = screen_.progress;
   screen.eta = screen_.eta;
   screen.remaining = screen_.remaining;
@@ -204,23 +205,52 @@ void Guide::build_journey(Screen& screen) const {
   add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
 }
 
-Screen Guide::build(Time now) const {
-  Screen screen;
-  screen.id = screen_.id;
-  screen.spoken = screen_.spoken;
-  screen.spoken_id = screen_.spoken_id;
-  screen.tone = screen_.tone;
-  screen.state = text(state_);
-  screen.language = phrases_.languages()[language_].tag;
-  screen.status = status();
-  screen.listens = question();
-  const auto yes_or_no = [&] {
-    add(screen, button::kYes, Text::kYes, OptionKind::kYes, Panel::kPrimary);
-    add(screen, button::kNo, Text::kNo, OptionKind::kNo, Panel::kPrimary);
-  };
-  const auto secondary = [&](const char* id, Text label) {
-    add(screen, id, label, OptionKind::kOption, Panel::kSecondary);
-  };
+void Guide::add_yes_and_no(Screen& screen) const {
+  add(screen, button::kYes, Text::kYes, OptionKind::kYes, Panel::kPrimary);
+  add(screen, button::kNo, Text::kNo, OptionKind::kNo, Panel::kPrimary);
+}
+
+void Guide::add_secondary(Screen& screen, const char* id, Text label) const {
+  add(screen, id, label, OptionKind::kOption, Panel::kSecondary);
+}
+
+void Guide::build_offer(Screen& screen) const {
+  screen.title = say(Text::kGuideAsk);
+  add_yes_and_no(screen);
+  add_secondary(screen, button::kWhereIs, Text::kWhereIs);
+  if (offers_following_)
+    add(screen, button::kFollowMe, Text::kFollowMe, OptionKind::kOption, Panel::kPrimary);
+}
+
+void Guide::build_start(Screen& screen) const {
+  screen.place = place_.name;
+  screen.title = say_place(Text::kWillTake);
+  screen.text = say(Text::kTellWhenReady);
+  add(screen, button::kStart, Text::kStart, OptionKind::kYes, Panel::kPrimary);
+  add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
+}
+
+void Guide::build_following(Screen& screen) const {
+  screen.title = say(Text::kFollowing);
+  screen.text = sentence_;
+  add(screen, button::kDone, Text::kDone, OptionKind::kYes, Panel::kPrimary);
+  add(screen, button::kStop, Text::kStop, OptionKind::kNo, Panel::kPrimary);
+}
+
+void Guide::build_failure(Screen& screen) const {
+  screen.place = place_.name;
+  screen.title = say(failed_to_follow() ? Text::kNotFollowed : Text::kSorry);
+  screen.text = say(failure_) + " " + say(Text::kTryAgain);
+  add_yes_and_no(screen);
+}
+
+void Guide::build_goodbye(Screen& screen) const {
+  screen.title = say(lost_visitor_ ? Text::kLostYou : Text::kSeeYou);
+  if (visit_.ratings.size() == kStatements) screen.text = say(Text::kThanksForAnswers);
+  add_secondary(screen, button::kAgain, Text::kAgain);
+}
+
+void Guide::build_state(Screen& screen) const {
   switch (state_) {
     case State::kInitialise:
       screen.title = say(Text::kHello);
@@ -234,47 +264,25 @@ Screen Guide::build(Time now) const {
       break;
     case State::kLocationAsk:
       screen.title = say(Text::kLocationAsk);
-      yes_or_no();
-      secondary(button::kGuideMe, Text::kGuideMe);
+      add_yes_and_no(screen);
+      add_secondary(screen, button::kGuideMe, Text::kGuideMe);
       break;
     case State::kLocationShow:
-      build_map(screen);
-      break;
+      return build_map(screen);
     case State::kLocationOptions:
     case State::kGuideOptions:
-      build_places(screen);
-      break;
+      return build_places(screen);
     case State::kGuideAsk:
-      screen.title = say(Text::kGuideAsk);
-      yes_or_no();
-      secondary(button::kWhereIs, Text::kWhereIs);
-      if (offers_following_)
-        add(screen, button::kFollowMe, Text::kFollowMe, OptionKind::kOption, Panel::kPrimary);
-      break;
+      return build_offer(screen);
     case State::kFollowMe:
-      screen.title = say(Text::kFollowing);
-      screen.text = sentence_;
-      add(screen, button::kDone, Text::kDone, OptionKind::kYes, Panel::kPrimary);
-      add(screen, button::kStop, Text::kStop, OptionKind::kNo, Panel::kPrimary);
-      break;
+      return build_following(screen);
     case State::kGuideStart:
-      screen.place = place_.name;
-      screen.title = say_place(Text::kWillTake);
-      screen.text = say(Text::kTellWhenReady);
-      add(screen, button::kStart, Text::kStart, OptionKind::kYes, Panel::kPrimary);
-      add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);
-      break;
+      return build_start(screen);
     case State::kGuideActive:
     case State::kGuidePaused:
-      screen.place = place_.name;
-      build_journey(screen);
-      break;
+      return build_journey(screen);
     case State::kGuideError:
-      screen.place = place_.name;
-      screen.title = say(failed_to_follow() ? Text::kNotFollowed : Text::kSorry);
-      screen.text = say(failure_) + " " + say(Text::kTryAgain);
-      yes_or_no();
-      break;
+      return build_failure(screen);
     case State::kGuideSuccess:
       screen.place = place_.name;
       screen.title = say(Text::kArrived);
@@ -283,31 +291,41 @@ Screen Guide::build(Time now) const {
       break;
     case State::kEndAsk:
       screen.title = say(Text::kAnythingElse);
-      yes_or_no();
+      add_yes_and_no(screen);
       break;
     case State::kFeedback:
-      build_statement(screen);
-      break;
+      return build_statement(screen);
     case State::kEnd:
-      screen.title = say(lost_visitor_ ? Text::kLostYou : Text::kSeeYou);
-      if (visit_.ratings.size() == kStatements) screen.text = say(Text::kThanksForAnswers);
-      secondary(button::kAgain, Text::kAgain);
-      break;
+      return build_goodbye(screen);
   }
-  if (state_ == State::kLocationAsk || state_ == State::kGuideAsk) {
-    if (phrases_.languages().size() > 1) {
-      add(screen, button::kLanguages, Text::kLanguages, OptionKind::kOption, Panel::kService);
-    }
-  }
-  if (question() || state_ == State::kGuideActive || follows()) {
+}
+
+/// What several states offer beside their own: languages, the sentence again, more time.
+void Guide::add_services(Screen& screen, Time now) const {
+  const bool first = state_ == State::kLocationAsk || state_ == State::kGuideAsk;
+  if (first && phrases_.languages().size() > 1)
+    add(screen, button::kLanguages, Text::kLanguages, OptionKind::kOption, Panel::kService);
+  if (question() || state_ == State::kGuideActive || follows())
     add(screen, button::kRepeat, Text::kRepeat, OptionKind::kOption, Panel::kService);
-  }
-  if (question() && warned_) {
-    const double left = std::chrono::duration<double>(patience() - (now - since_)).count();
-    screen.time_left = std::max(0.0, std::ceil(left));
-    screen.text = say(Text::kStillThere);
-    add(screen, button::kStay, Text::kStay, OptionKind::kYes, Panel::kService);
-  }
+  if (!question() || !warned_) return;
+  const double left = std::chrono::duration<double>(patience() - (now - since_)).count();
+  screen.time_left = std::max(0.0, std::ceil(left));
+  screen.text = say(Text::kStillThere);
+  add(screen, button::kStay, Text::kStay, OptionKind::kYes, Panel::kService);
+}
+
+Screen Guide::build(Time now) const {
+  Screen screen;
+  screen.id = screen_.id;
+  screen.spoken = screen_.spoken;
+  screen.spoken_id = screen_.spoken_id;
+  screen.tone = screen_.tone;
+  screen.state = text(state_);
+  screen.language = phrases_.languages()[language_].tag;
+  screen.status = status();
+  screen.listens = question();
+  build_state(screen);
+  add_services(screen, now);
   return screen;
 }
 

@@ -53,6 +53,7 @@ struct Memory {
   std::string place;     ///< name
   std::uint64_t goal_id = 0;
   bool stopped = false;  ///< this guide has asked the robot to stop
+  bool stays = false;    ///< it looks for nobody until the next visit
   Visit visit;
   Funnel funnel;
   std::vector<std::string> recent;  ///< places that were reached, newest first

@@ -173,7 +173,9 @@ Surroundings GuideComponent::surroundings() const {
     s.supervisor = service::supervisor_from(status->state());
     const bool stopped = std::ranges::any_of(
         status->stopped_by(), [&](const auto& client) { return client != host_.name(); });
-    s.hold = stopped ? Hold::kStopped : status->granted() ? Hold::kNone : Hold::kRefused;
+    s.permission = stopped             ? Permission::kStopped
+                   : status->granted() ? Permission::kGiven
+                                       : Permission::kRefused;
   }
   if (const auto* status = navigation_.fresh()) {
     const auto* follow = follow_.fresh();

@@ -365,9 +365,9 @@ TEST(Guide, SeeksOnlyWhereSomebodyLooksAndSeesNobody) {
   rig.wait(100);
   EXPECT_TRUE(rig.guide.seeks());
   EXPECT_TRUE(rig.said.empty()) << rig.said.back();
-  rig.around.hold = Hold::kStopped, rig.wait(2000);
+  rig.around.permission = Permission::kStopped, rig.wait(2000);
   EXPECT_FALSE(rig.guide.seeks());
-  rig.around.hold = Hold::kNone, rig.wait(900);
+  rig.around.permission = Permission::kGiven, rig.wait(900);
   EXPECT_FALSE(rig.guide.seeks()) << "likewise after somebody's stop";
   rig.wait(200);
   EXPECT_TRUE(rig.guide.seeks());
@@ -525,7 +525,7 @@ TEST(Guide, SaysThatSomebodyElseHasStoppedItAndGivesUpInTheEnd) {
   rig.around.navigation->remaining = 20.0, rig.around.navigation->eta = 20.0;
   rig.wait(5000);
   EXPECT_EQ(rig.guide.screen().status, "Driving");
-  rig.around.hold = Hold::kStopped;
+  rig.around.permission = Permission::kStopped;
   rig.navigate(GoalState::kWaiting);
   EXPECT_EQ(rig.guide.screen().status, "Standing");
   rig.wait(6000);
@@ -533,7 +533,7 @@ TEST(Guide, SaysThatSomebodyElseHasStoppedItAndGivesUpInTheEnd) {
   EXPECT_EQ(rig.said.back(), "Somebody has stopped me.");
   rig.wait(80000);
   EXPECT_EQ(rig.state(), "guide_active") << "as long as a stop of the visitor";
-  rig.around.hold = Hold::kNone;
+  rig.around.permission = Permission::kGiven;
   rig.navigate(GoalState::kActive);
   EXPECT_EQ(rig.said.back(), "Here we go.");
   EXPECT_EQ(rig.guide.screen().tone, Tone::kMoving);
@@ -542,7 +542,7 @@ TEST(Guide, SaysThatSomebodyElseHasStoppedItAndGivesUpInTheEnd) {
   rig.wait(1000);
   EXPECT_EQ(rig.taken(), "on");
   EXPECT_EQ(rig.guide.screen().status, "Driving");
-  rig.around.hold = Hold::kStopped;
+  rig.around.permission = Permission::kStopped;
   rig.wait(120100);
   EXPECT_EQ(rig.state(), "guide_error");
   EXPECT_TRUE(rig.guide.screen().text.starts_with("Somebody has stopped me."));
@@ -553,7 +553,7 @@ TEST(Guide, AStopOfTheVisitorIsNotCutShortByAnotherOne) {
   Rig rig;
   rig.to_active();
   rig.press("stop");
-  rig.around.hold = Hold::kStopped;
+  rig.around.permission = Permission::kStopped;
   rig.wait(100000), rig.press("stay"), rig.wait(100000);
   EXPECT_EQ(rig.state(), "guide_paused");
 }
@@ -561,11 +561,11 @@ TEST(Guide, AStopOfTheVisitorIsNotCutShortByAnotherOne) {
 TEST(Guide, SaysWhyItMayNotMove) {
   Rig rig;
   rig.to_active();
-  rig.around.hold = Hold::kRefused;
+  rig.around.permission = Permission::kRefused;
   rig.wait(1100);
   EXPECT_EQ(rig.guide.screen().text, "One moment, please. I have to wait for a part of me.");
   EXPECT_EQ(rig.guide.screen().status, "Standing");
-  rig.around.hold = Hold::kNone;
+  rig.around.permission = Permission::kGiven;
   rig.around.pose.reset();
   rig.navigate(GoalState::kWaiting);
   EXPECT_EQ(rig.guide.screen().status, "Standing");
@@ -576,10 +576,10 @@ TEST(Guide, SaysWhyItMayNotMove) {
   EXPECT_EQ(rig.guide.screen().text, "Here we go.");
   Rig leads;
   leads.to_following();
-  leads.around.hold = Hold::kStopped;
+  leads.around.permission = Permission::kStopped;
   leads.wait(1100);
   EXPECT_EQ(leads.guide.screen().text, "Somebody has stopped me.");
-  leads.around.hold = Hold::kNone;
+  leads.around.permission = Permission::kGiven;
   leads.wait(100);
   EXPECT_EQ(leads.guide.screen().text, "Walk ahead. Choose Done when we are there.");
 }
@@ -858,6 +858,61 @@ TEST(Guide, AStopOnArrivalHoldsUntilHeGoesOnOrLeaves) {
   EXPECT_EQ(leads.taken(), "start:visitor go on");
 }
 
+TEST(Guide, AStopThatNobodyAnswersLeavesTheRobotAsItStands) {
+  Rig rig;
+  rig.see(-1.5), rig.to_active(), rig.press("stop");
+  rig.see_nobody(), rig.wait(120000);
+  ASSERT_EQ(rig.state(), "end");
+  EXPECT_EQ(rig.taken(), "stop end on cancel") << "the next visitor finds a robot that can go";
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  EXPECT_FALSE(rig.guide.seeks()) << "who stopped it may lie before it";
+  Rig after(quick(), rig.guide.memory(), 1000000);
+  after.see_nobody(), after.wait(60000);
+  ASSERT_EQ(after.state(), "inactive");
+  EXPECT_FALSE(after.guide.seeks()) << "over a restart, too";
+  rig.see(1.5), rig.wait(1200);
+  ASSERT_EQ(rig.state(), "introduction");
+  rig.see_nobody(), rig.wait(60000);
+  ASSERT_EQ(rig.state(), "inactive");
+  EXPECT_TRUE(rig.guide.seeks()) << "another one was greeted by a robot that stood";
+
+  Rig tablet;
+  tablet.to_location_ask();
+  tablet.around.permission = Permission::kStopped;
+  tablet.see_nobody(), tablet.wait(16000);
+  ASSERT_EQ(tablet.state(), "end");
+  tablet.around.permission =
+      Permission::kGiven;  // the end of the visit lifts the tablet's own stop
+  tablet.wait(60000);
+  ASSERT_EQ(tablet.state(), "inactive");
+  EXPECT_FALSE(tablet.guide.seeks());
+  tablet.to_location_ask(), tablet.press("no"), tablet.press("no"), tablet.press("no");
+  tablet.wait(60000);
+  ASSERT_EQ(tablet.state(), "inactive");
+  EXPECT_TRUE(tablet.guide.seeks()) << "somebody has touched it since";
+
+  Rig bye;
+  bye.to_active(), bye.press("stop"), bye.press("cancel"), bye.press("no");
+  bye.around.supervisor = Supervisor::kAvailable;
+  bye.see_nobody(), bye.wait(60000);
+  EXPECT_TRUE(bye.guide.seeks()) << "he said goodbye";
+
+  Rig restarted(
+      quick(),
+      [] {
+        Rig before;
+        before.to_active(), before.press("stop"), before.press("cancel");
+        before.press("yes"), before.press("languages");
+        return before.guide.memory();
+      }(),
+      1000000);
+  restarted.see_nobody(), restarted.wait(60000);
+  ASSERT_EQ(restarted.state(), "inactive");
+  EXPECT_FALSE(restarted.guide.seeks()) << "its restart has ended the visit, and no answer";
+}
+
 TEST(Guide, GoesBehindAVisitorWhoWalksAhead) {
   Rig rig;
   rig.around.pose = geometry::Pose2{4.0, 1.0, 0.0};
@@ -918,11 +973,11 @@ TEST(Guide, StandsInAFollowingUntilTheToneAfterSomebodysStop) {
   rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
   rig.to_following();
   rig.see(3.0), rig.wait(1100), rig.navigate(GoalState::kActive), rig.taken();
-  rig.around.hold = Hold::kStopped, rig.wait(5000);
+  rig.around.permission = Permission::kStopped, rig.wait(5000);
   EXPECT_EQ(rig.taken(), "stop");
   rig.see(5.0), rig.wait(1000);
   EXPECT_EQ(rig.taken(), "");
-  rig.around.hold = Hold::kNone, rig.wait(1000);
+  rig.around.permission = Permission::kGiven, rig.wait(1000);
   EXPECT_EQ(rig.taken(), "");
   EXPECT_EQ(rig.toned_ms, rig.now_ms - 900);
   rig.wait(200);
@@ -1160,7 +1215,7 @@ TEST(Guide, HasNoDeadEnd) {
       if (random.below(4) == 0) rig.see_nobody();
       if (rig.around.visitor) rig.around.visitor->person = random.below(4);
       if (random.below(9) == 0) rig.around.visitor.reset();
-      rig.around.hold = static_cast<Hold>(random.below(9) == 0 ? random.below(3) : 0);
+      rig.around.permission = static_cast<Permission>(random.below(9) == 0 ? random.below(3) : 0);
       rig.around.speech.reset();
       if (random.below(2) == 0)
         rig.around.speech = Speech{rig.guide.screen().spoken_id, random.below(2) == 0};
@@ -1190,7 +1245,7 @@ TEST(Guide, HasNoDeadEnd) {
       last_id = screen.id;
     }
     rig.around.supervisor = Supervisor::kAvailable;
-    rig.around.hold = Hold::kNone;
+    rig.around.permission = Permission::kGiven;
     rig.around.navigation = Navigation{};
     rig.see_nobody();
     rig.wait(400000);

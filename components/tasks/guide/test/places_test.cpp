@@ -71,6 +71,7 @@ TEST(Memory, SurvivesTheRoundTrip) {
   memory.place = "a name with spaces";
   memory.goal_id = 42;
   memory.stopped = true;
+  memory.stays = true;
   memory.visit.id = 9;
   memory.visit.place = "kitchen";
   memory.visit.greeted = true;
@@ -82,7 +83,7 @@ TEST(Memory, SurvivesTheRoundTrip) {
   ASSERT_TRUE(read.ok()) << read.error();
   EXPECT_EQ(to_text(*read), to_text(memory));
   EXPECT_EQ(read->place, memory.place);
-  EXPECT_TRUE(read->stopped);
+  EXPECT_TRUE(read->stopped && read->stays);
 }
 
 TEST(Memory, RefusesWhatItDidNotWrite) {

@@ -436,27 +436,10 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kGuide:
-      if (!departed_ && passed >= parameters_.tone) depart(now);
-      // Who stands in its way is before it, and not behind; in the room the place is good enough.
-      if (passed >= parameters_.unseen && departed_ && robot_.pose &&
-          (robot_.pose->position() - departure_).norm() >= kDeparted &&
-          turning_.free(robot_.pose->position()) &&
-          turning_.free(*robot_.pose * Point2(kRollsOut, 0.0))) {
-        in_the_room_ = is_there();
-        enter(State::kLookBack, Cause::kUnseen, now);
-      }
+      pass_time_on_the_way(now);
       break;
     case State::kLookBack:
-      if (!motion_.may_turn(robot_) || is_blind()) since_ = now;  // it cannot look meanwhile
-      if (cannot_turn(now)) {
-        enter(State::kGuide, Cause::kNoWay, now);
-        reason_ = "no room to look back";
-        break;
-      }
-      if (calls(now) && track_.successive() == 0) turn_ = Turn::kSearch;
-      if (now - since_ < parameters_.look_back) break;
-      ++report_.lost;
-      look_for_people(Cause::kLost, now);
+      pass_time_looking_back(now);
       break;
     case State::kArrived:
       if (passed < parameters_.arrived) break;
@@ -472,6 +455,31 @@ void Meeting::pass_time(Time now) {
     default:
       break;
   }
+}
+
+void Meeting::pass_time_on_the_way(Time now) {
+  const Time passed = now - since_;
+  if (!departed_ && passed >= parameters_.tone) depart(now);
+  if (passed < parameters_.unseen || !departed_ || !robot_.pose) return;
+  // Who stands in its way is before it, and not behind; in the room the place is good enough.
+  const Point2 here = robot_.pose->position();
+  const bool may_turn = turning_.free(here) && turning_.free(*robot_.pose * Point2(kRollsOut, 0.0));
+  if ((here - departure_).norm() < kDeparted || !may_turn) return;
+  in_the_room_ = is_there();
+  enter(State::kLookBack, Cause::kUnseen, now);
+}
+
+void Meeting::pass_time_looking_back(Time now) {
+  if (!motion_.may_turn(robot_) || is_blind()) since_ = now;  // it cannot look meanwhile
+  if (cannot_turn(now)) {
+    enter(State::kGuide, Cause::kNoWay, now);
+    reason_ = "no room to look back";
+    return;
+  }
+  if (calls(now) && track_.successive() == 0) turn_ = Turn::kSearch;
+  if (now - since_ < parameters_.look_back) return;
+  ++report_.lost;
+  look_for_people(Cause::kLost, now);
 }
 
 // --- Rooms

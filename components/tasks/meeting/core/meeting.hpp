@@ -218,6 +218,8 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
   void follow_motion(Time now);
   void drive_failed(Time now);
   void pass_time(Time now);
+  void pass_time_on_the_way(Time now);
+  void pass_time_looking_back(Time now);
   void look_for_people(Cause cause, Time now);
   void visit_if_remembered(Time now);
   void approach(Time now);
@@ -236,6 +238,9 @@ class Meeting {  // NOLINT(clang-analyzer-optin.performance.Padding): there is o
 
   // Screens.
   service::Screen build(Time now) const;
+  void build_invitation(service::Screen& screen, Time now) const;
+  void build_way(service::Screen& screen, Time now) const;
+  void says(service::Screen& screen, const std::string& words, service::Tone tone) const;
   std::string say(Text text) const;
   std::string room_title() const;
 

@@ -24,26 +24,55 @@ std::string Meeting::room_title() const {
   return {};
 }
 
+void Meeting::says(service::Screen& screen, const std::string& words, Tone tone) const {
+  screen.spoken = words;
+  screen.spoken_id = next_screen_;
+  screen.tone = tone;
+}
+
+void Meeting::build_invitation(service::Screen& screen, Time now) const {
+  screen.title = say(Text::kInvitation);
+  screen.text = say(Text::kWouldYou);
+  screen.status = say(Text::kListening);
+  screen.listens = true;
+  screen.options = {{"yes", say(Text::kYes), OptionKind::kYes, Panel::kPrimary},
+                    {"no", say(Text::kNo), OptionKind::kNo, Panel::kPrimary}};
+  const double left = std::chrono::duration<double>(parameters_.answer - (now - since_)).count();
+  screen.time_left = std::max(0.0, std::ceil(left - 1e-9));
+  says(screen, screen.title + " " + screen.text, Tone::kCall);
+}
+
+/// With a person behind it.
+void Meeting::build_way(service::Screen& screen, Time now) const {
+  screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
+  if (state_ == State::kGuide) {
+    screen.content = service::Content::kJourney;
+    screen.title = say(Text::kFollowMe);
+    return says(screen, screen.title, Tone::kMoving);
+  }
+  screen.title = say(calls(now)     ? Text::kWhereAreYou
+                     : in_the_room_ ? Text::kComeIn
+                                    : Text::kWithMe);
+  if (calls(now)) says(screen, screen.title, Tone::kCall);
+}
+
 service::Screen Meeting::build(Time now) const {
   service::Screen screen;
   screen.id = next_screen_;
   screen.state = text(state_);
   screen.language = phrases_.languages()[language_].tag;
   screen.place = report_.room;
-  const auto says = [&](const std::string& words, Tone tone) {
-    screen.spoken = words;
-    screen.spoken_id = next_screen_;
-    screen.tone = tone;
-  };
+  screen.status = say(Text::kCount);
   switch (state_) {
     case State::kInitialise:
       screen.title = say(Text::kNotReady);
       screen.status = lacks();
-      return screen;
+      break;
     case State::kIdle:
       screen.title = say(Text::kReady);
       screen.place.clear();
-      return screen;
+      screen.status.clear();
+      break;
     case State::kToRoom:
       screen.title = say(Text::kLooksForRoom);
       screen.place = rooms_[room_].area.name;
@@ -63,48 +92,28 @@ service::Screen Meeting::build(Time now) const {
     case State::kApproach:
       screen.title = say(Text::kComing);
       break;
-    case State::kInvite: {
-      screen.title = say(Text::kInvitation);
-      screen.text = say(Text::kWouldYou);
-      screen.status = say(Text::kListening);
-      screen.listens = true;
-      screen.options = {{"yes", say(Text::kYes), OptionKind::kYes, Panel::kPrimary},
-                        {"no", say(Text::kNo), OptionKind::kNo, Panel::kPrimary}};
-      const double left =
-          std::chrono::duration<double>(parameters_.answer - (now - since_)).count();
-      screen.time_left = std::max(0.0, std::ceil(left - 1e-9));
-      says(screen.title + " " + screen.text, Tone::kCall);
-      return screen;
-    }
-    case State::kGuide:
-      screen.content = service::Content::kJourney;
-      screen.title = say(Text::kFollowMe);
-      screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
-      says(screen.title, Tone::kMoving);
+    case State::kInvite:
+      build_invitation(screen, now);
       break;
+    case State::kGuide:
     case State::kLookBack:
-      screen.title = say(calls(now)     ? Text::kWhereAreYou
-                         : in_the_room_ ? Text::kComeIn
-                                        : Text::kWithMe);
-      screen.options = {{"leave", say(Text::kLeave), OptionKind::kNo, Panel::kSecondary}};
-      if (calls(now)) says(screen.title, Tone::kCall);
+      build_way(screen, now);
       break;
     case State::kArrived:
       screen.title = say(Text::kThere);
       screen.text = say(Text::kThankYou);
-      says(screen.title + " " + screen.text, Tone::kNone);
+      says(screen, screen.title + " " + screen.text, Tone::kNone);
       break;
     case State::kDone:
       screen.title = say(Text::kAllThere);
-      says(screen.title, Tone::kNone);
+      says(screen, screen.title, Tone::kNone);
       break;
     case State::kEnded:
       screen.title = say(Text::kEnded);
       screen.text = report_.reason;
-      says(screen.title, Tone::kNone);
+      says(screen, screen.title, Tone::kNone);
       break;
   }
-  screen.status = say(Text::kCount);
   return screen;
 }
 

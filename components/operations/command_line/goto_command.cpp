@@ -1,0 +1,350 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "idl/topics.hpp"
+#include "navigation/navigator/core/locations.hpp"
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/robot.hpp"
+#include "operations/command_line/supervisor_client.hpp"
+#include "operations/command_line/table.hpp"
+#include "runtime/dds/observer.hpp"
+#include "wire/conversions.hpp"
+#include "wire/frames.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using runtime::Observer;
+using std::chrono::milliseconds;
+using namespace usher_msgs::msg;
+
+constexpr auto kRepeat = milliseconds(200);
+constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
+constexpr const char* kClient = kOperatorName;
+
+std::atomic<bool> stop_asked{false};
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+struct GoalArguments {
+  std::string location;
+  std::vector<double> pose;
+  double max_speed = 0.0;
+  bool no_wait = false;
+};
+
+/// What the running navigator knows.
+Result<navigator::Locations> locations_of(Observer& observer, std::uint32_t domain) {
+  auto reader = observer.reader(topics::kLocations);
+  if (!reader) return Error{reader.error()};
+  const auto message = reader->take(kPatience);
+  if (!message) return Error{nobody_there("navigator", domain)};
+  std::vector<navigator::Location> locations;
+  for (const auto& location : message->locations()) {
+    const auto pose = wire::to_planar(location.pose());
+    if (pose) locations.push_back({location.name(), location.title(), *pose});
+  }
+  return navigator::Locations::create(std::move(locations));
+}
+
+int list(const navigator::Locations& locations) {
+  Table table({"location", "title", "x", "y", "yaw"});
+  for (const auto& location : locations.all()) {
+    table.add({location.name, location.title, format("%.2f", location.pose.x),
+               format("%.2f", location.pose.y), format("%.2f", location.pose.yaw)});
+  }
+  std::cout << table.text();
+  return 0;
+}
+
+/// What the navigator would refuse, before anybody is asked for anything: what runs goes on.
+Status judge(const GoalArguments& arguments, const navigator::Locations& locations) {
+  if (!std::isfinite(arguments.max_speed) || arguments.max_speed < 0.0)
+    return Error{"--max-speed must be 0 or more, got " + format("%g m/s", arguments.max_speed)};
+  if (!std::ranges::all_of(arguments.pose, [](double value) { return std::isfinite(value); }))
+    return Error{"--pose must be finite"};
+  if (arguments.location.empty()) return {};
+  const auto found = locations.find(arguments.location);
+  if (found) return {};
+  std::string names;
+  for (const auto& location : locations.all()) names += (names.empty() ? "" : " ") + location.name;
+  return Error{found.error() + "\nlocations: " + names};
+}
+
+/// How the robot drives: on a terminal one line that is rewritten, else a line now and then.
+class ProgressLine {
+ public:
+  void show(const NavigateStatus& status) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ && now - shown_ < kEvery) return;
+    shown_ = now;
+    std::cout << (terminal_ ? "\r" : "") << format("%3.0f %%", status.progress() * 100.0) << "  "
+              << format("%5.1f m left", status.remaining()) << "  "
+              << (std::isfinite(status.eta()) ? format("%4.0f s", status.eta()) : "   -")
+              << (status.reason().empty() ? "" : "  " + status.reason())
+              << (terminal_ ? "\033[K" : "\n") << std::flush;
+  }
+  /// What follows begins a line of its own.
+  void end() const {
+    if (terminal_ && shown_ != std::chrono::steady_clock::time_point{}) std::cout << "\n";
+    std::cout << std::flush;
+  }
+
+ private:
+  static constexpr auto kEvery = std::chrono::seconds(5);
+  bool terminal_ = isatty(STDOUT_FILENO) != 0;
+  std::chrono::steady_clock::time_point shown_{};
+};
+
+NavigateGoal goal_from(const GoalArguments& arguments) {
+  NavigateGoal goal;
+  goal.id(fresh_id());
+  goal.client(kClient);
+  goal.location(arguments.location);
+  goal.max_speed(static_cast<float>(arguments.max_speed));
+  goal.pose().header().frame_id(frames::kMap);
+  if (!arguments.pose.empty()) {
+    goal.pose().pose(
+        wire::to_message(geometry::Pose2{arguments.pose[0], arguments.pose[1], arguments.pose[2]}));
+  }
+  return goal;
+}
+
+/// Notices that the supervisor will let the navigation drive no further: after a latched fault or
+/// manual driving nobody starts it again.
+class SupervisorWatch {
+ public:
+  explicit SupervisorWatch(Observer::Reader<SupervisorStatus> reader)
+      : reader_(std::move(reader)) {}
+
+  /// Why, once that has been so for longer than it takes a goal to end.
+  std::optional<std::string> ended_navigation() {
+    using namespace SupervisorStatus_Constants;
+    const auto now = std::chrono::steady_clock::now();
+    while (const auto status = reader_.take(milliseconds(0))) {
+      const bool over = status->state() == STATE_FAULT || status->state() == STATE_MANUAL ||
+                        status->state() == STATE_INTERACTION;
+      if (!over) over_since_.reset();
+      if (over && !over_since_) over_since_ = now;
+      if (status->state() == STATE_FAULT) why_ = status->reason();
+      if (status->state() == STATE_MANUAL) why_ = "driven by hand";
+      // Who has answered nobody has forgotten our request, too.
+      if (status->last_request() == 0) restarted_ = true;
+      ready_ = status->state() == STATE_INTERACTION;
+    }
+    if (!over_since_ || now - *over_since_ < kOver) return std::nullopt;
+    return "the supervisor ended the navigation" + (why_.empty() ? "" : ": " + why_);
+  }
+  /// Once after each restart of the supervisor: it takes requests again, and knows of none.
+  bool forgot_navigation() {
+    if (!restarted_ || !ready_ || !why_.empty()) return false;
+    restarted_ = false;
+    over_since_.reset();
+    return true;
+  }
+
+ private:
+  static constexpr auto kOver = std::chrono::seconds(2);
+  Observer::Reader<SupervisorStatus> reader_;
+  std::optional<std::chrono::steady_clock::time_point> over_since_;
+  std::string why_;
+  bool restarted_ = false, ready_ = false;
+};
+
+/// Lets the navigation drive.
+Status start_navigation(Observer& observer, const GoalArguments& arguments) {
+  using namespace SupervisorRequest_Constants;
+  const std::string name = arguments.location.empty() ? "pose" : arguments.location;
+  for (const auto command : {COMMAND_NAVIGATION_START, COMMAND_NAVIGATION_GO}) {
+    if (auto told = tell_supervisor(observer, command, name); !told) return told;
+  }
+  return {};
+}
+
+enum class Outcome { kUnderWay, kArrived, kFailed, kReplaced };
+
+/// Sends a goal and watches it to its end; Ctrl-C cancels it.
+class Pursuit {
+ public:
+  static Result<Pursuit> begin(Observer& observer, std::uint32_t domain,
+                               const GoalArguments& arguments) {
+    auto goals = observer.writer(topics::kNavigateGoal);
+    auto statuses = observer.reader(topics::kNavigateStatus);
+    auto supervisor = observer.reader(topics::kSupervisorStatus);
+    if (!goals) return Error{goals.error()};
+    if (!supervisor) return Error{supervisor.error()};
+    if (!statuses) return Error{statuses.error()};
+    if (!goals->wait_for_readers(1, kPatience)) return Error{nobody_there("navigator", domain)};
+    return Pursuit(observer, arguments, std::move(goals).value(), std::move(statuses).value(),
+                   std::move(supervisor).value());
+  }
+
+  Outcome run() {
+    given_ = heard_ = Clock::now();
+    for (;;) {
+      if (stop_asked) {
+        const auto cancelled = cancel();
+        return failed(cancelled ? "cancelled" : cancelled.error());
+      }
+      if (!accepted_ && Clock::now() - given_ > kPatience)
+        return failed("the navigator did not take the goal within 3 s");
+      if (!accepted_ && Clock::now() - told_ > kRepeat) {
+        goals_.write(goal_);
+        told_ = Clock::now();
+      }
+      const auto status = statuses_.take(milliseconds(100));
+      if (status) heard_ = Clock::now();
+      if (Clock::now() - heard_ > kGone)
+        return failed(
+            "the navigator has been silent for 5 s; what it did with the goal is not known");
+      if (const auto refused = heed_supervisor(); !refused) return failed(refused.error());
+      if (!status) continue;
+      if (const auto outcome = take(*status)) return *outcome;
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Pursuit(Observer& observer, const GoalArguments& arguments, Observer::Writer<NavigateGoal> goals,
+          Observer::Reader<NavigateStatus> statuses, Observer::Reader<SupervisorStatus> supervisor)
+      : observer_(observer),
+        arguments_(arguments),
+        goal_(goal_from(arguments)),
+        goals_(std::move(goals)),
+        statuses_(std::move(statuses)),
+        supervisor_(std::move(supervisor)) {}
+
+  Outcome failed(const std::string& reason) {
+    progress_.end();
+    fail(reason);
+    return Outcome::kFailed;
+  }
+
+  /// Why it goes no further, as far as the supervisor is concerned.
+  Status heed_supervisor() {
+    const auto why = supervisor_.ended_navigation();
+    if (!accepted_) return {};
+    if (supervisor_.forgot_navigation()) return start_navigation(observer_, arguments_);
+    if (!why) return {};
+    const auto cancelled = cancel();
+    return Error{*why + (cancelled ? "" : "; " + cancelled.error())};
+  }
+
+  /// What became of the goal; nothing while it runs.
+  std::optional<Outcome> take(const NavigateStatus& status) {
+    const bool runs = status.state() == GoalStatus_Constants::STATE_ACTIVE ||
+                      status.state() == GoalStatus_Constants::STATE_WAITING;
+    if (status.id() != goal_.id()) {
+      if (accepted_ && status.id() == 0) {  // restarted: it has forgotten everything
+        accepted_ = false;
+        given_ = Clock::now();
+      }
+      if (!accepted_ || !runs) return std::nullopt;
+      failed("another goal took its place");
+      return Outcome::kReplaced;
+    }
+    accepted_ = true;
+    if (arguments_.no_wait && runs) return Outcome::kUnderWay;
+    progress_.show(status);
+    if (runs) return std::nullopt;
+    if (status.state() == GoalStatus_Constants::STATE_SUCCEEDED) {
+      progress_.end();
+      std::cout << "arrived\n";
+      return Outcome::kArrived;
+    }
+    const Outcome outcome = failed(status.reason());
+    return status.state() == GoalStatus_Constants::STATE_REPLACED ? Outcome::kReplaced : outcome;
+  }
+
+  /// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
+  /// another one is an answer too.
+  Status cancel() {
+    auto writer = observer_.writer(topics::kNavigateCancel);
+    if (!writer) return Error{writer.error()};
+    GoalCancel message;
+    message.id(goal_.id());
+    message.client(kClient);
+    for (int tries = 0; tries < 15; ++tries) {
+      writer->write(message);
+      const auto until = Clock::now() + kRepeat;
+      while (Clock::now() < until) {
+        const auto status = statuses_.take(milliseconds(50));
+        if (!status) continue;
+        if (status->id() == goal_.id() ? status->state() >= GoalStatus_Constants::STATE_SUCCEEDED
+                                       : accepted_)
+          return {};
+      }
+    }
+    return Error{"the navigator did not cancel the goal within 3 s"};
+  }
+
+  Observer& observer_;
+  const GoalArguments& arguments_;
+  NavigateGoal goal_;
+  Observer::Writer<NavigateGoal> goals_;
+  Observer::Reader<NavigateStatus> statuses_;
+  SupervisorWatch supervisor_;
+  ProgressLine progress_;
+  Clock::time_point told_{}, heard_{}, given_{};
+  bool accepted_ = false;
+};
+
+/// The supervisor lets the navigation drive from the start to the end of a goal.
+int go(std::uint32_t domain, const GoalArguments& arguments) {
+  using namespace SupervisorRequest_Constants;
+  auto observer = Observer::create(reach_robot(kClient, domain));
+  if (!observer) return fail(observer.error());
+  const auto locations = locations_of(**observer, domain);
+  if (!locations) return fail(locations.error());
+  if (arguments.location.empty() && arguments.pose.empty()) return list(*locations);
+  if (const auto sound = judge(arguments, *locations); !sound) return fail(sound.error());
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = true; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  if (const auto told = start_navigation(**observer, arguments); !told) return fail(told.error());
+  Outcome outcome = Outcome::kFailed;
+  if (auto pursuit = Pursuit::begin(**observer, domain, arguments)) {
+    outcome = pursuit->run();
+  } else {
+    fail(pursuit.error());
+  }
+  if (outcome == Outcome::kFailed) {  // one that was replaced leaves the navigation to the other
+    if (const auto told = tell_supervisor(**observer, COMMAND_NAVIGATION_END); !told) {
+      std::cerr << "usher: the navigation could not be ended: " << told.error() << "\n";
+    }
+  }
+  return outcome == Outcome::kUnderWay || outcome == Outcome::kArrived ? 0 : 1;
+}
+
+}  // namespace
+
+void add_goto_command(CLI::App& app, int& exit_code) {
+  auto domain = std::make_shared<std::optional<std::uint32_t>>();
+  auto arguments = std::make_shared<GoalArguments>();
+  auto* goto_command = app.add_subcommand(
+      "goto", "Send the robot to a location or a pose; without either, list the locations");
+  add_domain_option(*goto_command, *domain);
+  goto_command->add_option("location", arguments->location, "Name of a known location");
+  goto_command->add_option("--pose", arguments->pose, "x y yaw in map [m, m, rad]")->expected(3);
+  goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default");
+  goto_command->add_flag("--no-wait", arguments->no_wait, "Return when the goal is taken");
+  goto_command->callback([=, &exit_code] { exit_code = go(meant_domain(*domain), *arguments); });
+}
+
+}  // namespace usher::operations

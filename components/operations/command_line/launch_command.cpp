@@ -1,0 +1,331 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "idl/topics.hpp"
+#include "operations/command_line/commands.hpp"
+#include "operations/command_line/installation.hpp"
+#include "operations/command_line/robot.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/host/service.hpp"
+#include "operations/launcher/launcher.hpp"
+#include "operations/security/permissions.hpp"
+#include "runtime/dds/observer.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+std::atomic<bool> stop_asked{false};
+
+int fail(const std::string& message) {
+  std::cerr << "usher: " << message << "\n";
+  return 1;
+}
+
+/// The newest heartbeat of every component.
+class Heartbeats {
+ public:
+  void take(const usher_msgs::msg::Heartbeat& message) {
+    const std::lock_guard lock(mutex_);
+    newest_[message.component_name()] = {message, std::chrono::steady_clock::now()};
+  }
+  struct Entry {
+    usher_msgs::msg::Heartbeat message;
+    std::chrono::steady_clock::time_point at;
+  };
+  void report_to(Launcher& launcher) const {
+    for (const auto& [component, entry] : entries()) launcher.heard(component, entry.at);
+  }
+  std::map<std::string, Entry> entries() const {
+    const std::lock_guard lock(mutex_);
+    return newest_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, Entry> newest_;
+};
+
+/// When the supervisor last heard whom.
+class SupervisorRoll {
+ public:
+  void take(const usher_msgs::msg::SupervisorStatus& message) {
+    using usher_msgs::msg::SupervisorStatus_Constants::HEALTH_MISSING;
+    const auto now = std::chrono::steady_clock::now();
+    const std::lock_guard lock(mutex_);
+    for (const auto& component : message.components()) {
+      if (component.health() != HEALTH_MISSING) heard_at_[component.name()] = now;
+    }
+  }
+  void report_to(Launcher& launcher) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [component, at] : heard_at_) launcher.heard_by_supervisor(component, at);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, std::chrono::steady_clock::time_point> heard_at_;
+};
+
+/// Whether the base was last heard to stand.
+class Standing {
+ public:
+  void take(const usher_msgs::msg::BaseStatus& message) {
+    constexpr double kSlow = 0.02;  // [m/s], [rad/s]; a balancing base never stands quite still
+    const bool powered = message.state() == usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING;
+    const std::lock_guard lock(mutex_);
+    stands_ = !powered || (std::abs(message.v()) < kSlow && std::abs(message.w()) < kSlow &&
+                           message.v_commanded() == 0.0 && message.w_commanded() == 0.0);
+    at_ = std::chrono::steady_clock::now();
+  }
+  /// A base that is not heard any more has nobody to wait for: its guard stops it.
+  bool stands() const {
+    const std::lock_guard lock(mutex_);
+    return stands_ || std::chrono::steady_clock::now() - at_ > milliseconds(300);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  bool stands_ = true;
+  std::chrono::steady_clock::time_point at_{};
+};
+
+std::string state_of(const Process& process, const Heartbeats::Entry* heartbeat) {
+  switch (process.state) {
+    case Process::State::kWaiting:
+      return "waiting";
+    case Process::State::kStopping:
+      return "stopping";
+    case Process::State::kStopped:
+      return "stopped";
+    case Process::State::kGaveUp:
+      return "given up";
+    case Process::State::kRunning:
+      break;
+  }
+  if (heartbeat == nullptr) return "starting";
+  if (std::chrono::steady_clock::now() - heartbeat->at > milliseconds(500)) return "silent";
+  constexpr const char* kStates[] = {"starting", "ok", "degraded", "fault"};
+  return kStates[std::min<std::uint8_t>(heartbeat->message.state(), 3)];
+}
+
+Table live_table(const Launcher& launcher, const Heartbeats& heartbeats) {
+  const auto entries = heartbeats.entries();
+  Table table({"component", "state", "starts", "cpu %", "MB", "handler ms", "lost", "why"});
+  for (const auto& process : launcher.processes()) {
+    for (const auto& component : process.components) {
+      const auto entry = entries.find(component);
+      const auto* heartbeat = entry == entries.end() ? nullptr : &entry->second;
+      const bool running = heartbeat != nullptr && process.state == Process::State::kRunning;
+      table.add({component, state_of(process, heartbeat), std::to_string(process.starts),
+                 running ? format("%.1f", heartbeat->message.cpu_percent()) : "-",
+                 running
+                     ? format("%.0f", static_cast<double>(heartbeat->message.memory_bytes()) / 1e6)
+                     : "-",
+                 running ? format("%.1f", heartbeat->message.handler_time_max() * 1e3) : "-",
+                 running ? std::to_string(heartbeat->message.samples_lost()) : "-",
+                 running ? heartbeat->message.reason() : process.last_end});
+    }
+  }
+  return table;
+}
+
+/// Says once who was kept out, and once in a while how many messages were dropped.
+class RefusalReport {
+ public:
+  std::vector<std::string> news(const std::vector<runtime::Refusal>& refusals) {
+    std::vector<std::string> lines;
+    const auto now = std::chrono::steady_clock::now();
+    for (const auto& refusal : refusals) {
+      auto [entry, is_new] = told_.try_emplace({refusal.name, refusal.address});
+      auto& [messages, at] = entry->second;
+      if (!is_new && (refusal.messages == messages || now - at < kPause)) continue;
+      lines.push_back(runtime::to_string(refusal));
+      messages = refusal.messages;
+      at = now;
+    }
+    return lines;
+  }
+
+ private:
+  static constexpr std::chrono::seconds kPause{10};
+  std::map<std::pair<std::string, std::string>,
+           std::pair<std::uint64_t, std::chrono::steady_clock::time_point>>
+      told_;
+};
+
+/// What the launcher hears of the running robot.
+class RunningRobot {
+ public:
+  static Result<std::unique_ptr<RunningRobot>> listen(const Manifest& manifest) {
+    auto reach = reach_robot(kLauncher, manifest.domain);
+    if (!manifest.keys.empty()) reach.identity = manifest.keys + "/" + kLauncher;
+    auto observer = runtime::Observer::create(reach);
+    if (!observer) return Error{observer.error()};
+    std::unique_ptr<RunningRobot> robot(new RunningRobot(std::move(observer).value()));
+    if (auto status = robot->subscribe(); !status) return Error{status.error()};
+    return robot;
+  }
+
+  /// Who lives.
+  void report_to(Launcher& launcher) const {
+    heartbeats_.report_to(launcher);
+    roll_.report_to(launcher);
+  }
+  const Heartbeats& heartbeats() const { return heartbeats_; }
+  bool stands() const { return standing_.stands(); }
+  /// Who was kept out since the last call, in words.
+  std::vector<std::string> refusals() { return refusals_.news(observer_->refusals()); }
+
+ private:
+  explicit RunningRobot(std::unique_ptr<runtime::Observer> observer)
+      : observer_(std::move(observer)) {}
+  Status subscribe() {
+    auto heartbeats =
+        observer_->reader(topics::kHeartbeat,
+                          [this](const auto& message, const auto&) { heartbeats_.take(message); });
+    if (!heartbeats) return Error{heartbeats.error()};
+    auto supervisor =
+        observer_->reader(topics::kSupervisorStatus,
+                          [this](const auto& message, const auto&) { roll_.take(message); });
+    if (!supervisor) return Error{supervisor.error()};
+    auto base = observer_->reader(
+        topics::kBaseStatus, [this](const auto& message, const auto&) { standing_.take(message); });
+    if (!base) return Error{base.error()};
+    heartbeat_reader_.emplace(std::move(heartbeats).value());
+    supervisor_reader_.emplace(std::move(supervisor).value());
+    base_reader_.emplace(std::move(base).value());
+    return {};
+  }
+
+  Heartbeats heartbeats_;
+  SupervisorRoll roll_;
+  Standing standing_;
+  RefusalReport refusals_;
+  std::unique_ptr<runtime::Observer> observer_;
+  // Last: they end before what they fill.
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::Heartbeat>> heartbeat_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::SupervisorStatus>> supervisor_reader_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::BaseStatus>> base_reader_;
+};
+
+/// What the operator reads while it runs: events, and on a terminal a table that is rewritten once
+/// a second.
+class Display {
+ public:
+  void show(const std::vector<std::string>& events, const Launcher& launcher,
+            const Heartbeats& heartbeats) {
+    std::cout.clear();  // what a full disk did not take is lost, what comes later need not be
+    if (!events.empty()) table_lines_ = 0;
+    for (const auto& event : events) std::cout << event << "\n";
+    if (terminal_ && std::chrono::steady_clock::now() >= next_table_) {
+      next_table_ += milliseconds(1000);
+      const Table table = live_table(launcher, heartbeats);
+      if (table_lines_ > 0) std::cout << "\033[" << table_lines_ << "A\033[J";
+      std::cout << table.text();
+      table_lines_ = table.size() + 1;
+    }
+    std::cout << std::flush;
+  }
+
+ private:
+  const bool terminal_ = isatty(STDOUT_FILENO) != 0;
+  std::chrono::steady_clock::time_point next_table_ =
+      std::chrono::steady_clock::now() + milliseconds(1000);
+  std::size_t table_lines_ = 0;
+};
+
+struct LaunchArguments {
+  std::string manifest, host, run_directory;
+  std::vector<std::string> settings;
+};
+
+/// The deployment as it is asked for. What is wrong with it goes to stderr.
+Result<Deployment> deployment_for(const LaunchArguments& arguments,
+                                  const Installation& installation) {
+  std::vector<Override> overrides;
+  for (const auto& text : arguments.settings) {
+    auto parsed = parse_override(text);
+    if (!parsed) return Error{parsed.error()};
+    overrides.push_back(*parsed);
+  }
+  auto deployment = load_deployment(arguments.manifest, installation, overrides, keys_folder());
+  if (!deployment) return Error{deployment.error()};
+  for (const auto& finding : deployment->findings) std::cerr << to_string(finding) << "\n";
+  if (!deployment->findings.empty())
+    return Error{"this deployment could not work; nothing was started"};
+  return deployment;
+}
+
+int launch(const LaunchArguments& arguments) {
+  const auto installation = Installation::of_this_program();
+  const auto deployment = deployment_for(arguments, installation);
+  if (!deployment) return fail(deployment.error());
+  const Manifest& manifest = deployment->manifest;
+  LaunchOptions options{arguments.host, installation.programs, arguments.run_directory};
+  if (options.run_directory.empty())
+    options.run_directory = default_run_directory(manifest.domain, arguments.host);
+  ServiceNotifier service;
+  auto launcher = Launcher::create(*deployment, options);
+  if (!launcher) return fail(launcher.error());
+
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_asked = true; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+
+  const auto listening = RunningRobot::listen(manifest);
+  if (!listening) return fail(listening.error());
+  RunningRobot& robot = **listening;
+  std::cout << "launching " << manifest.name << "; logs in " << options.run_directory
+            << "; Ctrl-C stops the robot, then everything\n"
+            << std::flush;
+  Display display;
+  service.ready();
+  while (!stop_asked && !launcher->broken()) {
+    robot.report_to(*launcher);
+    launcher->poll();
+    service.alive(launcher->healthy(), launcher->summary());
+    auto events = launcher->events();
+    for (auto& news : robot.refusals()) events.push_back(std::move(news));
+    display.show(events, *launcher, robot.heartbeats());
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  const bool broken = launcher->broken();
+  service.stopping();
+  std::cout << (broken ? "a component cannot be kept running; " : "")
+            << "stopping: first the robot, then everything in reverse order, the base driver last\n"
+            << std::flush;
+  launcher->stop([&] { return robot.stands(); });
+  for (const auto& event : launcher->events()) std::cout << event << "\n";
+  return broken ? 1 : 0;
+}
+
+}  // namespace
+
+void add_launch_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<LaunchArguments>();
+  auto* launch_command = app.add_subcommand(
+      "launch", "Start a deployment, watch it, restart what ends, stop it on Ctrl-C");
+  launch_command->add_option("manifest", arguments->manifest, "Manifest file")->required();
+  launch_command->add_option("--host", arguments->host, "Start only this host's part");
+  launch_command->add_option("--set", arguments->settings,
+                             "COMPONENT.PARAMETER=VALUE, over everything else");
+  launch_command->add_option("--run-directory", arguments->run_directory,
+                             "Parameter files, logs, memory of the components");
+  launch_command->callback([arguments, &exit_code] { exit_code = launch(*arguments); });
+}
+
+}  // namespace usher::operations
