@@ -36,7 +36,8 @@ void Confidence::rate(std::span<float> ranges, double least, std::span<float> in
       continue;
     }
     const float off = std::abs(present[i] - sum / static_cast<float>(measured));
-    intensities[i] = std::max(0.0F, 1.0F - off / threshold_);
+    const bool confirmed = measured > 1 || frames_ == 1;
+    intensities[i] = confirmed ? std::max(0.0F, 1.0F - off / threshold_) : 0.0F;
     if (intensities[i] < static_cast<float>(least))
       ranges[i] = std::numeric_limits<float>::quiet_NaN();
   }

@@ -9,6 +9,7 @@ namespace usher::depth_pipeline {
 /// How far each bearing's range agrees with its rolling mean (thesis 4.23, with the absolute value
 /// that it lacks): 1 - |d - mean| / threshold, 1 is full agreement. Noise that appears when the
 /// pitch jumps agrees with nothing. "Nothing there" (infinity) counts as `far`.
+/// What only the present frame measured has confidence 0.
 class Confidence {
  public:
   static constexpr int kMostFrames = 8;

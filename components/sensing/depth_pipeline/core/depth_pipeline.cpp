@@ -21,7 +21,7 @@ constexpr int kBuffers = 8;
 constexpr int kLeastValid = 10;    // a column with fewer than one in so many pixels is unknown
 constexpr int kLeastFloor = 50;    // one in so many is enough where the floor began and ends
 constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
-constexpr double kGrazing = 2.14;  // tan 65 deg: distance over height from which vinyl may mirror
+constexpr double kGrazing = 1.88;  // tan 62 deg: vinyl mirrors from 65 deg on, give or take a patch
 
 enum ColumnArray { kHigh = 0, kLow = 4, kValid = 8, kFallBegin, kFall };
 
@@ -51,6 +51,8 @@ Status check(const PipelineConfig& config) {
                   {"support", static_cast<double>(config.support), 1.0, 8.0},
                   {"support_gap", config.support_gap, 0.0, 5.0},
                   {"low_gap", config.low_gap, 0.0, 5.0},
+                  {"low_width", config.low_width, 0.0, 0.5},
+                  {"low_step", config.low_step, 0.0, 5.0},
                   {"drop_length", config.drop_length, 0.05, 2.0},
                   {"drop_width", config.drop_width, 0.0, 2.0},
                   {"grazing_drop_width", config.grazing_drop_width, 0.0, 2.0},
@@ -93,6 +95,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
     scan->ranges.resize(geometry_.count);
     scan->intensities.resize(geometry_.count);
   }
+  seen_low_.resize(geometry_.count);
   spare_.resize(geometry_.count);
 }
 
@@ -126,6 +129,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   clear_bearings();
   mark_free(view.pose);
   mark_obstacles(floor);
+  add_low();
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
   forget_blind_falls(floor);
@@ -178,6 +182,7 @@ void DepthPipeline::sort_pixels(const DepthImage& image, const FloorPrediction& 
 void DepthPipeline::clear_bearings() {
   std::fill(scan_.ranges.begin(), scan_.ranges.end(), kUnknown);
   std::fill(low_.ranges.begin(), low_.ranges.end(), kUnknown);
+  std::fill(seen_low_.begin(), seen_low_.end(), kUnknown);
 }
 
 std::size_t DepthPipeline::bearing_of(double forward, double left) const {
@@ -234,13 +239,37 @@ void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
       const double depth = forward * 32768.0 / std::max<int>(1, floor.scales()[row].forward);
       mark(ranges, column, forward, depth / intrinsics_.fx);
     };
-    const bool is_high = high[column] != kernels::kNothing;
-    const bool is_low = low[column] != kernels::kNothing;
-    if (is_high) place(scan_.ranges, high[column], high_row[column]);
-    if (!is_low) continue;
-    place(scan_.ranges, low[column], low_row[column]);
-    const bool alone = !is_high || kHalfMillimeter * (high[column] - low[column]) > config_.low_gap;
-    if (alone) place(low_.ranges, low[column], low_row[column]);
+    if (high[column] != kernels::kNothing) place(scan_.ranges, high[column], high_row[column]);
+    if (low[column] != kernels::kNothing) place(seen_low_, low[column], low_row[column]);
+  }
+}
+
+/// Low things into both scans, where they are wide enough; where not, what lies there is not known.
+void DepthPipeline::add_low() {
+  for (std::size_t begin = 0; begin < seen_low_.size();) {
+    if (!std::isfinite(seen_low_[begin])) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin;
+    double width = 0.0;
+    do {
+      width += geometry_.increment * static_cast<double>(seen_low_[end]);
+      ++end;
+    } while (end < seen_low_.size() &&
+             std::abs(seen_low_[end] - seen_low_[end - 1]) <= static_cast<float>(config_.low_step));
+    for (; begin < end; ++begin) {
+      const float range = seen_low_[begin];
+      const float high = scan_.ranges[begin];
+      const bool alone = !(high <= range + static_cast<float>(config_.low_gap));
+      if (width >= config_.low_width) {
+        if (!(high <= range)) scan_.ranges[begin] = range;
+        if (alone) low_.ranges[begin] = range;
+      } else {
+        if (!std::isfinite(high)) scan_.ranges[begin] = kUnknown;
+        low_.ranges[begin] = kUnknown;
+      }
+    }
   }
 }
 
@@ -271,11 +300,14 @@ int DepthPipeline::mark_drops(double grazing_from) {
     }
     int end = begin;
     double width = 0.0;
+    double nearest = std::numeric_limits<double>::infinity();  // [m] from the camera's foot
     for (; end < intrinsics_.width && fall[end] != kernels::kNothing; ++end) {
       if (end > begin && std::abs(fall[end] - fall[end - 1]) > kFallGap * 1e3) break;
-      width += 1e-3 * fall[end] / intrinsics_.fx;
+      const double forward = 1e-3 * fall[end];
+      width += forward / intrinsics_.fx;
+      nearest =
+          std::min(nearest, std::hypot(forward, forward / intrinsics_.fx * (intrinsics_.cx - end)));
     }
-    const double nearest = 1e-3 * *std::min_element(fall + begin, fall + end);
     const double needed = nearest < grazing_from
                               ? config_.drop_width
                               : std::max(config_.drop_width, config_.grazing_drop_width);

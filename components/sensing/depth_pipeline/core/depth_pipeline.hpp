@@ -25,11 +25,15 @@ struct PipelineConfig {
   int support = 3;           ///< {1..8} neighbouring bearings that must agree on an obstacle
   double support_gap = 0.3;  ///< [m] {0..} within which they agree
   double low_gap = 0.4;      ///< [m] {0..} what stands so near before something high is part of it
+  /// [m] {0..0.5} across that something low must measure. Pixels at an edge lie anywhere between
+  /// the edge and the floor behind it: a few bearings of low things that nobody will see again.
+  double low_width = 0.04;
+  double low_step = 0.06;  ///< [m] {0..} of range between two bearings of one low thing
   /// Floor that gives no measurement counts as missing, in a column that measures something.
   bool missing_is_drop = true;
   double drop_length = 0.3;  ///< [m] {0.05..2} of floor that must be missing along a column
   double drop_width = 0.15;  ///< [m] {0..2} and across
-  /// [m] {0..2} across where the floor is looked at flatter than 65 deg: vinyl mirrors in patches
+  /// [m] {0..2} across where the floor is looked at flatter than 62 deg: vinyl mirrors in patches
   /// there, which look like holes.
   double grazing_drop_width = 0.4;
   int confidence_frames = 3;          ///< {1..8} of the rolling mean
@@ -95,6 +99,7 @@ class DepthPipeline {
   int mark_drops(double grazing_from);
   void mark_free(const CameraPose& pose);
   void mark_obstacles(const FloorPrediction& floor);
+  void add_low();
   void drop_unsupported(std::vector<float>& ranges) const;
   void mark(std::vector<float>& ranges, int column, double forward, double side_per_pixel);
   std::size_t bearing_of(double forward, double left) const;
@@ -110,6 +115,7 @@ class DepthPipeline {
   std::size_t buffer_stride_ = 0;
   double shift_ = 0.0;  // [m] from the scan's origin to the camera's foot
   DepthScan scan_, low_;
+  std::vector<float> seen_low_;  // [m] of each bearing, NaN: nothing low
   mutable std::vector<float> spare_;
   Confidence confidence_, low_confidence_;
 };

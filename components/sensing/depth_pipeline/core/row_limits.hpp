@@ -31,6 +31,10 @@ struct FloorModel {
 
 Status check(const FloorModel& model);
 
+/// The same for a camera that measures by structured light, as a Kinect v1: its depth is noisier by
+/// far with distance [nguyen2012kinect] and comes in steps [khoshelham2012kinect].
+FloorModel for_structured_light(FloorModel model);
+
 /// Limits of one row (in one strip of columns) in millimetres of depth.
 struct RowLimits {
   std::uint16_t obstacle = 0;  ///< depths up to this are obstacles: nearer than floor and ceiling

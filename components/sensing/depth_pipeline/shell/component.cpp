@@ -47,11 +47,15 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
   far_ = p.number("far_of_8_bit", "m", {1, 20}, far_, "What 255 means in an 8-bit image.");
   mount_slope_ = read_kinect_mount_slope(p);
   kinect_.name = "Kinect";
+  kinect_.structured_light =
+      p.choice("robot.kinect.model", {"v2", "v1"}, "v2",
+               "Whose noise a fitted floor has: Kinect v2 (time of flight) or v1.") == "v1";
   kinect_.frame = "kinect_depth_optical";
   const double axle = read_axle(p);
   kinect_.mount = read_kinect_mount(p, axle);
   const RearMount rear = read_rear_mount(p, axle);
   rear_.name = "rear camera";
+  rear_.structured_light = true;
   rear_.frame = "rear_camera_depth_optical";
   rear_.mount = rear.mount;
   rear_angle_ = rear.angle;
@@ -98,6 +102,7 @@ void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::C
   }
   if (camera.pipeline && camera.pipeline->intrinsics() == *intrinsics) return;
   PipelineConfig config = config_;
+  if (camera.structured_light) config.refitted = for_structured_light(config.refitted);
   config.origin = camera.mount.backward ? -camera.mount.x : camera.mount.x;
   auto made = DepthPipeline::make(*intrinsics, config);
   if (!made) host_.fault(std::string(camera.name) + ": " + made.error());

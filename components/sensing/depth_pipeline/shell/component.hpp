@@ -26,6 +26,7 @@ class DepthPipelineComponent final : public runtime::Component {
     const char* name = "";
     const char* frame = "";  ///< of the processed image: x right, y down, z forward
     Mount mount;
+    bool structured_light = false;  ///< else time of flight
     std::optional<DepthPipeline> pipeline;
     std::shared_ptr<const Image> waiting;  ///< for the pitch of its time
     std::vector<std::uint16_t> depth;

@@ -37,7 +37,7 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
       p.number("drop_width", "m", {0, 2}, c.drop_width, "So much floor must be missing across.");
   c.grazing_drop_width =
       p.number("grazing_drop_width", "m", {0, 2}, c.grazing_drop_width,
-               "The same where the floor is looked at flatter than 65 deg: vinyl mirrors there.");
+               "The same where the floor is looked at flatter than 62 deg: vinyl mirrors there.");
   c.confidence_frames = static_cast<int>(
       p.integer("confidence_frames", "-", {1, 8}, c.confidence_frames, "Of the rolling mean."));
   c.confidence_threshold =

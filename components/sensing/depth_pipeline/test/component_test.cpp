@@ -26,16 +26,18 @@ class Viewer final : public runtime::Component {
  public:
   explicit Viewer(runtime::Host& host)
       : input_(host.input(topics::kKinectProcessed, {.optional = true},
-                          [](const auto&, const auto&) {})) {}
+                          [](const auto&, const auto&) {})),
+        rear_(host.input(topics::kRearProcessed, {.optional = true},
+                         [](const auto&, const auto&) {})) {}
 
  private:
-  runtime::Input<sensor_msgs::msg::Image> input_;
+  runtime::Input<sensor_msgs::msg::Image> input_, rear_;
 };
 
 class DepthPipelineComponentTest : public testing::Test {
  protected:
-  DepthPipelineComponentTest()
-      : host_(runtime::component_factory<DepthPipelineComponent>("depth_pipeline"), kParameters) {
+  explicit DepthPipelineComponentTest(const std::string& parameters = kParameters)
+      : host_(runtime::component_factory<DepthPipelineComponent>("depth_pipeline"), parameters) {
     scene_.boxes = {{-0.3, 0.3, 0.6, 2.0, 2.4}};
   }
 
@@ -96,8 +98,36 @@ class DepthPipelineComponentTest : public testing::Test {
   int elapsed_ = 0;  // [ms]
 };
 
+class FittingDepthPipelineTest : public DepthPipelineComponentTest {
+ protected:
+  FittingDepthPipelineTest()
+      : DepthPipelineComponentTest(std::string(kParameters).insert(1, "refit: true, ")) {}
+};
+
 float ahead(const sensor_msgs::msg::LaserScan& scan) {
   return scan.ranges()[static_cast<std::size_t>(-scan.angle_min() / scan.angle_increment())];
+}
+
+TEST_F(FittingDepthPipelineTest, KnowsTheNoiseOfTheRearCamerasFloor) {
+  ASSERT_TRUE(host_.world().add(runtime::component_factory<Viewer>("viewer"),
+                                runtime::test_parameters("viewer", "{}").value()));
+  scene_.boxes.clear();
+  scene_.half_width = scene_.end = 30.0;
+  scene_.noise = 0.0025;
+  host_.publish(topics::kRearInfo,
+                wire::to_message(host_.now(), "rear_camera_depth_optical", scene_.camera));
+  tell_camera();
+  live(100);
+  const auto depth = scene_.draw({.height = 1.135, .forward = 0.2, .down = 0.2618});
+  sensor_msgs::msg::Image image;
+  wire::to_message(host_.now(), "rear_camera_depth_optical", view_of(scene_.camera, depth), image);
+  host_.publish(topics::kRearDepth, image);
+  live(30);
+  const auto processed = host_.last(topics::kRearProcessed);
+  ASSERT_TRUE(processed);
+  const auto bytes = std::count_if(processed->data().begin(), processed->data().end(),
+                                   [](std::uint8_t byte) { return byte != 0; });
+  EXPECT_LT(bytes, 8000) << "of 434,176: obstacles on an empty floor";
 }
 
 TEST_F(DepthPipelineComponentTest, MakesScansImagesAndFramesOfImages) {

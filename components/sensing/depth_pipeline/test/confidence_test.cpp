@@ -32,7 +32,8 @@ TEST(Confidence, FollowsEquation423WithItsAbsoluteValue) {
 
 TEST(Confidence, DropsASingleNearPointAndASingleFarOne) {
   Confidence confidence(1, 3, 0.5, 5.0);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(rate(confidence, 4.0F).range, 4.0F);
+  for (int i = 0; i < 3; ++i) rate(confidence, 4.0F);
+  EXPECT_EQ(rate(confidence, 4.0F).range, 4.0F);
   EXPECT_TRUE(std::isnan(rate(confidence, 0.8F).range));
   for (int i = 0; i < 3; ++i) rate(confidence, 4.0F);
   EXPECT_EQ(rate(confidence, 4.0F).range, 4.0F);
@@ -50,9 +51,16 @@ TEST(Confidence, BelievesWhatStaysWithinItsFrames) {
 
 TEST(Confidence, WhatWasNotMeasuredIsNoPartOfTheMean) {
   Confidence confidence(1, 3, 0.5, 5.0);
-  EXPECT_EQ(rate(confidence, kNan).intensity, 0.0F);
+  EXPECT_EQ(rate(confidence, 1.5F).intensity, 0.0F);
   EXPECT_EQ(rate(confidence, kNan).intensity, 0.0F);
   EXPECT_EQ(rate(confidence, 1.5F).intensity, 1.0F);
+}
+
+TEST(Confidence, OneFrameAfterNothingWasMeasuredIsNotBelieved) {
+  Confidence confidence(1, 3, 0.5, 5.0);
+  for (int i = 0; i < 3; ++i) rate(confidence, kNan);
+  EXPECT_TRUE(std::isnan(rate(confidence, 1.5F).range));
+  EXPECT_EQ(rate(confidence, 1.5F).range, 1.5F);
 }
 
 TEST(Confidence, OfOneFrameTrustsAll) {

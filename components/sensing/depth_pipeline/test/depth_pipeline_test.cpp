@@ -92,6 +92,54 @@ TEST(DepthPipeline, LowScanHasOnlyWhatIsLow) {
   EXPECT_NEAR(at(pipeline, view.scan->ranges, 0.0), 5.0, 0.02);
 }
 
+TEST(DepthPipeline, WhatIsLowAndNarrowAsPixelsAtAnEdgeIsNotKnown) {
+  for (const double width : {0.02, 0.08}) {
+    SyntheticScene scene;
+    scene.boxes = {{-width / 2, width / 2, 0.3, 2.0, 2.1}};
+    DepthPipeline pipeline = make(scene);
+    const auto image = scene.draw(kPose);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    const float low = at(pipeline, view.low->ranges, 0.0);
+    const float any = at(pipeline, view.scan->ranges, 0.0);
+    if (width < 0.03) {
+      EXPECT_TRUE(std::isnan(low));
+      EXPECT_NEAR(any, 5.0, 0.02) << "the wall behind it";
+    } else {
+      EXPECT_NEAR(low, 2.0, 0.02);
+      EXPECT_NEAR(any, 2.0, 0.02);
+    }
+  }
+}
+
+// Nearer than 2.0 m ahead, but looked at flatter than vinyl must be to mirror: it lies aside.
+TEST(DepthPipeline, AMirroringPatchAsideIsNoDrop) {
+  for (const bool aside : {true, false}) {
+    SyntheticScene scene;
+    scene.half_width = scene.end = 30.0;
+    DepthPipeline pipeline = make(scene);
+    auto image = scene.draw(kPose);
+    const double from = aside ? 1.6 : 1.32;
+    const double middle = aside ? 0.595 : 0.0;  // side over depth
+    for (int row = 0; row < 424; ++row) {
+      const double y = (row - scene.camera.cy) / scene.camera.fy;
+      const double floor = kPose.height / (std::sin(kPose.down) + y * std::cos(kPose.down));
+      const double forward = floor * (std::cos(kPose.down) - y * std::sin(kPose.down));
+      if (!(forward > from && forward < from + 0.36)) continue;
+      for (int column = 0; column < 512; ++column) {
+        const double side = (scene.camera.cx - column) / scene.camera.fx;
+        if (std::abs(side - middle) < 0.065)
+          image[static_cast<std::size_t>(512 * row + column)] = 4000;
+      }
+    }
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    if (aside) {
+      EXPECT_EQ(view.drops, 0);
+    } else {
+      EXPECT_GT(view.drops, 20);
+    }
+  }
+}
+
 TEST(DepthPipeline, WhatTheRobotPassesUnderIsNoObstacle) {
   SyntheticScene scene;
   scene.ceiling = 2.1;

@@ -134,6 +134,7 @@ void DepthSensor::add_noise(std::vector<std::uint16_t>& millimeters) {
   const std::array<std::uint32_t, 4> lost{share(config_.dropouts), share(0.9995),
                                           share(config_.dropouts), share(config_.dark_dropouts)};
   const std::uint32_t flying = share(config_.flying);
+  const auto width = static_cast<std::size_t>(config_.lens.width);
   const bool steps = config_.noise == DepthSensorConfig::Noise::kStructuredLight;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     millimeters[i] = 0;
@@ -141,7 +142,7 @@ void DepthSensor::add_noise(std::vector<std::uint16_t>& millimeters) {
     const std::uint64_t bits = random_.next();
     if (depth <= 0.0F || hits_.cosine[i] < grazing) continue;
     if (static_cast<std::uint32_t>(bits) < lost[hits_.material[i]]) continue;
-    const std::size_t before = i > 0 ? i - 1 : i;
+    const std::size_t before = i % width > 0 ? i - 1 : i;
     if (std::abs(seen_[before] - depth) > kEdge && seen_[before] > 0.0F &&
         static_cast<std::uint32_t>(bits >> 32) < flying) {
       const float share_of_it = static_cast<float>(bits & 0xff) / 256.0F;

@@ -272,6 +272,19 @@ TEST(DepthSensor, VinylMirrorsInPatchesAndBurstsSpoilTheImage) {
   EXPECT_GT(near, 2000);
 }
 
+TEST(DepthSensor, NothingFliesBetweenTheEndOfARowAndTheBeginOfTheNext) {
+  Model model;  // the image's left half is far, its right half near
+  model.prisms = {slab(4.0, 0.0, 4.2, 9.0, 0.0, 2.7), slab(2.0, -9.0, 2.2, 0.0, 0.0, 2.7)};
+  Renderer renderer = Renderer::make(model).value();
+  DepthSensor sensor({}, 3);
+  std::vector<std::uint16_t> image;
+  sensor.measure(renderer, camera(1.0, 0.0), 0.0, image);
+  for (int row = 150; row < 280; ++row) {
+    const std::uint16_t left = image[pixel(0, row)];
+    EXPECT_TRUE(left == 0 || std::abs(left - 4000) < 60) << row << ": " << left;
+  }
+}
+
 TEST(DepthSensor, SameSeedSameImages) {
   std::vector<std::uint16_t> first, second;
   for (auto* image : {&first, &second}) {
