@@ -163,7 +163,9 @@ TEST_F(Dialogue, SaysWhyItFails) {
   session.opened(now);
   hear("QT\n00P\n\nSCIP2.0\n0Ee\n\n");
   hear(kFacts);
-  const std::string refused = std::string("MD0044072501000\n04") + checksum("04") + "\n\n";
+  std::string refused = "MD0044072501000\n04";
+  refused += checksum("04");
+  refused += "\n\n";
   hear(refused);
   EXPECT_EQ(session.reason(), "the scanner refused MD: status 04");
 }
