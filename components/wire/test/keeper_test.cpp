@@ -20,7 +20,7 @@ class Rememberer final : public runtime::Component {
       : memory(host, "latch", [this](const Status& kept) { told.push_back(kept.ok()); }),
         input(host.input(topics::kGoalPose, {.optional = true},
                          [this](const auto& goal, const auto&) {
-                           for (const char& c : goal.header().frame_id()) memory.keep(std::string(1, c));
+                           for (char c : goal.header().frame_id()) memory.keep(std::string(1, c));
                            if (goal.header().frame_id().empty())
                              memory.keep(std::string(2 << 20, 'x'));
                          })) {
