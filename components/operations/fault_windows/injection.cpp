@@ -309,8 +309,8 @@ void break_cameras(const Fault& fault, LockstepWorld& world) {
   const std::function<void(sensor_msgs::msg::LaserScan&)> no_ranges = [](auto& scan) {
     for (float& range : scan.ranges()) range = kNan;
   };
-  const std::function<void(geometry_msgs::msg::PoseArray&)> no_places = [](auto& people) {
-    for (auto& pose : people.poses()) pose.position().x(kNan);
+  const std::function<void(usher_sim_msgs::msg::Sightings&)> no_places = [](auto& people) {
+    for (auto& sighting : people.sightings()) sighting.forward(kNan);
   };
   if (fault.target != "rear camera") {
     break_picture(world, topics::kSimKinectScan, fault, no_ranges);

@@ -158,8 +158,8 @@ TEST_F(Cameras, TellHowPeopleAreDressedWhereTheyHaveColors) {
     host.publish(topics::kRearProcessed, image(kRearFrame));
   });
   bool by_rear = false;
-  for (const auto& person : people())
-    by_rear = by_rear || wire::from_message(person.rear_appearance()).known();
+  for (const auto& one : people())
+    by_rear = by_rear || wire::from_message(one.rear_appearance()).known();
   EXPECT_TRUE(by_rear);
 }
 
