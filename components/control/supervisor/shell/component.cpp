@@ -88,7 +88,7 @@ void SupervisorComponent::watch_topics(const std::vector<drive::NamedComponent>&
        topics::kSupervisorStatus);
   tell(topics::kKinectDepth, topics::kKinectInfo, topics::kKinectColor, topics::kKinectProcessed,
        topics::kKinectTilt, topics::kKinectTiltCommand, topics::kRearDepth, topics::kRearInfo,
-       topics::kRearProcessed, topics::kFaces);
+       topics::kRearColor, topics::kRearProcessed, topics::kFaces);
   tell(topics::kInteractionTarget, topics::kTorsoFrame, topics::kTorsoStatus, topics::kVisitor,
        topics::kGuideStatus, topics::kMeetingStatus, topics::kDialogueScreen,
        topics::kSpeechStatus);
