@@ -15,8 +15,12 @@ namespace usher::topics {
 
 // --- Health
 inline constexpr Topic<usher_msgs::msg::Heartbeat> kHeartbeat{
-    "heartbeat", Kind::kEvent, 4,
-    10,          "*",          "State of every component; critical ones write at 50 Hz."};
+    "heartbeat",
+    Kind::kStream,  // the next one comes before a lost one could be sent again
+    4,
+    10,
+    "*",
+    "State of every component; critical ones write at 50 Hz."};
 inline constexpr Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "diagnostics", Kind::kEvent, 4, 1, "supervisor", "The supervisor's table for ROS 2 tools."};
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 
 namespace usher::test {
 
@@ -46,6 +47,7 @@ DrivenRobot::DrivenRobot(const std::string& more)
                                  [this](const auto& message, const auto&) {
                                    const std::lock_guard lock(mutex_);
                                    speed_ = std::abs(message.v());
+                                   if (message.contacts() > contacts_) note_contact(message);
                                    contacts_ = message.contacts();
                                  }),
        truths_);
@@ -64,6 +66,15 @@ DrivenRobot::~DrivenRobot() {
   wheels_.reset();
   truths_.reset();
   grants_.reset();
+}
+
+void DrivenRobot::note_contact(const usher_sim_msgs::msg::GroundTruth& truth) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "contact with %s at (%.2f, %.2f), %.2f m/s, %.2f rad/s, simulation %.2f s late\n",
+                truth.contact_with().c_str(), truth.pose().position().x(),
+                truth.pose().position().y(), truth.v(), truth.w(), truth.lag());
+  contact_story_ += line;
 }
 
 void DrivenRobot::judge_wheels(double v, double w) {
@@ -125,6 +136,11 @@ double DrivenRobot::speed() const {
 std::uint32_t DrivenRobot::contacts() const {
   const std::lock_guard lock(mutex_);
   return contacts_;
+}
+
+std::string DrivenRobot::contact_story() const {
+  const std::lock_guard lock(mutex_);
+  return contact_story_;
 }
 
 void DrivenRobot::forget() {

@@ -39,6 +39,8 @@ class DrivenRobot {
   /// [m/s] in the world's truth.
   double speed() const;
   std::uint32_t contacts() const;
+  /// A line for each contact: with what, where, at what speed.
+  std::string contact_story() const;
   /// Forgets what the judge noted.
   void forget();
   /// The first command to stand that reached the wheels since `from`.
@@ -53,6 +55,8 @@ class DrivenRobot {
 
  private:
   void judge_wheels(double v, double w);
+  /// Under the mutex.
+  void note_contact(const usher_sim_msgs::msg::GroundTruth& truth);
 
   std::unique_ptr<RunningRobot> robot_;
   std::unique_ptr<Process> errand_;
@@ -60,6 +64,7 @@ class DrivenRobot {
   mutable std::mutex mutex_;
   double speed_ = 0.0;
   std::uint32_t contacts_ = 0;
+  std::string contact_story_;
   Clock::time_point last_grant_{};
   std::vector<Clock::time_point> zeros_;
   double longest_without_grant_ = 0.0, fastest_ = 0.0, fastest_turn_ = 0.0;

@@ -169,6 +169,8 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   guard.only_signed = !options.identity.empty();
   // Clients hear of one another through the server, whose messages are its own.
   guard.watch_presence = options.discovery_server.empty();
+  // Peers are asked where multicast does not go, perhaps on this very host.
+  guard.announces_by_multicast = options.discovery_server.empty() && options.peers.empty();
   if (guard.only_signed) {
     if (auto status = apply_identity(options.identity, qos); !status) return Error{status.error()};
   }

@@ -1,5 +1,6 @@
 #include "runtime/dds/security.hpp"
 
+#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
@@ -12,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "runtime/dds/host_clock.hpp"
@@ -50,6 +52,10 @@ class GuardedTransport final : public ChainingTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     if (!options_.open->load()) return true;
     if (options_.only_signed && is_for_somebody_else({bytes, size})) return true;
+    const MessageKind kind = classify({bytes, size});
+    if (options_.announces_by_multicast &&
+        (kind == MessageKind::kAnnouncement || kind == MessageKind::kFarewell))
+      return send_beyond_loopback(below, {bytes, size}, begin, end, timeout);
     return below->send(bytes, size, begin, end, timeout);
   }
   void receive(TransportReceiverInterface* next, const rtps::octet* bytes, std::uint32_t size,
@@ -73,6 +79,21 @@ class GuardedTransport final : public ChainingTransport {
   }
 
  private:
+  static bool send_beyond_loopback(rtps::SenderResource* below,
+                                   std::span<const std::uint8_t> message,
+                                   rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+                                   const std::chrono::steady_clock::time_point& timeout) {
+    rtps::LocatorList_t beyond;
+    for (; *begin != *end; ++*begin) {
+      if (!rtps::IPLocator::isLocal(**begin)) beyond.push_back(**begin);
+    }
+    if (beyond.empty()) return true;
+    rtps::Locators first(beyond.begin());
+    rtps::Locators last(beyond.end());
+    return below->send(message.data(), static_cast<std::uint32_t>(message.size()), &first, &last,
+                       timeout);
+  }
+
   const GuardOptions options_;
   std::mutex authentication_;
   SignedPresence presence_;

@@ -1,4 +1,5 @@
 // Transport and Observer over real participants.
+#include <arpa/inet.h>
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -14,8 +15,34 @@
 #include "runtime/dds/message_types.hpp"
 #include "runtime/dds/observer.hpp"
 #include "runtime/dds/participant.hpp"
+#include "runtime/dds/rtps_message.hpp"
 #include "support/sanitizer.hpp"
 #include "support/test_domain.hpp"
+
+namespace {
+
+/// Announcements that this process sent, by where they went.
+struct {
+  std::atomic<int> loopback{0};
+  std::atomic<int> multicast{0};
+} g_announcements;
+
+}  // namespace
+
+/// Stands before the C library's.
+extern "C" ssize_t sendto(int socket, const void* bytes, std::size_t size, int flags,
+                          const sockaddr* to, socklen_t length) {
+  using usher::runtime::MessageKind;
+  static const auto below = reinterpret_cast<decltype(&sendto)>(dlsym(RTLD_NEXT, "sendto"));
+  const auto kind = usher::runtime::classify({static_cast<const std::uint8_t*>(bytes), size});
+  if (kind == MessageKind::kAnnouncement && to != nullptr && to->sa_family == AF_INET) {
+    const std::uint32_t address =
+        ntohl(reinterpret_cast<const sockaddr_in*>(to)->sin_addr.s_addr);
+    if (address >> 24U == 127) ++g_announcements.loopback;
+    if (IN_MULTICAST(address)) ++g_announcements.multicast;
+  }
+  return below(socket, bytes, size, flags, to, length);
+}
 
 namespace usher::runtime {
 namespace {
@@ -400,6 +427,18 @@ TEST(DdsTransport, AsksTheProgramAndNotTheLibraryWhoseLeaseHasEnded) {
   Dl_info info{};
   ASSERT_NE(dladdr(check, &info), 0);
   EXPECT_EQ(std::string(info.dli_fname).find("libfastrtps"), std::string::npos) << info.dli_fname;
+}
+
+TEST(DdsTransport, AnnouncesItselfToItsOwnHostByMulticastAlone) {
+  const auto first = transport("lms100");
+  auto second = transport("amcl");
+  Watched watched;
+  second->watch_writers("scan", watched.handler());
+  first->open_writer(output(topics::kScan));
+  ASSERT_TRUE(watched.wait(1));  // they have met
+  g_announcements.loopback = g_announcements.multicast = 0;
+  ASSERT_TRUE(eventually([] { return g_announcements.multicast >= 6; }));
+  EXPECT_EQ(g_announcements.loopback, 0);
 }
 
 TEST(DdsTransport, LeavesNoSharedMemoryBehind) {
