@@ -237,7 +237,10 @@ std::string NavigatorComponent::not_allowed_because() const {
     return supervisor->reason().empty() ? "nobody may drive" : supervisor->reason();
   if (supervisor->state() != supervisor_state::STATE_NAVIGATION_ACTIVE)
     return "the supervisor has not started the navigation";
-  if (!supervisor->enable_movement()) return "the robot has been stopped";
+  if (!supervisor->enable_movement()) {
+    return supervisor->stopped_by().empty() ? "the robot has been stopped"
+                                            : "stopped by " + supervisor->stopped_by().front();
+  }
   return {};
 }
 

@@ -55,7 +55,8 @@ class Component : public testing::Test {
     supervisor.header(wire::header(host.now(), ""));
     supervisor.granted(granted);
     supervisor.reason(granted ? "" : "stopped by operator");
-    supervisor.enable_movement(true);
+    supervisor.enable_movement(stopped_by.empty());
+    supervisor.stopped_by(stopped_by);
     supervisor.state(behavior);
     if (const auto asked = host.last(topics::kSupervisorRequest); asked && answers) {
       supervisor.last_request(asked->id());
@@ -148,6 +149,7 @@ class Component : public testing::Test {
   std::set<std::string> silent;
   std::vector<geometry::Point2> persons;
   bool granted = true, blocked = false, answers = true;
+  std::vector<std::string> stopped_by;  ///< whose stops hold
   std::uint8_t behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
   std::string current_goal, refusal;
   std::uint64_t answered = 0;
@@ -213,6 +215,17 @@ TEST_F(Component, StandsWhileItMayNotDriveAndSaysWhoHoldsIt) {
   EXPECT_EQ(motion(), follow::MODE_STOP);
   EXPECT_EQ(status().reason(), "stopped by operator");
   granted = true;
+  run(1000);
+  EXPECT_EQ(motion(), follow::MODE_PATH);
+}
+
+TEST_F(Component, StandsWhileAStopHoldsAndSaysWhose) {
+  drive();
+  stopped_by = {"guide"};
+  run(300);
+  EXPECT_EQ(motion(), follow::MODE_STOP);
+  EXPECT_EQ(status().reason(), "stopped by guide");
+  stopped_by.clear();
   run(1000);
   EXPECT_EQ(motion(), follow::MODE_PATH);
 }
