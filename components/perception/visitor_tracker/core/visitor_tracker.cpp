@@ -219,10 +219,21 @@ bool VisitorTracker::as_tall(const Look& look) const {
   return height < height_ + kSameHeight || time_ - last_.time > kMayHaveBent;
 }
 
-/// Clothes of clearly other colors than the visitor's.
+/// Clothes of clearly other colors than the visitor's. A camera that has not seen the visitor must
+/// show what the other did: whoever gets his number comes with his look to that one.
 bool VisitorTracker::is_another(const Person& person) const {
-  const auto unlike = imaging::unlikeness(worn_, person.appearances);
-  return unlike && *unlike > imaging::kAnother;
+  const auto differs = [&](const imaging::Appearances& seen) {
+    const auto unlike = imaging::unlikeness(worn_, seen);
+    return unlike && *unlike > imaging::kAnother;
+  };
+  if (differs(person.appearances)) return true;
+  for (std::size_t camera = 0; camera < worn_.size(); ++camera) {
+    if (worn_[camera].known() || !person.appearances[camera].known()) continue;
+    imaging::Appearances alone;
+    alone[camera] = person.appearances[camera];
+    if (differs(alone)) return true;
+  }
+  return false;
 }
 
 /// By height and clothes.
@@ -244,7 +255,7 @@ bool VisitorTracker::looks_like_him(const Person& person) const {
 /// changes, and never from somebody who may be another one.
 void VisitorTracker::learn(const Person& person, double passed) {
   const auto unlike = imaging::unlikeness(worn_, person.appearances);
-  if (on_the_way() && unlike && *unlike > imaging::kAlike) return;
+  if (on_the_way() && ((unlike && *unlike > imaging::kAlike) || is_another(person))) return;
   const double share = on_the_way() ? std::min(1.0, passed / kAdapts) : 1.0;
   for (std::size_t camera = 0; camera < worn_.size(); ++camera)
     imaging::blend(worn_[camera], person.appearances[camera], share);

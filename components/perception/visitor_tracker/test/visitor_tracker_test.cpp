@@ -530,6 +530,24 @@ TEST_F(OnTheWay, HisNumberGivenToSomebodyInOtherClothesIsNotHis) {
   EXPECT_TRUE(sees(6)) << "he himself";
 }
 
+TEST_F(OnTheWay, WhoGotHisNumberComesWithHisLookToTheKinectOnly) {
+  worn = {in(kRed), {}};
+  guide();
+  person(1).appearances[1] = in(kNavy);
+  run(0.3);
+  EXPECT_TRUE(sees(1)) << "a moment says little";
+  run(1.5);
+  EXPECT_EQ(estimate.presence, Presence::kNobody);
+}
+
+TEST_F(OnTheWay, TheOtherCameraMayShowHisClothesInItsColors) {
+  worn = {in(kRed), {}};
+  guide();
+  person(1).appearances[1] = in({45.0, 45.0, 24.0});
+  run(2.0);
+  EXPECT_TRUE(sees(1));
+}
+
 TEST_F(OnTheWay, OtherLightMakesNobodyElseOfHim) {
   worn = {in(kRed), in(kRed)};
   guide();
