@@ -16,8 +16,8 @@ namespace usher::segway_rmp {
 ///
 /// A base that balanced and then reports its motors off has fallen, or somebody switched it off: it
 /// counts as an emergency stop, so that it does not get up by itself while it is lifted. So does
-/// one that went off while its line was closed: until it says how it is, it is told nothing but
-/// zero.
+/// one that went off while its line was closed, or while no driver ran: until it says how it is, it
+/// is told nothing but zero.
 class Link {
  public:
   struct Parameters {
@@ -49,6 +49,8 @@ class Link {
   /// line is closed. Nothing but zero goes out while the base is being configured or in emergency.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
 
+  /// An earlier driver saw it balance, and nobody has told it to balance anew since.
+  void balanced_before() { balanced_ = true; }
   /// Motors off until reset().
   void emergency_stop() { emergency_ = true; }
   /// An operator asks to balance again: configures the base anew. No effect while it balances.
@@ -57,6 +59,8 @@ class Link {
   /// The settings were all sent.
   bool configured() const { return step_ >= kSteps * kRepeats; }
   bool emergency() const { return emergency_; }
+  /// It balanced since it was last told to; whether it still does, tells mode().
+  bool balanced() const { return balanced_; }
   /// The next cycle says nothing that a later one would not say again: only the newest counts.
   bool velocity_only() const { return emergency_ || configured() || asks_first(); }
   Mode mode(Time now) const;

@@ -6,6 +6,7 @@ namespace {
 /// The base holds a command for 0.4 s; it is told at its own rate.
 constexpr auto kCycle = std::chrono::milliseconds(10);
 constexpr const char* kEmergencyKey = "emergency";
+constexpr const char* kBalancedKey = "session.balanced";  // a boot starts with a base that is off
 }  // namespace
 
 Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parameters) {
@@ -27,13 +28,16 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
       driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
                      .emergency_stop = [this] { emergency(true); },
                      .reset = [this] { emergency(false); }}),
-      memory_(host, kEmergencyKey) {
+      memory_(host, kEmergencyKey),
+      balanced_(host, kBalancedKey) {
   const double silence =
       host.parameters().number("guard_silence", "s", {0.03, 0.3}, 0.1,
                                "The guard commands zero when the driver is silent for so long.");
   const auto zero = command({}, Calibration{});
-  // Connecting sets the balance mode: a base that was switched off must stay so over a restart.
+  // Connecting sets the balance mode: a base that was switched off must stay so over a restart, and
+  // one that balanced is asked first, because it may have gone off while no driver ran.
   if (!memory_.found().empty()) line_.link().emergency_stop();
+  if (!balanced_.found().empty()) line_.link().balanced_before();
   line_.open(
       {.address = "serial:///dev/ttyUSB0?baud=460800",
        .text = "The base's line.",
@@ -42,7 +46,7 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
        .take =
            [this](const SegwayFeedback& feedback) {
              driver_.take(feedback);
-             remember();  // that it fell, too
+             remember();  // that it balances, and that it fell
            },
        .lost = [this](const std::string& reason) { driver_.disconnected(reason); }});
 }
@@ -57,6 +61,9 @@ void SegwayRmpComponent::emergency(bool on) {
   remember();
 }
 
-void SegwayRmpComponent::remember() { memory_.keep(line_.link().emergency() ? "off" : ""); }
+void SegwayRmpComponent::remember() {
+  memory_.keep(line_.link().emergency() ? "off" : "");
+  balanced_.keep(line_.link().balanced() ? "yes" : "");
+}
 
 }  // namespace usher::segway_rmp

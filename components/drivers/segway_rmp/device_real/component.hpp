@@ -19,7 +19,8 @@ class SegwayRmpComponent final : public runtime::Component {
 
   drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
-  wire::Keeper memory_;  ///< that its motors were switched off
+  wire::Keeper memory_;    ///< that its motors were switched off
+  wire::Keeper balanced_;  ///< that it balanced
 };
 
 }  // namespace usher::segway_rmp

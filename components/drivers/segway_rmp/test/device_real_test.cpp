@@ -177,6 +177,39 @@ TEST_F(DeviceReal, ABaseThatWentOffWhileItsLineWasOutStaysOffOverARestart) {
   EXPECT_EQ(state(), STATE_BALANCING);
 }
 
+TEST_F(DeviceReal, ABaseThatWentOffWhileNoDriverRanStaysOff) {
+  right.v = 0.5;
+  right.run(2000);
+  device->plugged = false;
+  right.run(200);
+  host.world().kill(host.name());
+  device->switch_off();
+  const int balances = device->balances;
+  host.run_for(milliseconds(20));
+  device->plugged = true;
+  host.world().start(host.name());
+  right.run(2000);
+  EXPECT_EQ(device->balances, balances);
+  EXPECT_EQ(device->twist, geometry::Twist2{});
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_RESET);
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+}
+
+TEST_F(DeviceReal, ADriverThatRestartsDrivesOnABaseThatStillBalances) {
+  right.v = 0.5;
+  right.run(2000);
+  host.world().kill(host.name());
+  host.run_for(milliseconds(20));
+  device->twist = {};
+  host.world().start(host.name());
+  right.run(600);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+}
+
 TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {
   right.run(2000);
   request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP, "stranger");
