@@ -88,10 +88,7 @@ void ScanFilterComponent::filter_waiting() {
 
 void ScanFilterComponent::take_scan(Channel& channel,
                                     std::shared_ptr<const sensor_msgs::msg::LaserScan> scan) {
-  if (!wire::check(*scan)) {
-    ++rejected_;
-    return;
-  }
+  if (const Status status = wire::check(*scan); !status) return refuse(channel, status.error());
   if (channel.waiting) {  // its pitch never came
     ++without_pitch_;
     const auto pitch = pitch_.at(wire::from_message(channel.waiting->header().stamp()));
@@ -102,13 +99,18 @@ void ScanFilterComponent::take_scan(Channel& channel,
   if (!filter(channel, *scan)) channel.waiting = std::move(scan);
 }
 
+void ScanFilterComponent::refuse(const Channel& channel, const std::string& reason) {
+  ++rejected_;
+  if (&channel == &laser_) host_.health().set(HealthState::kDegraded, "scan refused: " + reason);
+}
+
 /// False while the pitch of the scan's time is not known yet.
 bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::LaserScan& scan) {
   const runtime::Time stamp = wire::from_message(scan.header().stamp());
   const double duration = static_cast<double>(scan.time_increment()) *
                           (static_cast<double>(scan.ranges().size()) - 1.0);
   if (!(duration >= 0.0 && duration <= kLongestScan)) {
-    ++rejected_;
+    refuse(channel, "the scan must take 0 to 0.2 s, got " + std::to_string(duration) + " s");
     return true;
   }
   const auto at_first = pitch_.at(stamp);
@@ -119,9 +121,7 @@ bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::Laser
   const auto filtered =
       channel.filter->filter(geometry, scan.ranges(), *at_first, *at_last, channel.planar);
   if (!filtered) {
-    ++rejected_;
-    if (&channel == &laser_)
-      host_.health().set(HealthState::kDegraded, "scan refused: " + filtered.error());
+    refuse(channel, filtered.error());
     return true;
   }
   floor_ = laser_.filter->counts().floor;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
@@ -31,6 +32,7 @@ class ScanFilterComponent final : public runtime::Component {
                        runtime::Output<sensor_msgs::msg::LaserScan> output);
   void filter_waiting();
   void take_scan(Channel& channel, std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
+  void refuse(const Channel& channel, const std::string& reason);
   bool filter(Channel& channel, const sensor_msgs::msg::LaserScan& scan);
   void place_frames();
 

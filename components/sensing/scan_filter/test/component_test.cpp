@@ -203,6 +203,17 @@ TEST_F(Component, RefusesScansThatTakeTooLong) {
   time_increment = 0.0F;
   run(120);
   EXPECT_EQ(host.counter("scans: rejected"), 3U);
+  EXPECT_EQ(reason(), "") << "the others are good";
+  host.clear();
+  for (const float increment : {1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    time_increment = increment;
+    run(200);
+    EXPECT_EQ(left(), 0U);
+    EXPECT_THAT(reason(), StartsWith("scan refused: the scan must take 0 to 0.2 s, got "));
+  }
+  time_increment = 0.0F;
+  run(120);
+  EXPECT_EQ(reason(), "");
 }
 
 TEST_F(Component, SaysThatScansAndPitchDoNotMeet) {
@@ -242,6 +253,27 @@ TEST_F(Component, RejectsAndCountsNonsense) {
   run(200);
   EXPECT_EQ(host.counter("scans: rejected"), 2U);
   EXPECT_EQ(reason(), "") << "the others are good";
+  scans = false;
+  for (int i = 0; i < 10; ++i) {
+    nonsense.header(wire::header(host.now(), "laser"));
+    host.publish(topics::kScan, nonsense);
+    run(20);
+  }
+  EXPECT_EQ(reason(), "scan refused: scan must have 1..100000 ranges, got 0");
+  scans = true;
+  run(120);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(Component, AnUltrasonicScanThatMakesNoSenseSaysNothingOfTheLaser) {
+  run(500);
+  auto nonsense = sonar();
+  nonsense.ranges().clear();
+  host.publish(topics::kUltrasonic, nonsense);
+  scans = sonars = false;  // no good one that would clear it
+  run(150);
+  EXPECT_EQ(host.counter("scans: rejected"), 1U);
+  EXPECT_EQ(reason(), "");
 }
 
 TEST_F(Component, GoesOnWithoutTheUltrasonicSensors) {
