@@ -168,6 +168,7 @@ void NavigatorComponent::take_goal_pose(const geometry_msgs::msg::PoseStamped& g
     ++rejected_;
     return;
   }
+  if (viewer_goal_) refuse_viewer("replaced by a newer goal");
   viewer_goal_ = {requests_.next_id(), *pose, host_.now()};
   requests_.give_up();
   using namespace usher_msgs::msg::SupervisorRequest_Constants;

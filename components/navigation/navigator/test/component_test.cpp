@@ -423,10 +423,10 @@ class ViewerGoal : public Component {
     host.publish(topics::kPlanReply, {}, "global_planner");
     run(500);
   }
-  void click() {
+  void click(double x = 8) {
     geometry_msgs::msg::PoseStamped goal;
     goal.header(wire::header(host.now(), frames::kMap));
-    goal.pose(wire::to_message(geometry::Pose2{8, 0, 0}));
+    goal.pose(wire::to_message(geometry::Pose2{x, 0, 0}));
     host.publish(topics::kGoalPose, goal, "rviz");
   }
   std::string reason_of(std::uint8_t outcome) const {
@@ -472,6 +472,23 @@ TEST_F(ViewerGoal, DoesNotWaitForANavigationOfSomebodyElse) {
   guide_sets_out();
   EXPECT_FALSE(motions().contains(follow::MODE_PATH));
   EXPECT_EQ(plans(), 0U);
+}
+
+TEST_F(ViewerGoal, IsReplacedByANewerOneWithALastWord) {
+  answers = false;
+  click();
+  run(500);
+  EXPECT_EQ(reason_of(STATE_FAILED), "nothing");
+  const auto first = host.last(topics::kSupervisorRequest)->id();
+  click(4);
+  run(200);
+  EXPECT_EQ(reason_of(STATE_FAILED), "replaced by a newer goal");
+  answers = true;
+  behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  run(700);
+  EXPECT_GT(host.last(topics::kSupervisorRequest)->id(), first);
+  EXPECT_EQ(status().state(), STATE_ACTIVE) << status().reason();
+  EXPECT_EQ(status().goal().pose().position().x(), 4.0);
 }
 
 TEST_F(ViewerGoal, EndsWhenTheSupervisorNavigatesForAnother) {
