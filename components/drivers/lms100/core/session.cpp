@@ -143,11 +143,17 @@ bool Session::handle_scan(const Message& message, Time now) {
   last_counter_ = telegram_.scan_counter;
   last_scan_ = now;
   ++scans_;
-  reason_.clear();
-  // 0 is well; 2 warns of pollution and still measures; 1, 4 and 5 are not to be trusted.
+  // 0 is well; 2 warns of pollution and still measures; all others are not to be trusted.
   const int status = telegram_.status[1];
-  if (status == 1) reason_ = "the scanner reports an error";
-  if (telegram_.polluted()) reason_ = "the scanner's window is dirty";
+  if (status == 0) {
+    reason_.clear();
+  } else if (status == 1) {
+    reason_ = "the scanner reports an error";
+  } else if (telegram_.polluted()) {
+    reason_ = "the scanner's window is dirty";
+  } else {
+    reason_ = "the scanner reports status " + std::to_string(status);
+  }
   return status == 0 || status == 2;
 }
 

@@ -146,6 +146,10 @@ TEST(Session, TrustsNoScanOfADeviceWithAnError) {
   EXPECT_EQ(hear(4), 2U);
   EXPECT_EQ(hear(5), 2U);
   EXPECT_FALSE(link.session.healthy());
+  for (const int status : {3, 6, 128, 255}) {
+    EXPECT_EQ(hear(static_cast<std::uint8_t>(status)), 2U);
+    EXPECT_EQ(link.session.reason(), "the scanner reports status " + std::to_string(status));
+  }
   EXPECT_EQ(hear(0), 3U);
   EXPECT_TRUE(link.session.healthy());
 }
