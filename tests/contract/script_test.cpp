@@ -42,7 +42,6 @@ class Script : public testing::Test {
   /// A tree that was built: the program says how it was called.
   void built() {
     folder_.file("build/release/build.ninja", "");
-    folder_.file("build/release/.whole", "");
     program("build/release/bin/usher", "echo program \"$@\"");
     program("build/release/bin/usher-experiment", "");
   }
