@@ -144,9 +144,11 @@ struct Decision {
 ///
 /// In this order: the highest enabled source with a fresh command; velocity limits of the
 /// situation, of a person ahead, of localization, battery and supervisor, by one factor so that the
-/// driven arc stays; acceleration limits; for an operator and the interaction the guard; whisker
-/// reflex. Anything missing gives zero (with the turn rate that keeps a rolling base on its arc),
-/// and zero is a decision too: it is to be published, silence is not.
+/// driven arc stays; the guard, which leaves a navigation alone that has not gone wrong;
+/// acceleration limits; for an operator and the interaction the guard again, because while the
+/// robot speeds up into a turn its arc is another one; whisker reflex. Anything missing gives zero
+/// (with the turn rate that keeps a rolling base on its arc), and zero is a decision too: it is to
+/// be published, silence is not.
 ///
 /// Call it whenever a command arrives and at the timer; the acceleration limits use the time since
 /// the last call. Deterministic, no allocation.
