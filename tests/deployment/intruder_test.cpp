@@ -133,9 +133,7 @@ class IntruderTest : public testing::Test {
     running().wait_for([] { return false; }, Seconds(2.0));
     // It may turn on the spot, or have arrived.
     EXPECT_TRUE(running().wait_for(
-        [&] {
-          return robot().speed() > 0.1 || !robot().reason().empty() || !robot().under_way();
-        },
+        [&] { return robot().speed() > 0.1 || !robot().reason().empty() || !robot().under_way(); },
         Seconds(5)))
         << "it stands without a reason\n"
         << running().complaints() << robot().errand_story();

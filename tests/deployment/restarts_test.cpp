@@ -182,7 +182,8 @@ TEST_F(Restarts, AtRandomTimesEndOnTheWayOrInAStopWithAReason) {
     const double pause = draw(0.1, 2.0);
     running().wait_for([] { return false; }, Seconds(pause));
     const std::string victim = kDriveChain[random() % std::size(kDriveChain)];
-    kills += "after " + std::to_string(pause) + " s: " + victim + " " + robot().contact_story() + "\n";
+    kills +=
+        "after " + std::to_string(pause) + " s: " + victim + " " + robot().contact_story() + "\n";
     const auto processes = running().components();
     if (const auto found = processes.find(victim); found != processes.end())
       ::kill(found->second, SIGKILL);

@@ -36,9 +36,15 @@ void RunRecord::take(const usher_sim_msgs::msg::GroundTruth& truth) {
                       truth.clearance(), wanted_.twist().linear().x(),
                       wanted_.twist().angular().z(), command_.v(), command_.w(), whiskers_, nearest,
                       bearing, navigation_ ? state_of(*navigation_) : ""});
+  if (truth.contacts() > contacts_) {
+    char where[120];
+    std::snprintf(where, sizeof where, " at (%.2f, %.2f), %.2f m/s, %.2f rad/s, %.1f s",
+                  truth.pose().position().x(), truth.pose().position().y(), truth.v(), truth.w(),
+                  runtime::seconds(samples_.back().stamp - samples_.front().stamp));
+    contact_with_ = truth.contact_with() + where;
+  }
   contacts_ = truth.contacts();
   touches_ = truth.touches();
-  contact_with_ = truth.contact_with();
   worst_lag_ = std::max(worst_lag_, truth.lag());
   for (const auto& person : truth.people()) {
     const geometry::Point2 position(person.x(), person.y());

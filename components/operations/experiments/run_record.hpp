@@ -40,7 +40,7 @@ class RunRecord {
     std::size_t estimates = 0;
     std::uint32_t contacts = 0;
     std::uint32_t touches = 0;
-    std::string contact_with;
+    std::string contact_with;  ///< the last one: with what, where, how fast, when
     double worst_lag = 0.0;  ///< [s]
   };
 

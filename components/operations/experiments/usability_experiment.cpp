@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "foundation/random/random.hpp"
@@ -35,6 +36,7 @@ constexpr std::array kInputs{Input{"touch", 30, 120, 60}, Input{"voice", 40, 90,
 struct Visit {
   std::vector<double> tasks;  ///< [s] from the moment that the robot waited for a visitor
   std::uint32_t touches = 0, ignored = 0, contacts = 0;
+  std::string contact_with;
   std::uint64_t said = 0, asked_back = 0, mistaken = 0;  ///< utterances of the visitor
   double distance = NAN;  ///< [m] of the visitor from the robot at a question, median
   double speed = NAN;     ///< [m/s] of the robot while it guides and moves, mean
@@ -58,9 +60,9 @@ double mean(const std::vector<double>& values) {
 }
 
 /// One participant: comes up to the robot, waits for it, asks for a map, is guided to a place and
-/// back, says goodbye and what it was like.
+/// back, says goodbye and what it was like. `csv` gets the run when it is a path.
 Result<Visit> take_part(Deployment deployment, const Input& input, const std::string& place,
-                        const std::string& home, std::uint64_t seed) {
+                        const std::string& home, std::uint64_t seed, const std::string& csv) {
   Random random(seed * 2003 + 11);
   const auto set = [&](const char* name, const std::string& value) {
     set_value(deployment, kVisitor, name, value);
@@ -110,9 +112,13 @@ Result<Visit> take_part(Deployment deployment, const Input& input, const std::st
     }
   });
   while (world.elapsed() < kLongest && !report) world.run_for(std::chrono::milliseconds(500));
+  if (!csv.empty()) {
+    if (const Status saved = write_file(csv, run_csv(record)); !saved) return Error{saved.error()};
+  }
   visit.tasks = tasks_done(states);
   visit.state = states.empty() ? "no dialogue" : states.back().second;
   visit.contacts = record.summary().contacts;
+  visit.contact_with = record.summary().contact_with;
   visit.complaints = (*run)->complaints();
   visit.digest = world.digest();
   visit.distance = median(std::move(distances));
@@ -162,18 +168,26 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};
   if (places->size() < 2) return Error{"the site needs two places, to go to one and back"};
+  // An input, or one visit by it: touch_9.
+  const auto underscore = options.only.rfind('_');
+  const std::string only = options.only.substr(0, underscore);
+  const bool one = underscore != std::string::npos;
+  const std::size_t first = one ? std::strtoul(&options.only[underscore + 1], nullptr, 10) : 1;
   std::vector<const Input*> inputs;
   for (const Input& input : kInputs) {
-    if (options.only.empty() || options.only == input.name) inputs.push_back(&input);
+    if (only.empty() || only == input.name) inputs.push_back(&input);
   }
-  if (inputs.empty()) return Error{"--only takes touch, voice or mixed, not " + options.only};
-  const auto seeds = static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
+  if (inputs.empty() || first == 0)
+    return Error{"--only takes touch, voice or mixed, or one visit as touch_9, not " +
+                 options.only};
+  const auto seeds = one ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   // The same participants by each input.
-  const auto seed_of = [&](std::size_t i) { return 1 + i / inputs.size(); };
+  const auto seed_of = [&](std::size_t i) { return first + i / inputs.size(); };
   const auto run_visit = [&](std::size_t i) {
     const std::size_t seed = seed_of(i);
     const std::string& place = (*places)[1 + seed % (places->size() - 1)].name;
-    return take_part(*deployment, *inputs[i % inputs.size()], place, places->front().name, seed);
+    return take_part(*deployment, *inputs[i % inputs.size()], place, places->front().name, seed,
+                     one ? options.out + "/run.csv" : "");
   };
   std::vector<std::optional<Visit>> results(seeds * inputs.size());
   const Status ran = run_jobs(results.size(), "visits", [&](std::size_t i) -> Result<std::string> {
@@ -183,7 +197,9 @@ Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
     if (!each->done()) {
       said = std::string(inputs[i % inputs.size()]->name) + ", seed " + std::to_string(seed_of(i)) +
              ": " + std::to_string(each->tasks.size()) + " tasks, contacts " +
-             std::to_string(each->contacts) + ", " + each->state + "\n" + each->complaints;
+             std::to_string(each->contacts) + " " + each->contact_with + ", " + each->state +
+             " (replay: usher experiment usability --only " + inputs[i % inputs.size()]->name +
+             "_" + std::to_string(seed_of(i)) + ")\n" + each->complaints;
     }
     results[i] = std::move(each).value();
     return said;

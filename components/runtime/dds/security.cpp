@@ -1,12 +1,12 @@
 #include "runtime/dds/security.hpp"
 
-#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <fastdds/rtps/common/LocatorList.hpp>
 
 #include <algorithm>
 #include <cerrno>

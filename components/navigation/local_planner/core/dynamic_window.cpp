@@ -29,6 +29,7 @@ constexpr double kWalksOn = 0.2;     // [m/s] the same way: no meeting
 constexpr double kWalks = 0.3;       // [m/s] slower, the costs say all
 constexpr double kAtTheRobot = 0.8;  // [m] from its middle
 constexpr double kArmsLength = 0.4;  // [m] between robot and person
+constexpr double kToward = 0.7;      // cosine: who is ahead
 constexpr double kPolite = 6.0;      // [s] that it gives way
 constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
 constexpr double kSamePlace = 0.3;   // [m]
@@ -476,6 +477,21 @@ bool DynamicWindow::somebody_beside(const Input& input) const {
   });
 }
 
+/// The speed from which it still stops before the nearest of those ahead, wherever its arc leads:
+/// where they step next nobody foresees.
+double DynamicWindow::speed_before_people(const Input& input) const {
+  const geometry::Point2 heading(std::cos(input.pose.yaw), std::sin(input.pose.yaw));
+  double fastest = config_.pace;
+  for (const MovingDisc& person : input.people) {
+    const geometry::Point2 way = person.position - input.pose.position();
+    const double range = way.norm();
+    if (way.dot(heading) < kToward * range) continue;
+    const double gap = range - config_.footprint.inscribed_radius() - person.radius;
+    fastest = std::min(fastest, config_.stopping.speed(gap));
+  }
+  return fastest;
+}
+
 Decision DynamicWindow::follow(const Input& input) {
   const double obstacle = obstacle_on_path(input);
   const auto with_obstacle = [obstacle](Decision decision) {
@@ -516,6 +532,7 @@ Decision DynamicWindow::follow(const Input& input) {
     fastest = std::min(fastest, room);
   }
   if (somebody_beside(input)) fastest = std::min(fastest, config_.careful_speed);
+  fastest = std::min(fastest, std::max(config_.careful_speed, speed_before_people(input)));
   fastest = std::max(fastest, config_.slowest);
   tight_ = false;
   // Squeezing is for where the plan leads through; past what stands on the plan only with room,

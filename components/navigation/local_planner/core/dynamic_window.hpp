@@ -161,6 +161,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Decision brake(const Input& input);
   bool gives_way(const Input& input);
   bool somebody_beside(const Input& input) const;
+  double speed_before_people(const Input& input) const;
   Decision halt(const Input& input, Reason reason, double deceleration) const;
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);

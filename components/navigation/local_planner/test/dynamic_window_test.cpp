@@ -258,6 +258,19 @@ TEST(Decide, CreepsPastWhoStandsWithinArmsLength) {
   EXPECT_GT(speed({0.4, -1.2}), 0.5) << "out of reach";
 }
 
+TEST(Decide, IsNoFasterThanItCanStopBeforeWhoIsAheadThoughItsWayLeadsPastThem) {
+  DynamicWindowConfig config;
+  config.pace = 0.9;
+  DynamicWindow planner = planner_to(8.0, config);
+  const auto speed = [&](const geometry::Point2& where) {
+    const std::vector<MovingDisc> person{{where, {0.0, 0.0}, 0.25}};
+    return planner.decide(empty_window(), {}, {0.5, 0}, {0.5, 0}, 0.05, person).target.v;
+  };
+  const double gap = std::hypot(1.1, 0.8) - config.footprint.inscribed_radius() - 0.25;
+  EXPECT_LE(speed({1.1, 0.8}), std::max(config.careful_speed, config.stopping.speed(gap)) + 1e-9);
+  EXPECT_GT(speed({0.5, 1.3}), config.stopping.speed(gap)) << "beside";
+}
+
 /// The laser, blind so near, shows nothing of them.
 TEST(Decide, DoesNotTurnIntoSomebodyWhoStandsAtItsSideAndGoesStraightOn) {
   const DynamicWindowConfig config;

@@ -36,8 +36,7 @@ extern "C" ssize_t sendto(int socket, const void* bytes, std::size_t size, int f
   static const auto below = reinterpret_cast<decltype(&sendto)>(dlsym(RTLD_NEXT, "sendto"));
   const auto kind = usher::runtime::classify({static_cast<const std::uint8_t*>(bytes), size});
   if (kind == MessageKind::kAnnouncement && to != nullptr && to->sa_family == AF_INET) {
-    const std::uint32_t address =
-        ntohl(reinterpret_cast<const sockaddr_in*>(to)->sin_addr.s_addr);
+    const std::uint32_t address = ntohl(reinterpret_cast<const sockaddr_in*>(to)->sin_addr.s_addr);
     if (address >> 24U == 127) ++g_announcements.loopback;
     if (IN_MULTICAST(address)) ++g_announcements.multicast;
   }
