@@ -143,6 +143,21 @@ TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   EXPECT_EQ(reason(), "") << "neither was ever heard";
 }
 
+TEST_F(Component, KeepsWhatADepthCameraSawThatFallsSilent) {
+  for (const auto* topic : {&topics::kKinectScan, &topics::kKinectScanLow, &topics::kRearScan}) {
+    SCOPED_TRACE(topic->name);
+    base.x += 6.0;  // what the one before saw is out of the window
+    give_map();
+    run(200);
+    for (int i = 0; i < 10; ++i) host.publish(*topic, scan("laser", 1.0F)), run(40);
+    EXPECT_EQ(local_cost(base.x + 1.0, 0.0), kLethalCost);
+    run(1500);  // its age is 0.5 s
+    EXPECT_EQ(local_cost(base.x + 1.0, 0.0), kLethalCost) << "no laser clears what it cannot see";
+    EXPECT_EQ(local_cost(base.x + 2.0, 0.0), kLethalCost) << "the laser goes on";
+    EXPECT_EQ(reason(), "");
+  }
+}
+
 TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
   give_map();
   run(200);
