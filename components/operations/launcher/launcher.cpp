@@ -154,8 +154,10 @@ std::optional<std::uint32_t> domain_of_lock(const std::string& name) {
 }
 
 /// Whether the process lives that wrote its number into a lock: a launcher that was killed leaves
-/// its files. To try the lock itself could refuse it to one who starts now.
+/// its files. To try the lock itself could refuse it to one who starts now. A service's lock, which
+/// its user alone may read, counts as held.
 bool holder_lives(const std::string& lock) {
+  if (access(lock.c_str(), R_OK) != 0) return errno == EACCES;
   pid_t pid = 0;
   std::ifstream(lock) >> pid;
   return pid > 0 && (kill(pid, 0) == 0 || errno == EPERM);
