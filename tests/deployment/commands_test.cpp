@@ -195,6 +195,9 @@ TEST_F(Commands, EmergencyStopIsAFaultUntilCleared) {
   EXPECT_EQ(status->wait(), 1);
   EXPECT_TRUE(contains(status->output(), "may not drive: ")) << status->output();
   EXPECT_TRUE(contains(status->output(), "latched fault: ")) << status->output();
+  const auto move = robot_->command({"move"});
+  EXPECT_EQ(move->wait(), 1);
+  EXPECT_TRUE(contains(move->errors(), "the robot stands: emergency stop")) << move->errors();
   EXPECT_EQ(output({"clear"}), "cleared\n");
   EXPECT_TRUE(well()) << robot_->complaints();
   EXPECT_EQ(output({"clear"}), "cleared\n") << "nothing to clear is fine";

@@ -31,6 +31,24 @@ int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string
   return 0;
 }
 
+/// Lifts the stop, and says when that alone lets nothing drive.
+int move_on(std::uint32_t domain) {
+  auto observer = Observer::create(reach_robot(kOperatorName, domain));
+  if (!observer) return fail(observer.error());
+  auto reader = (*observer)->reader(topics::kSupervisorStatus);
+  if (!reader) return fail(reader.error());
+  if (const auto told =
+          tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
+      !told)
+    return fail(told.error());
+  const auto status = reader->take(std::chrono::seconds(1));
+  if (status && status->state() == SupervisorStatus_Constants::STATE_FAULT)
+    return fail("the stop is lifted, but the robot stands: " + status->reason() +
+                " (`usher clear` clears a fault whose cause is gone)");
+  std::cout << "the stop is lifted\n";
+  return 0;
+}
+
 int save_map(std::uint32_t domain, const std::string& path) {
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
@@ -89,10 +107,7 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
                        *emergency ? "emergency stop" : "stopped");
   });
   with_domain(app.add_subcommand("move", "Lift `usher stop`; a latched fault needs `usher clear`"))
-      ->callback([=, &exit_code] {
-        exit_code =
-            ask_supervisor(meant_domain(*domain), COMMAND_MOVEMENT_ON, "the stop is lifted");
-      });
+      ->callback([=, &exit_code] { exit_code = move_on(meant_domain(*domain)); });
   with_domain(app.add_subcommand(
                   "clear", "Clear latched faults (an emergency stop is one) whose cause is gone"))
       ->callback([=, &exit_code] {
