@@ -41,7 +41,7 @@ class RunRecord {
     std::uint32_t contacts = 0;
     std::uint32_t touches = 0;
     std::string contact_with;  ///< the last one: with what, where, how fast, when
-    double worst_lag = 0.0;  ///< [s]
+    double worst_lag = 0.0;    ///< [s]
   };
 
   /// How far an estimate was from the truth.

@@ -23,9 +23,9 @@ struct GuardOptions {
   bool only_signed = false;
   /// With `only_signed`: announcements do not keep somebody who signs nothing (SignedPresence).
   bool watch_presence = false;
-  /// Announcements go out by multicast, which this host hears too: those that Fast DDS also sends to
-  /// each participant of this host alone stay unsent (20 of the 21 datagrams of an announcement on a
-  /// robot of 20 participants, 5 times a second from each).
+  /// Announcements go out by multicast, which this host hears too: those that Fast DDS also sends
+  /// to each participant of this host alone stay unsent (20 of the 21 datagrams of an announcement
+  /// on a robot of 20 participants, 5 times a second from each).
   bool announces_by_multicast = false;
   /// Gets the address that a malformed or unsigned message came from, on the thread that received
   /// it.
