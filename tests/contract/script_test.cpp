@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,16 @@ class Script : public testing::Test {
     folder_.file("build/release/build.ninja", "");
     program("build/release/bin/usher", "echo program \"$@\"");
     program("build/release/bin/usher-experiment", "");
+  }
+  /// A launcher of this tree that does not end.
+  std::unique_ptr<test::Process> launched() {
+    const std::string path = folder_.path() + "/build/release/bin/usher";
+    fs::copy_file("/usr/bin/tail", path, fs::copy_options::overwrite_existing);
+    auto robot = std::make_unique<test::Process>(
+        std::vector<std::string>{path, "launch", "-F"});  // a file that never comes
+    fs::remove(path);
+    built();
+    return robot;
   }
   /// Some source is newer than what was built from it.
   void edited() { program("tools/ninja", "echo '[1/9] c++ a.cpp'"); }
@@ -94,6 +105,19 @@ TEST_F(Script, TakesWhatIsThereWhereItIsTold) {
   EXPECT_EQ(run({"launch", "x"}, "USHER_NO_BUILD=1"), 0);
   EXPECT_EQ(calls, "");
   EXPECT_EQ(output, "program launch x\n");
+}
+
+TEST_F(Script, ReplacesNothingUnderARobotThatRuns) {
+  built(), edited();
+  {
+    const auto robot = launched();
+    EXPECT_EQ(run({"check", "x"}), 0) << errors;
+    EXPECT_EQ(calls, "");
+    EXPECT_THAT(errors, HasSubstr("a robot runs with the programs in build/release"));
+    EXPECT_EQ(output, "program check x\n");
+  }
+  EXPECT_EQ(run({"check", "x"}), 0) << errors;
+  EXPECT_EQ(calls, "cmake --build build/release --target usher-programs\n");
 }
 
 TEST_F(Script, SaysThatThereIsNothingToTake) {

@@ -218,6 +218,9 @@ TEST_F(Commands, GotoThatIsInterruptedIsCancelled) {
   };
   const auto command = robot_->command({"goto", "kitchen"});
   ASSERT_TRUE(became(usher_msgs::msg::GoalStatus_Constants::STATE_ACTIVE)) << int{state};
+  const auto told = robot_->command({"status"});
+  told->wait();
+  EXPECT_TRUE(contains(told->output(), "\ngoal kitchen of ")) << told->output();
   command->signal(SIGINT);
   EXPECT_EQ(command->wait(), 1);
   EXPECT_EQ(command->errors(), "usher: cancelled\n");

@@ -4,13 +4,14 @@
 #include <limits>
 #include <string>
 
+#include "foundation/grid/costs.hpp"
+
 namespace usher::grid {
 
 namespace {
 
-constexpr double kEscape = 0.5;            // [m] to a place where the robot can pass
-constexpr std::int8_t kOccupiedFrom = 65;  // percent, as map_server's default
-constexpr std::uint8_t kBlocked = 254;
+constexpr double kEscape = 0.5;                          // [m] to a place where the robot can pass
+constexpr std::int8_t kOccupiedFrom = 65;                // percent, as map_server's default
 constexpr int kMostCells = 2 * Wavefront::kLargestSide;  // a side
 
 /// `factor` x `factor` cells in one: the most occupied of them; else unknown when one is.
@@ -44,8 +45,8 @@ Status WayLengths::set_map(const OccupancyGrid& map, double room) {
   for (auto& value : obstacles) value = value >= kOccupiedFrom ? kOccupied : value;
   passing_.build(obstacles, room);
   Grid<std::uint8_t> costs(obstacles.geometry(), 0);
-  for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = passing_.free_at(i) ? 0 : kBlocked;
-  wavefront_.set_obstacles(costs, kBlocked, true);
+  for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = passing_.free_at(i) ? 0 : kLethalCost;
+  wavefront_.set_obstacles(costs, kLethalCost, true);
   lengths_.clear();
   return {};
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <iostream>
 #include <map>
@@ -23,6 +24,8 @@ using std::chrono::milliseconds;
 
 constexpr const char* kPrefix = "rt/";
 constexpr std::size_t kItemsShown = 8;
+constexpr std::size_t kWritersShown = 3;           // everybody has a heartbeat
+constexpr auto kGoalPatience = milliseconds(500);  // a robot without navigator has none
 
 int fail(const std::string& message) {
   std::cerr << "usher: " << message << "\n";
@@ -45,14 +48,37 @@ void show_refusals(const std::vector<runtime::Refusal>& refusals) {
   for (const auto& refusal : refusals) std::cout << to_string(refusal) << "\n";
 }
 
-/// What the supervisor thinks; exit code 0 only when nothing is wrong.
+/// "goal printer of operator: 34 %, 12.3 m left, 25 s, 1 recovery; an obstacle 0.4 m ahead"; empty
+/// when there is none.
+std::string goal_line(const usher_msgs::msg::NavigateStatus& status) {
+  namespace goal_state = usher_msgs::msg::GoalStatus_Constants;
+  if (status.state() != goal_state::STATE_ACTIVE && status.state() != goal_state::STATE_WAITING)
+    return {};
+  const auto& goal = status.goal().pose().position();
+  std::string line =
+      "goal " +
+      (status.location().empty() ? format("%.1f", goal.x()) + " " + format("%.1f", goal.y())
+                                 : status.location()) +
+      " of " + status.client() + ": " + format("%.0f %%", 100.0 * status.progress()) + ", " +
+      format("%.1f m left", status.remaining());
+  if (std::isfinite(status.eta())) line += ", " + format("%.0f s", status.eta());
+  if (const auto n = status.recoveries(); n > 0)
+    line += ", " + std::to_string(n) + (n == 1 ? " recovery" : " recoveries");
+  if (!status.reason().empty()) line += "; " + status.reason();
+  return line;
+}
+
+/// What the supervisor thinks, and what the navigator is about; exit code 0 only when nothing is
+/// wrong.
 int status(std::uint32_t domain, double patience) {
   auto observer = Observer::create(reach_robot("status", domain));
   if (!observer) return fail(observer.error());
   auto reader = (*observer)->reader(topics::kSupervisorStatus);
-  if (!reader) return fail(reader.error());
+  auto goals = (*observer)->reader(topics::kNavigateStatus);
+  if (!reader || !goals) return fail(!reader ? reader.error() : goals.error());
   const auto message = reader->take(runtime::from_seconds(patience));
   if (!message) return fail(nobody_there("supervisor", domain));
+  const auto goal = goals->take(kGoalPatience);
   std::string stopped;
   for (const auto& client : message->stopped_by())
     stopped += (stopped.empty() ? "" : ", ") + client;
@@ -61,6 +87,7 @@ int status(std::uint32_t domain, double patience) {
                 : !stopped.empty()  ? ", stands: stopped by " + stopped
                                     : ", may drive")
             << "\n";
+  if (const auto line = goal ? goal_line(*goal) : ""; !line.empty()) std::cout << line << "\n";
   Table table({"component", "health", "loss means", "heard s ago", "why"});
   constexpr const char* kCriticality[] = {"stop", "degrade", "notify"};
   bool well = true;
@@ -89,9 +116,11 @@ struct TopicRow {
   std::unique_ptr<Observer::Subscription> subscription;
 };
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& names, std::size_t shown) {
   std::string out;
-  for (const auto& name : names) out += (out.empty() ? "" : " ") + name;
+  for (std::size_t i = 0; i < std::min(names.size(), shown); ++i)
+    out += (out.empty() ? "" : " ") + names[i];
+  if (names.size() > shown) out += " +" + std::to_string(names.size() - shown);
   return out.empty() ? "-" : out;
 }
 
@@ -122,7 +151,7 @@ int list_topics(std::uint32_t domain, double duration) {
                s.rate_hz > 0 ? format("%.1f", s.rate_hz) : "-",
                timed ? format("%.2f", runtime::seconds(s.latency_p50) * 1e3) : "-",
                timed ? format("%.2f", runtime::seconds(s.latency_p99) * 1e3) : "-",
-               joined(row.writers), joined(row.readers)});
+               joined(row.writers, kWritersShown), joined(row.readers, row.readers.size())});
   }
   std::cout << table.text();
   return rows.empty() ? fail(nobody_there("topic", domain)) : 0;

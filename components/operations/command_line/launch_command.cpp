@@ -2,8 +2,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -221,6 +223,16 @@ class RunningRobot {
   std::optional<runtime::Observer::Reader<usher_msgs::msg::BaseStatus>> base_reader_;
 };
 
+/// "14:05:09  navigator: ended with code 3", in local time.
+std::string at_this_time(const std::string& event) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%H:%M:%S  ", &local);
+  return text.data() + event;
+}
+
 /// What the operator reads while it runs: events, and on a terminal a table that is rewritten once
 /// a second.
 class Display {
@@ -229,7 +241,7 @@ class Display {
             const Heartbeats& heartbeats) {
     std::cout.clear();  // what a full disk did not take is lost, what comes later need not be
     if (!events.empty()) table_lines_ = 0;
-    for (const auto& event : events) std::cout << event << "\n";
+    for (const auto& event : events) std::cout << at_this_time(event) << "\n";
     if (terminal_ && std::chrono::steady_clock::now() >= next_table_) {
       next_table_ += milliseconds(1000);
       const Table table = live_table(launcher, heartbeats);
@@ -309,7 +321,7 @@ int launch(const LaunchArguments& arguments) {
             << "stopping: first the robot, then everything in reverse order, the base driver last\n"
             << std::flush;
   launcher->stop([&] { return robot.stands(); });
-  for (const auto& event : launcher->events()) std::cout << event << "\n";
+  for (const auto& event : launcher->events()) std::cout << at_this_time(event) << "\n";
   return broken ? 1 : 0;
 }
 

@@ -41,7 +41,8 @@ int move_on(std::uint32_t domain) {
           tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
       !told)
     return fail(told.error());
-  const auto status = reader->take(std::chrono::seconds(1));
+  auto status = reader->take(std::chrono::seconds(1));
+  while (const auto newer = reader->take()) status = newer;
   if (status && status->state() == SupervisorStatus_Constants::STATE_FAULT)
     return fail("the stop is lifted, but the robot stands: " + status->reason() +
                 " (`usher clear` clears a fault whose cause is gone)");

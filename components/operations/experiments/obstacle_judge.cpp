@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/grid/costs.hpp"
+
 namespace usher::operations {
 
 namespace {
 
-constexpr std::uint8_t kLethal = 254;
 constexpr std::size_t kKept = 200;     // poses
 constexpr double kMoves = 0.05;        // [m/s] who is slower stands
 constexpr double kScanReach = 4.0;     // [m] farther ends are in no costmap
@@ -79,7 +80,7 @@ void ObstacleJudge::take_costs(runtime::Time stamp, const grid::Grid<std::uint8_
   const double stray = config_.stray + config_.thickness;
   std::size_t strays = 0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    if (costs[i] != kLethal) continue;
+    if (costs[i] != grid::kLethalCost) continue;
     const geometry::Point2 place = world_T_odom * costs.geometry().center(costs.geometry().cell(i));
     strays += everything_.nearest(place, config_.height, stray).thing < 0;
   }
@@ -104,8 +105,9 @@ void ObstacleJudge::judge(std::size_t object, const geometry::Pose2& odom_T_worl
   for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
     for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
       const grid::Cell cell{x, y};
-      present = present || (costs.geometry().contains(cell) && costs.at(cell) == kLethal &&
-                            (costs.geometry().center(cell) - place).norm() <= config_.near);
+      present =
+          present || (costs.geometry().contains(cell) && costs.at(cell) == grid::kLethalCost &&
+                      (costs.geometry().center(cell) - place).norm() <= config_.near);
     }
   }
   const bool seen = std::isfinite(verdict.first_seen);

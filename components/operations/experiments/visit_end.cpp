@@ -18,8 +18,6 @@ bool holds(const usher_msgs::msg::SupervisorStatus& status) {
 
 std::optional<std::string> waits_safely_for(const OpenVisit& visit) {
   if (!visit.stands) return std::nullopt;
-  if (visit.dialogue == "guide_paused") return "the visitor, who stopped it";
-  if (visit.dialogue == "guide_error") return "an answer to what went wrong";
   if (visit.supervisor && holds(*visit.supervisor)) return "the supervisor";
   return std::nullopt;
 }

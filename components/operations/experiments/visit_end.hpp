@@ -9,13 +9,12 @@ namespace usher::operations {
 
 /// How a visit stands that has not ended long after it should have.
 struct OpenVisit {
-  std::string dialogue;                                         ///< state of the guide
   bool stands = false;                                          ///< the robot, for a while
   std::optional<usher_msgs::msg::SupervisorStatus> supervisor;  ///< its newest word
 };
 
-/// What the visit waits for, safely: a visitor who stopped the robot, whoever else holds it, or an
-/// answer to what went wrong. Nothing: it is a dead end, whether the robot stands or not.
+/// Who holds the robot that stands, other than the guide, whose questions all have a time-out.
+/// Nothing: it is a dead end.
 std::optional<std::string> waits_safely_for(const OpenVisit& visit);
 
 }  // namespace usher::operations

@@ -83,7 +83,7 @@ const std::array kManners{
            }},
     Manner{"forgets", "stops the robot, forgets it",
            [](Random& r) {
-             return Values{{"stops_at", within(r, 3, 30)}, {"stops_for", "3000"}};
+             return Values{{"stops_at", within(r, 3, 30)}, {"gives_up_in", "guide_paused"}};
            }},
     Manner{"cancels", "cancels on the way",
            [](Random& r) {
@@ -154,7 +154,6 @@ Result<Visit> visit(Deployment deployment, const Manner& manner, const std::stri
   visit.ended = free();
   visit.place = place;
   visit.state = record.dialogue().empty() ? "no dialogue" : record.dialogue().back();
-  open.dialogue = visit.state;
   open.stands = stands(record.samples());
   if (!visit.ended) visit.waits_for = waits_safely_for(open);
   visit.contacts = record.summary().contacts;

@@ -163,6 +163,22 @@ bool holder_lives(const std::string& lock) {
   return pid > 0 && (kill(pid, 0) == 0 || errno == EPERM);
 }
 
+/// What the kernel calls the time since the machine started.
+std::string boot() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string id;
+  file >> id;
+  return id;
+}
+
+/// A lock file holds its launcher's process and boot.
+bool written_since_boot(const std::string& lock_file) {
+  std::ifstream file(lock_file);
+  std::string pid;
+  std::string id;
+  return file >> pid >> id && id == boot();
+}
+
 }  // namespace
 
 std::string default_run_directory(std::uint32_t domain, const std::string& host) {
@@ -255,7 +271,7 @@ Status Launcher::lock(const Deployment& deployment) {
     if (!options_.host.empty() && host.name != options_.host) continue;
     const std::string path =
         runtime_directory() + "/" + lock_of(deployment.manifest.domain, host.name);
-    since_boot_ = since_boot_ || access(path.c_str(), F_OK) == 0;  // a boot empties that folder
+    since_boot_ = since_boot_ || written_since_boot(path);
     if (auto status = lock_file(path); !status) return status;
   }
   return {};
@@ -271,9 +287,9 @@ Status Launcher::lock_file(const std::string& path) {
     holder >> pid;
     return Error{"this robot is already launched here, by process " + pid + " (" + path + ")"};
   }
-  const std::string pid = std::to_string(getpid()) + "\n";
+  const std::string text = std::to_string(getpid()) + "\n" + boot() + "\n";
   if (ftruncate(file, 0) != 0 ||
-      write(file, pid.data(), pid.size()) != static_cast<ssize_t>(pid.size())) {
+      write(file, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
     return Error{"cannot write " + path + ": " + std::strerror(errno)};
   }
   return {};

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/grid/costs.hpp"
+
 namespace usher::movement_control {
 
 using geometry::Point2;
 
 namespace {
 
-constexpr std::uint8_t kLethal = 254;
 constexpr std::size_t kMostCells = 4096;
 
 }  // namespace
@@ -25,8 +26,8 @@ void LethalCells::take_row(const CostsView& window, const Raster& raster, std::s
   if (first >= last) return;
   const auto begin = window.costs.begin() + static_cast<std::ptrdiff_t>(row * window.width);
   const Point2 start = raster.first + static_cast<double>(row) * raster.row;
-  for (auto cell = begin + first; (cell = std::find(cell, begin + last, kLethal)) != begin + last;
-       ++cell) {
+  for (auto cell = begin + first;
+       (cell = std::find(cell, begin + last, grid::kLethalCost)) != begin + last; ++cell) {
     if (cells_.size() == kMostCells) return;
     cells_.push_back(start + static_cast<double>(cell - begin) * raster.column);
   }

@@ -176,9 +176,8 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
     if (behavior_.state() == State::kInitialise) return "still initialising: " + reason_;
     return {};
   };
-  const bool stops =
-      request.command == Command::kStop || request.command == Command::kEmergencyStop;
-  if (!stops && !request.own_name) return "asked by somebody else in the name of " + request.client;
+  if (!stops(request.command) && !request.own_name)
+    return "asked by somebody else in the name of " + request.client;
   switch (request.command) {
     case Command::kStop:
       stop(request.client);

@@ -79,6 +79,11 @@ enum class Command : std::uint8_t {
   kClear = 9,            ///< ends latched faults whose cause is gone; operators only
 };
 
+/// Of what anybody may ask in anybody's name.
+constexpr bool stops(Command command) {
+  return command == Command::kStop || command == Command::kEmergencyStop;
+}
+
 struct Request {
   std::uint64_t id = 0;
   std::string client;

@@ -260,14 +260,19 @@ const std::string& SupervisorComponent::asker(const runtime::Guid& writer) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.guid == writer; });
   asker_ = found == all.end() ? runtime::WriterInfo{} : *found;
+  if (asker_.participant.empty()) asker_.guid = {};  // asks again when it is known
   return asker_.participant;
 }
 
 void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message,
                                        const runtime::Guid& writer) {
-  core_.request({message.id(), message.client(), static_cast<Command>(message.command()),
-                 message.goal(), asker(writer) == message.client()},
-                now());
+  const std::string& asks = asker(writer);
+  const Request request{message.id(), message.client(), static_cast<Command>(message.command()),
+                        message.goal(), asks == message.client()};
+  // A sample may come before discovery tells who its writer is: who asks for more than a stop is
+  // answered when that is known. Requests are repeated.
+  if (asks.empty() && !stops(request.command)) return;
+  core_.request(request, now());
   // The first one acts and is answered at once; a flood of them must not become one of answers.
   answer_later_ = now() - answered_at_ < kPeriod;
   if (answer_later_) return;

@@ -69,6 +69,27 @@ TEST_F(Component, InAnothersNameOneMayStopTheRobotAndNothingElse) {
   EXPECT_TRUE(ask("operator", COMMAND_CLEAR).last_request_done());
 }
 
+TEST_F(Component, WhoIsNotDiscoveredYetMayStopTheRobotAndIsAnsweredLater) {
+  ask("operator", COMMAND_STOP);
+  usher_msgs::msg::SupervisorRequest request;
+  request.client("operator");
+  request.command(COMMAND_MOVEMENT_ON);
+  request.id(++id);
+  host.publish(topics::kSupervisorRequest, request, "");
+  host.run_for(milliseconds(120));
+  EXPECT_NE(host.last(topics::kSupervisorStatus)->last_request(), id) << "neither done nor refused";
+  host.publish(topics::kSupervisorRequest, request, "operator");
+  host.run_for(milliseconds(120));
+  EXPECT_EQ(host.last(topics::kSupervisorStatus)->last_request(), id);
+  EXPECT_TRUE(host.last(topics::kSupervisorStatus)->stopped_by().empty());
+  request.id(++id);
+  request.command(COMMAND_STOP);
+  host.publish(topics::kSupervisorRequest, request, "");
+  host.run_for(milliseconds(120));
+  EXPECT_EQ(host.last(topics::kSupervisorStatus)->stopped_by(),
+            std::vector<std::string>{"operator"});
+}
+
 TEST_F(Component, AFloodOfRequestsIsNoFloodOfAnswers) {
   host.run_for(milliseconds(200));
   host.clear();

@@ -33,6 +33,8 @@ TorsoDriver::TorsoDriver(runtime::Host& host)
       status_(host.output(topics::kTorsoStatus)) {}
 
 void TorsoDriver::measured(const Reading& reading, const std::string& reason) {
+  if (!reading.moves)
+    safe_.forget();  // servos that are off hold nothing: joints sag, or are pushed
   safe_.start_at(reading.frame.joints);
   usher_msgs::msg::TorsoStatus message;
   message.header(wire::header(runtime::Time(reading.stamp), ""));

@@ -120,6 +120,20 @@ TEST_F(DeviceReal, NoticesASilentBoardAndStartsFromWhereItIsAfterwards) {
   EXPECT_LE(device->largest_step, 0.5 * 0.05 + 2e-4) << "no jerk";
 }
 
+TEST_F(DeviceReal, StartsFromWhereTheJointsAreWhenItsServosComeBack) {
+  host.run_for(milliseconds(3000));
+  want(0.3, 0.0, 2000);
+  device->state.status = kServosOff;
+  want(0.3, 0.0, 500);
+  device->state.frame.joints[kTilt] = -0.3;  // it sagged
+  want(0.3, 0.0, 300);
+  device->largest_step = 0.0;
+  device->state.status = 0;
+  want(0.3, 0.0, 3000);
+  EXPECT_NEAR(device->state.frame.joints[kTilt], 0.3, 1e-3);
+  EXPECT_LE(device->largest_step, 0.5 * 0.05 + 2e-4) << "no jerk";
+}
+
 TEST_F(DeviceReal, NoticesABoardThatIsUnpluggedAndTellsItsTroubles) {
   host.run_for(milliseconds(3000));
   device->state.status = kServosOff;

@@ -13,9 +13,12 @@ constexpr const char* kCancel = "cancel";
 constexpr const char* kStart = "start";
 constexpr const char* kContinue = "continue";
 constexpr const char* kStay = "stay";
+constexpr const char* kDone = "done";
 
 /// What may be said to a screen that waits for no answer, besides a stop.
-bool unasked(const std::string& option_id) { return option_id == kCancel || option_id == kStay; }
+bool unasked(const std::string& option_id) {
+  return option_id == kCancel || option_id == kStay || option_id == kDone;
+}
 
 }  // namespace
 
@@ -33,6 +36,7 @@ void Conversation::take(const Screen& screen, Time now) {
       screen_.id != 0 && screen.answer_id != 0 &&
       (screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client);
   screen_ = screen;
+  if (!offers(kStop)) halts_at_.reset();
   // An answer, by touch or voice, sets the robot off; unless it was given before the stop.
   const bool sets_off = another && answered && alive_ && offers(kStop);
   const bool late = sets_off && holds_ && now - stopped_at_ < kAnswerLate;
@@ -89,12 +93,25 @@ void Conversation::stop(Time now) {
   const bool stands = alive_ && offers(kContinue);  // the dialogue has stopped it already
   if (alive_ && offers(kStop)) {
     answer(std::string(kStop));
+    halts_at_ = now + kStopLate;
   } else if (!stands) {  // nothing to stop, but the robot may turn all the same
-    wishes_.halt = true;
-    wishes_.go_on = false;
-    holds_ = true;
+    halt();
   }
   listen();
+}
+
+void Conversation::halt() {
+  halts_at_.reset();
+  wishes_.halt = true;
+  wishes_.go_on = false;
+  holds_ = true;
+}
+
+bool Conversation::hear_stop(bool holds) {
+  if (holds == holds_) return false;
+  holds_ = holds;
+  listen();
+  return true;
 }
 
 void Conversation::lift_hold() {
@@ -192,6 +209,7 @@ void Conversation::heard(const Hearing& utterance, std::span<const Phrase> phras
 }
 
 void Conversation::step(bool sounds, Time now) {
+  if (halts_at_ && now >= *halts_at_) halt();
   if (question_) {
     if (sounds) question_->since = now;
     if (now - question_->since > kPatience) {

@@ -70,6 +70,8 @@ class Conversation {
   static constexpr int kMostQuestions = 2;  ///< about one utterance
   /// An answer that sets the robot off so soon after a stop was given before it.
   static constexpr Time kAnswerLate = std::chrono::milliseconds(1500);
+  /// A dialogue that has not stopped the robot by then is not waited for.
+  static constexpr Time kStopLate = std::chrono::milliseconds(500);
 
   explicit Conversation(const DecisionRule& rule) : rule_(rule) {}
 
@@ -110,6 +112,8 @@ class Conversation {
   bool holds() const { return holds_; }
   /// After a restart while the robot was stopped through us.
   void hold_again() { holds_ = true; }
+  /// What the supervisor says of our stop. False when it is as was known.
+  bool hear_stop(bool holds);
 
  private:
   struct Question {
@@ -123,6 +127,7 @@ class Conversation {
   void ask(Time now);
   void answer(const std::string& option_id);
   void stop(Time now);
+  void halt();
   void lift_hold();
   void obey(const std::string& option_id, Time now);
   void reply(const Phrase& phrase, Time now);
@@ -133,7 +138,8 @@ class Conversation {
   std::uint64_t said_ = 0;
   bool able_ = false, alive_ = true, visit_ = false;
   bool holds_ = false, waited_ = false, greeted_ear_ = false;
-  Time stopped_at_{};  ///< by voice
+  Time stopped_at_{};             ///< by voice
+  std::optional<Time> halts_at_;  ///< unless the dialogue has stopped the robot by then
   std::optional<Question> question_;
   std::vector<Phrase> phrases_;
   std::uint64_t phrases_id_ = 0;

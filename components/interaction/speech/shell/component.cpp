@@ -6,6 +6,7 @@
 #include "interaction/phrases/shell/read_phrases.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "wire/conversions.hpp"
+#include "wire/own_stop.hpp"
 
 namespace usher::speech {
 
@@ -100,9 +101,13 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
   meeting_ = host.input(topics::kMeetingStatus, {.max_age = kDialogueAge,
                                                  .on_loss = "a spoken stop goes to the supervisor",
                                                  .optional = true});
-  supervisor_ = host.input(
-      topics::kSupervisorStatus, {.optional = true},
-      [this](const auto& status, const auto&) { requests_.answered(status.last_request()); });
+  supervisor_ = host.input(topics::kSupervisorStatus, {.optional = true},
+                           [this](const auto& status, const auto&) {
+                             requests_.answered(status.last_request());
+                             const auto holds = wire::own_stop(status, host_.name(), requests_);
+                             if (holds && conversation_.hear_stop(*holds))
+                               memory_.keep(*holds ? kHoldKey : "");
+                           });
   timer_ = host.timer("step", kStep, [this](std::uint64_t skipped) { tick(skipped); });
   player_.set_gain(settings_.volume);
   if (recognizer_ == nullptr) models_trouble_ = "there is no recognizer";

@@ -325,11 +325,34 @@ TEST_F(Talk, StopsAtOnceHoweverUnsure) {
   EXPECT_EQ(talk_.hint(), "Stopped.");
 }
 
+TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueDoesNotReact) {
+  show(screen(7, {"stop", "cancel"}));
+  talk_.take_wishes();
+  hear("stop", kSure);
+  EXPECT_FALSE(talk_.take_wishes().halt) << "the dialogue can";
+  pass(Conversation::kStopLate + milliseconds(40));
+  EXPECT_TRUE(talk_.take_wishes().halt);
+  EXPECT_TRUE(talk_.holds());
+}
+
+TEST_F(Talk, BelievesTheSupervisorWhoseStopHolds) {
+  show(screen(7, {"library"}));
+  hear("stop", kSure);
+  EXPECT_TRUE(talk_.holds());
+  EXPECT_FALSE(talk_.hear_stop(true));
+  EXPECT_TRUE(talk_.hear_stop(false)) << "an operator lifted it";
+  EXPECT_FALSE(talk_.holds());
+  EXPECT_EQ(talk_.hint(), "");
+  EXPECT_TRUE(talk_.hear_stop(true)) << "it was forgotten here";
+  EXPECT_EQ(talk_.hint(), "Stopped.");
+}
+
 TEST_F(Talk, AStopSaidAgainChangesNothing) {
   show(screen(7, {"stop", "cancel"}));
   hear("stop", kSure);
   show(screen(8, {"continue", "cancel"}));
   talk_.take_wishes();
+  pass(seconds(2));
   hear("stop", kSure);
   const auto wishes = talk_.take_wishes();
   EXPECT_FALSE(wishes.answer.has_value()) << "the visit goes on";

@@ -106,6 +106,13 @@ bool Tablet::lift_hold() {
   return held;
 }
 
+bool Tablet::hear_stop(bool holds, Time now) {
+  if (holds == this->holds()) return false;
+  hold_ = holds ? Hold::kOwn : Hold::kNone;
+  watch_buttons(now);
+  return true;
+}
+
 void Tablet::watch_buttons(Time now) {
   const View shown = view(now);
   std::vector<std::string> buttons{std::to_string(shown.screen_id)};

@@ -114,6 +114,8 @@ class Tablet {
   bool holds() const { return hold_ != Hold::kNone; }
   /// A tablet that was restarted while it held the robot.
   void hold_again() { hold_ = Hold::kOwn; }
+  /// What the supervisor says of the tablet's stop. False when it is as was known.
+  bool hear_stop(bool holds, Time now);
 
   View view(Time now) const;
 

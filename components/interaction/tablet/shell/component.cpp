@@ -2,6 +2,7 @@
 
 #include "interaction/phrases/shell/read_phrases.hpp"
 #include "wire/conversions.hpp"
+#include "wire/own_stop.hpp"
 
 namespace usher::tablet {
 
@@ -65,8 +66,7 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   supervisor_ = host.input(
       topics::kSupervisorStatus,
       {.max_age = kRobotAge, .on_loss = "says that the robot is out of reach"},
-      [this](const auto& status, const auto&) { requests_.answered(status.last_request()); },
-      [this] { show(); });
+      [this](const auto& status, const auto&) { take_supervisor(status); }, [this] { show(); });
   map_ = host.input(topics::kMap, {.optional = true},
                     [this](const auto& map, const auto&) { take_map(map); });
   pose_ = host.input(topics::kAmclPose, {.optional = true});
@@ -122,6 +122,12 @@ void TabletComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
   taken.remaining = screen.remaining();
   taken.time_left = screen.time_left();
   act(core_.take(taken, now()));
+}
+
+void TabletComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
+  requests_.answered(status.last_request());
+  const auto holds = wire::own_stop(status, host_.name(), requests_);
+  if (holds && core_.hear_stop(*holds, now())) act({});
 }
 
 void TabletComponent::take_map(const nav_msgs::msg::OccupancyGrid& map) {

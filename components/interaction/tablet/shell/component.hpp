@@ -25,6 +25,7 @@ class TabletComponent final : public runtime::Component {
   TabletComponent(runtime::Host& host, std::unique_ptr<Window> own, Window* window);
   Time now() const { return host_.now().time_since_epoch(); }
   void take_screen(const usher_msgs::msg::DialogueScreen& screen);
+  void take_supervisor(const usher_msgs::msg::SupervisorStatus& status);
   void take_map(const nav_msgs::msg::OccupancyGrid& map);
   void take_plan(const nav_msgs::msg::Path& path);
   void open_finger(const std::string& address);

@@ -17,6 +17,7 @@ class Component : public testing::Test {
     usher_msgs::msg::SupervisorStatus supervisor;
     supervisor.header(wire::header(host_.now(), ""));
     supervisor.last_request(request_seen_);
+    supervisor.stopped_by(stopped_by_);
     host_.publish(topics::kSupervisorStatus, supervisor, "supervisor");
     usher_msgs::msg::GuideStatus status;
     status.header(wire::header(host_.now(), ""));
@@ -54,6 +55,7 @@ class Component : public testing::Test {
                           "site.locations: [{name: kitchen, title: Kitchen, x: 0, y: 0, yaw: 0}]\n"
                           "site.titles: [{place: kitchen, language: de, title: Küche}]"};
   std::uint64_t request_seen_ = 0;
+  std::vector<std::string> stopped_by_;
   bool serves_ = false;
 };
 
@@ -161,6 +163,7 @@ TEST_F(Component, StopsAtTheSupervisorWithin25MillisecondsAndLiftsItWhenTheDialo
   EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP);
   EXPECT_EQ(host_.last(topics::kDialogueAnswer)->option_id(), "stop");
   request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  stopped_by_ = {"tablet", "guide"};
   hear();
   show(screen(6, "guide_paused", {"continue"}));
   show(screen(7, "guide_active", {"stop"}));
@@ -185,10 +188,41 @@ TEST_F(Component, LiftsItsStopAtTheEndOfTheVisit) {
   hear();
   EXPECT_TRUE(window_.view.start_offered);
   request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  stopped_by_ = {"tablet"};
   serves_ = false;
   hear();
   EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
   EXPECT_FALSE(window_.view.start_offered);
+}
+
+TEST_F(Component, OffersStopAgainWhenAnOperatorHasLiftedItsStop) {
+  hear();
+  show(screen(5, "inactive", {"language:en"}));
+  window_.touches.push_back({false, Tablet::kStop});
+  host_.run_for(milliseconds(25));
+  stopped_by_ = {"tablet"};
+  hear();
+  EXPECT_TRUE(window_.view.start_offered) << "not answered yet";
+  request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  hear();
+  EXPECT_TRUE(window_.view.start_offered);
+  EXPECT_FALSE(window_.view.stop_offered);
+  stopped_by_.clear();
+  hear();
+  EXPECT_TRUE(window_.view.stop_offered);
+  EXPECT_FALSE(window_.view.start_offered);
+}
+
+TEST_F(Component, OffersToLiftAStopThatItHasForgotten) {
+  stopped_by_ = {"tablet"};
+  hear();
+  show(screen(5, "inactive", {"language:en"}));
+  EXPECT_TRUE(window_.view.start_offered);
+  host_.run_for(milliseconds(2000));
+  window_.touches.push_back({false, Tablet::kStart});
+  host_.run_for(milliseconds(25));
+  ASSERT_TRUE(host_.last(topics::kSupervisorRequest));
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
 }
 
 /// A finger at the end of a line.

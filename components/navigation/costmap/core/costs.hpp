@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "foundation/grid/costs.hpp"
+
 namespace usher::costmap {
 
 /// The cost scale of the master grid, byte for byte that of ROS costmap_2d, so that rviz and every
@@ -22,11 +24,11 @@ namespace usher::costmap {
 /// and the upper half of our decay: d up to inscribed_radius + ln(252 / 128) / cost_scaling. A
 /// reader with the thesis' threshold 128 is therefore only more careful, never less; with
 /// cost_scaling_for_band() that band ends at the circumscribed radius.
-inline constexpr std::uint8_t kFreeCost = 0;
+using grid::kFreeCost;
+using grid::kInscribedCost;
+using grid::kLethalCost;
+using grid::kUnknownCost;
 inline constexpr std::uint8_t kThesisInscribedCost = 128;
-inline constexpr std::uint8_t kInscribedCost = 253;
-inline constexpr std::uint8_t kLethalCost = 254;
-inline constexpr std::uint8_t kUnknownCost = 255;
 
 /// How costs fall with the distance to the nearest obstacle. All lengths in m.
 struct CostDecay {

@@ -25,7 +25,8 @@ struct StepCosts {
   /// straight = 70 w, diagonal = 99 w (99/70 is sqrt 2 to 5e-5) with w = round(neutral + factor *
   /// cost).
   static StepCosts inflated(double neutral, double factor, bool allow_unknown, int unknown_cost);
-  /// straight = 408, diagonal = 577 (577/408 is sqrt 2 to 2e-6) for every cell below kInscribed.
+  /// straight = 408, diagonal = 577 (577/408 is sqrt 2 to 2e-6) for every cell below
+  /// grid::kInscribedCost.
   static StepCosts shortest(bool allow_unknown);
 };
 

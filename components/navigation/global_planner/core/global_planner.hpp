@@ -5,16 +5,13 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/grid/costs.hpp"
 #include "foundation/grid/grid.hpp"
 
 namespace usher::global_planner {
 
-/// Costs of a map's cells as ROS costmap_2d has them: 0 free .. 252 costly, kInscribed: the robot's
-/// centre there means contact, kLethal: an obstacle, kUnknown: never seen.
+/// Costs of a map's cells (foundation/grid/costs.hpp).
 using CostGrid = grid::Grid<std::uint8_t>;
-inline constexpr std::uint8_t kInscribed = 253;
-inline constexpr std::uint8_t kLethal = 254;
-inline constexpr std::uint8_t kUnknown = 255;
 
 /// Why there is no plan.
 enum class PlanFailure : std::uint8_t {

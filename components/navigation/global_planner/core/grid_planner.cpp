@@ -70,13 +70,13 @@ const char* name(PlanFailure failure) {
 }
 
 Result<GridPlanner> GridPlanner::create(const GridPlannerConfig& c) {
-  if (const Status status =
-          within({{"neutral_cost", c.neutral_cost, 1.0, 1000.0},
-                  {"cost_factor", c.cost_factor, 0.0, 60.0 * c.neutral_cost / (kInscribed - 1)},
-                  {"unknown_cost", static_cast<double>(c.unknown_cost), 0, kInscribed - 1},
-                  {"escape_radius", c.escape_radius, 0.0, 5.0},
-                  {"goal_tolerance", c.goal_tolerance, 0.0, 5.0},
-                  {"smoothing_iterations", static_cast<double>(c.smoothing_iterations), 0, 1000}});
+  if (const Status status = within(
+          {{"neutral_cost", c.neutral_cost, 1.0, 1000.0},
+           {"cost_factor", c.cost_factor, 0.0, 60.0 * c.neutral_cost / (grid::kInscribedCost - 1)},
+           {"unknown_cost", static_cast<double>(c.unknown_cost), 0, grid::kInscribedCost - 1},
+           {"escape_radius", c.escape_radius, 0.0, 5.0},
+           {"goal_tolerance", c.goal_tolerance, 0.0, 5.0},
+           {"smoothing_iterations", static_cast<double>(c.smoothing_iterations), 0, 1000}});
       !status)
     return Error{status.error()};
   return GridPlanner(c);
@@ -115,7 +115,7 @@ std::optional<grid::Cell> GridPlanner::escape_cell(const Point2& start_in_cells)
   return nearest(start, config_.escape_radius, [&](grid::Cell c) {
     return field_.traversable(c) &&
            visit_line(start_in_cells, center(c), [&](grid::Cell on_line, double) {
-             return on_line == start || field_.cost(on_line) != kLethal;
+             return on_line == start || field_.cost(on_line) != grid::kLethalCost;
            });
   });
 }

@@ -36,14 +36,16 @@ std::vector<Query> read_queries(const std::string& path) {
   return queries;
 }
 
-/// Length of the shortest 8-connected path over cells below kInscribed without corner cutting, by a
-/// plain textbook Dijkstra that shares nothing with the planner.
+/// Length of the shortest 8-connected path over cells below usher::grid::kInscribedCost without
+/// corner cutting, by a plain textbook Dijkstra that shares nothing with the planner.
 double octile_optimum(const CostGrid& costs, const Query& query) {
   std::vector<double> best(costs.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto& g = costs.geometry();
-  const auto free = [&](int x, int y) { return costs.value_or({x, y}, kLethal) < kInscribed; };
+  const auto free = [&](int x, int y) {
+    return costs.value_or({x, y}, usher::grid::kLethalCost) < usher::grid::kInscribedCost;
+  };
   best[g.index(query.start)] = 0.0;
   open.emplace(0.0, g.index(query.start));
   while (!open.empty()) {

@@ -57,8 +57,8 @@ bool crosses(const Pose2& a, const Pose2& b, double x0, double y0, double side) 
   return enter < leave;
 }
 
-/// The promise of a path over cells below kInscribed: starts and ends where it should, small steps,
-/// nothing blocked inside or diagonally beside it.
+/// The promise of a path over cells below grid::kInscribedCost: starts and ends where it should,
+/// small steps, nothing blocked inside or diagonally beside it.
 void expect_safe(const Plan& plan, const CostGrid& costs, std::size_t from = 0) {
   const grid::GridGeometry& g = costs.geometry();
   double length = 0.0;
@@ -74,7 +74,7 @@ void expect_safe(const Plan& plan, const CostGrid& costs, std::size_t from = 0) 
     const grid::Cell cb = g.cell_at(b.x, b.y);
     for (int y = std::min(ca.y, cb.y) - 1; y <= std::max(ca.y, cb.y) + 1; ++y) {
       for (int x = std::min(ca.x, cb.x) - 1; x <= std::max(ca.x, cb.x) + 1; ++x) {
-        if (costs.value_or({x, y}, kLethal) < kInscribed) continue;
+        if (costs.value_or({x, y}, grid::kLethalCost) < grid::kInscribedCost) continue;
         ASSERT_FALSE(crosses(a, b, g.origin_x + x * g.resolution, g.origin_y + y * g.resolution,
                              g.resolution))
             << "segment " << i << " from (" << a.x << ", " << a.y << ") to (" << b.x << ", " << b.y
@@ -84,7 +84,8 @@ void expect_safe(const Plan& plan, const CostGrid& costs, std::size_t from = 0) 
     // A diagonal change of cells needs one more free cell than the two: a line through a closed
     // corner has none.
     if (ca.x != cb.x && ca.y != cb.y) {
-      ASSERT_TRUE(costs.at({ca.x, cb.y}) < kInscribed || costs.at({cb.x, ca.y}) < kInscribed);
+      ASSERT_TRUE(costs.at({ca.x, cb.y}) < grid::kInscribedCost ||
+                  costs.at({cb.x, ca.y}) < grid::kInscribedCost);
     }
   }
   ASSERT_NEAR(plan.length, length, 1e-9);
@@ -131,8 +132,9 @@ TEST(GridPlanner, PathsAreSafeOnRandomMaps) {
         room(20 + static_cast<int>(random.below(60)), 20 + static_cast<int>(random.below(60)));
     const double blocked = random.uniform(0.02, 0.35);
     for (auto& cost : costs)
-      cost = static_cast<std::uint8_t>(random.uniform() < blocked ? kInscribed + random.below(3)
-                                                                  : random.below(kInscribed));
+      cost = static_cast<std::uint8_t>(random.uniform() < blocked
+                                           ? grid::kInscribedCost + random.below(3)
+                                           : random.below(grid::kInscribedCost));
     GridPlanner p = planner({.algorithm = map % 2 == 0 ? Algorithm::kDijkstra : Algorithm::kAstar,
                              .metric = map % 3 == 0 ? Metric::kShortest : Metric::kInflated,
                              .smoothing_iterations = static_cast<int>(random.below(40))});
@@ -162,7 +164,7 @@ TEST(GridPlanner, PathsAreSafeOnRandomMaps) {
 TEST(GridPlanner, KeepsAwayFromWallsThatCost) {
   // Two ways of equal length around a block; the upper one is costly.
   CostGrid costs = room(60, 60);
-  fill(costs, 20, 20, 40, 40, kLethal);
+  fill(costs, 20, 20, 40, 40, grid::kLethalCost);
   fill(costs, 0, 41, 59, 59, 200);
   GridPlanner inflated = planner();
   const Plan& plan = inflated.plan(costs, at(costs, 5, 30), at(costs, 55, 30));
@@ -174,7 +176,7 @@ TEST(GridPlanner, KeepsAwayFromWallsThatCost) {
 
 TEST(GridPlanner, TurnsRoundly) {
   CostGrid costs = room(80, 80);
-  fill(costs, 30, 0, 49, 59, kLethal);
+  fill(costs, 30, 0, 49, 59, grid::kLethalCost);
   GridPlanner p = planner();
   const Plan& plan = p.plan(costs, at(costs, 10, 10), at(costs, 70, 10, -1.5));
   ASSERT_TRUE(plan.ok());
@@ -187,15 +189,15 @@ TEST(GridPlanner, TurnsRoundly) {
 
 TEST(GridPlanner, DoesNotSlipBetweenDiagonalObstacles) {
   CostGrid costs = room(40, 40);
-  for (int i = 0; i < 40; ++i) costs.at({i, 39 - i}) = kLethal;
+  for (int i = 0; i < 40; ++i) costs.at({i, 39 - i}) = grid::kLethalCost;
   GridPlanner p = planner({.goal_tolerance = 0.0});
   EXPECT_EQ(p.plan(costs, at(costs, 5, 5), at(costs, 35, 35)).failure, PlanFailure::kDisconnected);
 }
 
 TEST(GridPlanner, EscapesFromAnInscribedCell) {
   CostGrid costs = room(60, 40);
-  fill(costs, 0, 0, 59, 6, kInscribed);
-  fill(costs, 0, 0, 59, 2, kLethal);
+  fill(costs, 0, 0, 59, 6, grid::kInscribedCost);
+  fill(costs, 0, 0, 59, 2, grid::kLethalCost);
   GridPlanner p = planner({.escape_radius = 0.4});
   const Plan& plan = p.plan(costs, at(costs, 20, 4), at(costs, 50, 30));
   ASSERT_TRUE(plan.ok()) << plan.reason;
@@ -206,8 +208,8 @@ TEST(GridPlanner, EscapesFromAnInscribedCell) {
 
 TEST(GridPlanner, DoesNotEscapeThroughAWallOrTooFar) {
   CostGrid costs = room(60, 40);
-  fill(costs, 0, 0, 59, 20, kInscribed);
-  fill(costs, 0, 6, 59, 6, kLethal);
+  fill(costs, 0, 0, 59, 20, grid::kInscribedCost);
+  fill(costs, 0, 6, 59, 6, grid::kLethalCost);
   GridPlanner p = planner({.escape_radius = 5.0});
   const Plan& through_wall = p.plan(costs, at(costs, 20, 4), at(costs, 50, 30));
   EXPECT_EQ(through_wall.failure, PlanFailure::kStartBlocked);
@@ -222,7 +224,7 @@ TEST(GridPlanner, DoesNotEscapeThroughAWallOrTooFar) {
 
 TEST(GridPlanner, EndsNearAGoalInAnObstacle) {
   CostGrid costs = room(60, 40);
-  fill(costs, 40, 10, 50, 20, kInscribed);
+  fill(costs, 40, 10, 50, 20, grid::kInscribedCost);
   GridPlanner p = planner({.goal_tolerance = 0.2});
   const Plan& plan = p.plan(costs, at(costs, 5, 15), at(costs, 42, 15, 0.7));
   ASSERT_TRUE(plan.ok()) << plan.reason;
@@ -238,7 +240,7 @@ TEST(GridPlanner, EndsNearAGoalInAnObstacle) {
 TEST(GridPlanner, PrefersAReachableCellToANearerOneBehindAWall) {
   // The goal lies in a wall; the nearest free cell is in a closed room behind it.
   CostGrid costs = room(60, 40);
-  fill(costs, 40, 0, 45, 39, kLethal);
+  fill(costs, 40, 0, 45, 39, grid::kLethalCost);
   for (const Metric metric : {Metric::kInflated, Metric::kShortest}) {
     for (const Algorithm algorithm : {Algorithm::kDijkstra, Algorithm::kAstar}) {
       GridPlanner p = planner({.algorithm = algorithm, .metric = metric, .goal_tolerance = 0.3});
@@ -255,7 +257,7 @@ TEST(GridPlanner, PrefersAReachableCellToANearerOneBehindAWall) {
 
 TEST(GridPlanner, CrossesUnknownCellsOnlyWhenAllowed) {
   CostGrid costs = room(60, 40);
-  fill(costs, 30, 0, 32, 39, kUnknown);
+  fill(costs, 30, 0, 32, 39, grid::kUnknownCost);
   GridPlanner strict = planner();
   EXPECT_EQ(strict.plan(costs, at(costs, 5, 5), at(costs, 55, 5)).failure,
             PlanFailure::kDisconnected);
@@ -266,7 +268,7 @@ TEST(GridPlanner, CrossesUnknownCellsOnlyWhenAllowed) {
   const Plan& plan = wary.plan(costs, at(costs, 5, 8), at(costs, 55, 8));
   ASSERT_TRUE(plan.ok());
   for (const Pose2& pose : plan.path)
-    EXPECT_NE(costs.at(costs.geometry().cell_at(pose.x, pose.y)), kUnknown);
+    EXPECT_NE(costs.at(costs.geometry().cell_at(pose.x, pose.y)), grid::kUnknownCost);
 }
 
 TEST(GridPlanner, AnswersBadInputWithAReason) {
@@ -319,7 +321,8 @@ TEST(GridPlanner, DoesNotAllocateAfterTheFirstQueryOnAMap) {
   Random random(5);
   CostGrid costs = room(200, 200);
   for (auto& cost : costs)
-    cost = static_cast<std::uint8_t>(random.uniform() < 0.1 ? kLethal : random.below(kInscribed));
+    cost = static_cast<std::uint8_t>(random.uniform() < 0.1 ? grid::kLethalCost
+                                                            : random.below(grid::kInscribedCost));
   costs.at({0, 0}) = costs.at({199, 199}) = 0;
   for (const Metric metric : {Metric::kInflated, Metric::kShortest}) {
     GridPlanner p = planner({.metric = metric});

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> reference_costs(const CostGrid& costs, const StepCost
   using Entry = std::pair<std::uint32_t, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto free = [&](int x, int y) {
-    return steps.straight[costs.value_or({x, y}, kLethal)] != StepCosts::kBlocked;
+    return steps.straight[costs.value_or({x, y}, grid::kLethalCost)] != StepCosts::kBlocked;
   };
   best[g.index(start)] = 0;
   open.emplace(0, g.index(start));
@@ -50,9 +50,11 @@ CostGrid random_map(Random& random) {
   const double costly = random.uniform();
   for (auto& cost : costs) {
     if (random.uniform() < blocked) {
-      cost = static_cast<std::uint8_t>(kInscribed + random.below(3));
+      cost = static_cast<std::uint8_t>(grid::kInscribedCost + random.below(3));
     } else {
-      cost = random.uniform() < costly ? static_cast<std::uint8_t>(random.below(kInscribed)) : 0;
+      cost = random.uniform() < costly
+                 ? static_cast<std::uint8_t>(random.below(grid::kInscribedCost))
+                 : 0;
     }
   }
   return costs;
@@ -124,7 +126,7 @@ TEST(GridSearch, CountsPathsLongerThanTheFirstSpan) {
   CostGrid costs({.width = 401, .height = 401, .resolution = 0.05}, 252);
   for (int y = 1; y < 400; y += 2)
     for (int x = 0; x < 401; ++x)
-      if (x != (y % 4 == 1 ? 400 : 0)) costs.at({x, y}) = kLethal;
+      if (x != (y % 4 == 1 ? 400 : 0)) costs.at({x, y}) = grid::kLethalCost;
   CostField field(StepCosts::inflated(50, 0.8, false, 0));
   field.load(costs);
   GridSearch search;
@@ -142,7 +144,7 @@ TEST(GridSearch, ReportsAPathThatCostsMoreThanItCanCount) {
   CostGrid costs({.width = 401, .height = 401, .resolution = 0.05}, 252);
   for (int y = 1; y < 400; y += 2)
     for (int x = 0; x < 401; ++x)
-      if (x != (y % 4 == 1 ? 400 : 0)) costs.at({x, y}) = kLethal;
+      if (x != (y % 4 == 1 ? 400 : 0)) costs.at({x, y}) = grid::kLethalCost;
   CostField field(StepCosts::inflated(1000, 238, false, 0));
   field.load(costs);
   GridSearch search;

@@ -25,7 +25,7 @@ CostGrid read_map(const std::filesystem::path& path) {
   for (auto& cost : costs) {
     char c = 0;
     file >> c;
-    cost = c == '.' || c == 'G' || c == 'S' ? 0 : kLethal;
+    cost = c == '.' || c == 'G' || c == 'S' ? 0 : grid::kLethalCost;
   }
   EXPECT_TRUE(file.good()) << path;
   return costs;

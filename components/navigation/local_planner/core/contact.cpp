@@ -27,16 +27,17 @@ int rounded_up(double value) {
 std::uint64_t lethal_bits16(const std::uint8_t* costs, bool unknown_is_lethal) {
 #if defined(__SSE2__)
   const __m128i values = _mm_loadu_si128(reinterpret_cast<const __m128i*>(costs));
-  __m128i lethal = _mm_cmpeq_epi8(values, _mm_set1_epi8(static_cast<char>(kCostLethal)));
+  __m128i lethal = _mm_cmpeq_epi8(values, _mm_set1_epi8(static_cast<char>(grid::kLethalCost)));
   if (unknown_is_lethal) {
-    lethal = _mm_or_si128(lethal,
-                          _mm_cmpeq_epi8(values, _mm_set1_epi8(static_cast<char>(kCostUnknown))));
+    lethal = _mm_or_si128(
+        lethal, _mm_cmpeq_epi8(values, _mm_set1_epi8(static_cast<char>(grid::kUnknownCost))));
   }
   return static_cast<std::uint64_t>(_mm_movemask_epi8(lethal));
 #else
   std::uint64_t bits = 0;
   for (int i = 0; i < 16; ++i) {
-    const bool lethal = costs[i] == kCostLethal || (unknown_is_lethal && costs[i] == kCostUnknown);
+    const bool lethal =
+        costs[i] == grid::kLethalCost || (unknown_is_lethal && costs[i] == grid::kUnknownCost);
     bits |= static_cast<std::uint64_t>(lethal) << i;
   }
   return bits;
@@ -71,7 +72,8 @@ void LethalBits::fill_row(const std::uint8_t* costs, int width, bool unknown_is_
     clear_bits(x + rim_, ~lethal_bits16(costs + x, unknown_is_lethal) & 0xffffU);
   }
   for (; x < width; ++x) {
-    const bool lethal = costs[x] == kCostLethal || (unknown_is_lethal && costs[x] == kCostUnknown);
+    const bool lethal =
+        costs[x] == grid::kLethalCost || (unknown_is_lethal && costs[x] == grid::kUnknownCost);
     if (!lethal) clear_bits(x + rim_, 1);
   }
   const int word_columns = columns_ / kStride + 1;

@@ -5,16 +5,12 @@
 
 #include "foundation/cpu/cpu.hpp"
 #include "foundation/geometry/footprint.hpp"
+#include "foundation/grid/costs.hpp"
 #include "foundation/grid/grid.hpp"
 
 namespace usher::local_planner {
 
 using geometry::Footprint;
-
-/// Values of a cost grid that decide (ROS costmap_2d): 252..1 fall with the distance, 0 is free.
-inline constexpr std::uint8_t kCostUnknown = 255;
-inline constexpr std::uint8_t kCostLethal = 254;
-inline constexpr std::uint8_t kCostInscribed = 253;
 
 /// The lethal cells of a cost grid as bits, with a rim of set bits around the grid: what lies
 /// outside is not known to be free. Words overlap (word w of a row starts at column 16 w), so any

@@ -31,7 +31,8 @@ void DynamicWindow::choose_local_goal(const Input& input) {
   };
   const auto open = [&](const geometry::Point2& p) {
     const std::uint8_t cost = input.costs.at(geometry.cell_at(p));
-    return cost < kCostInscribed || (cost == kCostUnknown && !config_.unknown_is_lethal);
+    return cost < grid::kInscribedCost ||
+           (cost == grid::kUnknownCost && !config_.unknown_is_lethal);
   };
   // The last open point before the path leaves the window; the window's half circumference bounds
   // the walk.
@@ -50,7 +51,7 @@ void DynamicWindow::choose_local_goal(const Input& input) {
     arc = std::min(arc + step, path_.length());
   }
   const grid::Cell goal_cell = geometry.cell_at(path_.point(local_goal_arc_));
-  wavefront_.set_obstacles(input.costs, kCostInscribed, config_.unknown_is_lethal);
+  wavefront_.set_obstacles(input.costs, grid::kInscribedCost, config_.unknown_is_lethal);
   way_open_ = false;
   if (!geometry.contains(goal_cell)) {  // the path is outside of the window
     goal_lengths_.assign(geometry.size(), grid::Wavefront::kUnreachable);

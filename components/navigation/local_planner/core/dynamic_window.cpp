@@ -28,6 +28,9 @@ constexpr double kMeeting = 1.2;     // [m] of path within which somebody is met
 constexpr double kWalksOn = 0.2;     // [m/s] the same way: no meeting
 constexpr double kWalks = 0.3;       // [m/s] slower, the costs say all
 constexpr double kAtTheRobot = 0.8;  // [m] from its middle
+constexpr double kNeighbour = 1.2;   // [m] from its middle
+constexpr double kUnsure = 0.05;     // [m] of where somebody is who stands that near
+constexpr double kNoNearer = 1e-3;   // [m]
 constexpr double kArmsLength = 0.4;  // [m] between robot and person
 constexpr double kToward = 0.7;      // cosine: who is ahead
 constexpr double kPolite = 6.0;      // [s] that it gives way
@@ -202,6 +205,21 @@ void DynamicWindow::find_walkers(const Pose2& pose, std::span<const MovingDisc> 
     if (person.velocity.norm() < kWalks) continue;
     if ((person.position - pose.position()).dot(ahead) < 0.0) continue;
     walkers_.push_back(person);
+  }
+}
+
+/// Who walks, and who stands at the robot: the costs know a body to a cell, too little where it is
+/// passed with a hand's breadth.
+void DynamicWindow::find_neighbours(const Input& input) {
+  const double kept = 0.25 * config_.disc_clearance;  // by the rollout, at this speed
+  neighbours_ = walkers_;
+  for (const MovingDisc& person : input.people) {
+    const geometry::Point2 in_base = inverse(input.pose) * person.position;
+    if (person.velocity.norm() >= kWalks || in_base.norm() > kNeighbour) continue;
+    // Who is nearer already may be left, and passed no nearer than that.
+    const double room = config_.footprint.distance(in_base) - kept - kNoNearer;
+    if (room > 0.0)
+      neighbours_.push_back({person.position, {0.0, 0.0}, std::min(person.radius + kUnsure, room)});
   }
 }
 
@@ -550,10 +568,13 @@ Decision DynamicWindow::follow(const Input& input) {
   if (detour) return with_obstacle(brake(input));
   const double slow = std::min({fastest, config_.tight_speed, config_.pace});
   tight_ = true;
-  decision = drive(input, {&whole_, &narrow_}, slow, config_.tight_speed);
+  find_neighbours(input);
+  Input tight = input;
+  tight.walkers = neighbours_;
+  decision = drive(tight, {&whole_, &narrow_}, slow, config_.tight_speed);
   // Who overlaps part of a cell already must be let out by its center, no corner swinging out.
   if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {
-    decision = drive(input, {&center_, &whole_}, slow,
+    decision = drive(tight, {&center_, &whole_}, slow,
                      config_.tight_turn * config_.footprint.circumscribed_radius());
   }
   decision.reason = Reason::kTight;

@@ -151,6 +151,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   bool valid(const Input& input) const;
   void stand_in_the_way(const Input& input);
   void find_walkers(const geometry::Pose2& pose, std::span<const MovingDisc> people);
+  void find_neighbours(const Input& input);
   void load(const Input& input);
 
   // What to do (dynamic_window.cpp).
@@ -200,6 +201,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   PolylineDistance path_distance_;
   Lane lane_;
   std::vector<MovingDisc> walkers_;
+  std::vector<MovingDisc> neighbours_;
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]
   LethalBits bits_;
 

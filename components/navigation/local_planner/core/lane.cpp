@@ -39,7 +39,7 @@ double Lane::room(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& 
   const double enough = half_width_ + gap_ + kMost;
   for (double way = 0.0; way < enough; way += 0.5 * g.resolution) {
     const grid::Cell cell = g.cell_at(at.position() + way * out);
-    if (g.contains(cell) && costs.at(cell) == kCostLethal) return way;
+    if (g.contains(cell) && costs.at(cell) == grid::kLethalCost) return way;
   }
   return enough;
 }

@@ -149,8 +149,9 @@ void Rollout::simulate(const Frame& frame, const SpeedProfile& speed, std::size_
     x = next_x, y = next_y;
     if (k > scored) continue;
     close += wide;
-    const int cost = frame.costs.value_or({static_cast<int>(x), static_cast<int>(y)}, kCostLethal);
-    cost_sum += cost == kCostUnknown && !settings_.unknown_is_lethal ? 0 : cost;
+    const int cost =
+        frame.costs.value_or({static_cast<int>(x), static_cast<int>(y)}, grid::kLethalCost);
+    cost_sum += cost == grid::kUnknownCost && !settings_.unknown_is_lethal ? 0 : cost;
     if (k == parts[part]) keep_point(x, y);
   }
   result.free_steps = k - 1;

@@ -82,7 +82,7 @@ void inflate(Costs& costs, double inscribed) {
   const grid::GridGeometry& g = costs.geometry();
   std::vector<grid::Cell> lethal;
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    if (costs[i] == kCostLethal) lethal.push_back(g.cell(i));
+    if (costs[i] == usher::grid::kLethalCost) lethal.push_back(g.cell(i));
   }
   const int reach = static_cast<int>(kInflation / kResolution);
   for (const grid::Cell& cell : lethal) {
@@ -93,9 +93,10 @@ void inflate(Costs& costs, double inscribed) {
         if (!g.contains(near) || distance > kInflation || (dx == 0 && dy == 0)) continue;
         const std::uint8_t cost =
             distance <= inscribed
-                ? kCostInscribed
+                ? usher::grid::kInscribedCost
                 : static_cast<std::uint8_t>(252.0 * std::exp(-10.0 * (distance - inscribed)));
-        if (costs.at(near) != kCostUnknown) costs.at(near) = std::max(costs.at(near), cost);
+        if (costs.at(near) != usher::grid::kUnknownCost)
+          costs.at(near) = std::max(costs.at(near), cost);
       }
     }
   }
@@ -111,12 +112,14 @@ Costs window(const Costs& map, const Pose2& pose, double side) {
   for (int y = 0; y < cells; ++y) {
     for (int x = 0; x < cells; ++x) {
       const std::uint8_t pixel = map.value_or({first.x + x, first.y + y}, 205);
-      costs.at({x, y}) = pixel <= 89 ? kCostLethal : pixel >= 206 ? 0 : kCostUnknown;
+      costs.at({x, y}) = pixel <= 89    ? usher::grid::kLethalCost
+                         : pixel >= 206 ? 0
+                                        : usher::grid::kUnknownCost;
     }
   }
   for (const Point2& point : scan(map, pose, 1)) {
     const grid::Cell cell = costs.geometry().cell_at(point);
-    if (costs.geometry().contains(cell)) costs.at(cell) = kCostLethal;
+    if (costs.geometry().contains(cell)) costs.at(cell) = usher::grid::kLethalCost;
   }
   inflate(costs, sixteen_gon().inscribed_radius());
   return costs;
@@ -191,7 +194,8 @@ Cycle narrow_cycle() {
   config.margin = 0.0;
   const Pose2 pose{2.0, 2.025, 0.0};
   Costs costs({80, 80, kResolution, 0.0, 0.0});
-  for (int x = 0; x < 80; x += 2) costs.at({x, 40 + 8}) = costs.at({x, 40 - 8}) = kCostLethal;
+  for (int x = 0; x < 80; x += 2)
+    costs.at({x, 40 + 8}) = costs.at({x, 40 - 8}) = usher::grid::kLethalCost;
   inflate(costs, config.footprint.inscribed_radius());
   DynamicWindow planner = DynamicWindow::make(config).value();
   if (!planner.set_path(std::vector<Pose2>{pose, {6.0, 2.025, 0.0}}).ok()) std::abort();
@@ -208,7 +212,7 @@ double undecided_share(const Cycle& cycle) {
     for (double y = 1.985; y <= 2.065; y += 0.01, ++points) {
       double nearest = 1e9;
       for (std::size_t i = 0; i < cycle.costs.size(); ++i) {
-        if (cycle.costs[i] != kCostLethal) continue;
+        if (cycle.costs[i] != usher::grid::kLethalCost) continue;
         const Point2 c = g.center(g.cell(i));
         const double dx = std::max(0.0, std::abs(c.x() - x) - 0.5 * kResolution);
         const double dy = std::max(0.0, std::abs(c.y() - y) - 0.5 * kResolution);

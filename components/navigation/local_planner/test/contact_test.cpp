@@ -49,7 +49,7 @@ bool reference_touches(const Costs& costs, const Footprint& footprint, CellExten
   const grid::GridGeometry& g = costs.geometry();
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
-      if (costs.at({x, y}) != kCostLethal) continue;
+      if (costs.at({x, y}) != grid::kLethalCost) continue;
       const Point2 c = g.center({x, y});
       if (std::hypot(c.x() - pose.x, c.y() - pose.y) >
           footprint.circumscribed_radius() + g.resolution)
@@ -77,7 +77,8 @@ bool reference_touches(const Costs& costs, const Footprint& footprint, CellExten
 Costs random_costs(Random& random, int width, int height, double resolution, double share) {
   Costs costs({width, height, resolution, random.uniform(-5, 5), random.uniform(-5, 5)});
   for (std::uint8_t& cost : costs) {
-    cost = random.uniform() < share ? kCostLethal : static_cast<std::uint8_t>(random.below(253));
+    cost =
+        random.uniform() < share ? grid::kLethalCost : static_cast<std::uint8_t>(random.below(253));
   }
   return costs;
 }
@@ -172,7 +173,7 @@ TEST_P(Contact, HoldsAtAllRightAngles) {
   const Footprint footprint = Footprint::rectangle(0.6, 0.4);  // 12 x 8 cells
   const ContactTest contact(footprint, CellExtent::kWhole, GetParam());
   Costs costs({60, 60, 0.05, 0.0, 0.0});
-  costs.at({30, 30}) = kCostLethal;
+  costs.at({30, 30}) = grid::kLethalCost;
   LethalBits bits;
   bits.assign(costs, false, contact.reach_cells(0.05));
   TurnedFootprint turned;
@@ -207,7 +208,7 @@ TEST_P(Contact, OutsideOfTheGridIsAContact) {
 TEST_P(Contact, UnknownCellsCountWhenAsked) {
   const ContactTest contact(Footprint::rectangle(0.6, 0.6), CellExtent::kCenter, GetParam());
   Costs costs({40, 40, 0.05, 0.0, 0.0});
-  costs.at({20, 20}) = kCostUnknown;
+  costs.at({20, 20}) = grid::kUnknownCost;
   LethalBits bits;
   TurnedFootprint turned;
   contact.turn(1.0, 0.0, 0.05, turned);
@@ -244,7 +245,8 @@ TEST(LethalBits, HoldsEveryCell) {
     bits.assign(costs, false, 11);
     for (int y = -11; y < 7 + 11; ++y) {
       for (int x = -11; x < width + 11; ++x) {
-        EXPECT_EQ(bits.test(x + 11, y + 11), costs.value_or({x, y}, kCostLethal) == kCostLethal)
+        EXPECT_EQ(bits.test(x + 11, y + 11),
+                  costs.value_or({x, y}, grid::kLethalCost) == grid::kLethalCost)
             << x << ' ' << y;
       }
     }

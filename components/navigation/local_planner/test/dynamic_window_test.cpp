@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "foundation/random/random.hpp"
@@ -171,7 +172,7 @@ TEST(Decide, BrakesHarderThanItSlowsWhenAnObstacleAppears) {
 TEST(Decide, StandsWhenACellLiesInsideTheOutline) {
   DynamicWindow planner = planner_to(8.0);
   Costs costs = empty_window();
-  costs.at(costs.geometry().cell_at(0.2, 0.1)) = kCostLethal;
+  costs.at(costs.geometry().cell_at(0.2, 0.1)) = grid::kLethalCost;
   const Decision decision = planner.decide(costs, {}, {}, {}, 0.05);
   EXPECT_EQ(decision.reason, Reason::kTouching);
   EXPECT_TRUE(decision.blocked);
@@ -179,7 +180,7 @@ TEST(Decide, StandsWhenACellLiesInsideTheOutline) {
 
 TEST(Decide, TreatsUnknownAsAsked) {
   Costs costs = empty_window();
-  for (std::uint8_t& c : costs) c = kCostUnknown;
+  for (std::uint8_t& c : costs) c = grid::kUnknownCost;
   DynamicWindow open = planner_to(8.0);
   EXPECT_EQ(open.decide(costs, {}, {}, {}, 0.05).reason, Reason::kFollowing);
   DynamicWindowConfig config;
@@ -203,7 +204,7 @@ TEST(Decide, TurnsTheOtherWayRoundWhenTheShorterIsClosed) {
   config.footprint = Footprint::make(nose).value();
   DynamicWindow planner = planner_to(-5.0, config);
   Costs costs = empty_window();
-  costs.at(costs.geometry().cell_at(0.45, 0.4)) = kCostLethal;
+  costs.at(costs.geometry().cell_at(0.45, 0.4)) = grid::kLethalCost;
   const Decision decision = planner.decide(costs, {0, 0, 0.05}, {}, {}, 0.05);
   EXPECT_EQ(decision.reason, Reason::kTurning);
   EXPECT_LT(decision.command.w, 0.0);
@@ -292,6 +293,26 @@ TEST(Decide, DoesNotTurnIntoSomebodyWhoStandsAtItsSideAndGoesStraightOn) {
   };
   EXPECT_LT(drive({{0, 0, 0}, {0.4, 0.1, 0.6}, {1.0, 1.2, 1.2}}), 0.1) << "the way is through them";
   EXPECT_GT(drive({{0, 0, 0}, {3.0, 0, 0}}), 0.5);
+}
+
+/// Between walls that leave 0.65 m; where the left one ends the costs know of somebody too little.
+TEST(Decide, SqueezesPastAPostButPastNobody) {
+  const double side = DynamicWindowConfig{}.footprint.inscribed_radius();
+  const MovingDisc person{{1.2, side + 0.29}, {0, 0}, 0.25};
+  World world(-3, -3.02, 3, 2.98);
+  world.add(Box{-3, -3, 3, -0.33});
+  world.add(Box{-3, 0.34, 0.9, 3});
+  world.add(Disc{person.position.x(), person.position.y(), 0.22});
+  world.finish(side);
+  const auto decide = [&](std::span<const MovingDisc> people) {
+    DynamicWindow planner = planner_to(2.5);
+    return planner.decide(world.costs(), {0.45, 0, 0}, {}, {}, 0.05, people);
+  };
+  const Decision past_a_post = decide({});
+  EXPECT_EQ(past_a_post.reason, Reason::kTight);
+  EXPECT_GT(past_a_post.target.v, 0.0);
+  EXPECT_EQ(decide({{person}}).reason, Reason::kBlocked);
+  EXPECT_EQ(decide({{{{1.2, side + 0.36}, {0, 0}, 0.25}}}).reason, Reason::kTight) << "0.11 m";
 }
 
 TEST(Decide, StandsBeforeWhomItMeetsAndGoesOnWhenNobodyPasses) {
@@ -514,7 +535,7 @@ TEST(Rotating, RunsWhileTheOutlineSweepsNothing) {
   EXPECT_LT(planner.rotate(empty_window(), {}, {}, {}, 0.05, -0.4).command.w, 0.0);
   Costs costs = empty_window();
   costs.at(costs.geometry().cell_at(0.38, 0.0)) =
-      kCostLethal;  // before the middle of the front, inside the corners' circle
+      grid::kLethalCost;  // before the middle of the front, inside the corners' circle
   EXPECT_TRUE(planner.rotate(costs, {0, 0, 0.55}, {}, {}, 0.05, -1.0).blocked ||
               planner.rotate(costs, {0, 0, 0.55}, {}, {}, 0.05, 1.0).blocked);
 }

@@ -17,7 +17,7 @@ grid::Grid<std::uint8_t> corridor(double width) {
   grid::Grid<std::uint8_t> costs({200, 60, 0.05, -2.0, -1.5}, 0);
   for (std::size_t i = 0; i < costs.size(); ++i) {
     if (std::abs(costs.geometry().center(costs.geometry().cell(i)).y()) > 0.5 * width)
-      costs[i] = kCostLethal;
+      costs[i] = grid::kLethalCost;
   }
   return costs;
 }
@@ -76,7 +76,8 @@ TEST(Lane, GoesBackToTheMiddleAWhileAfter) {
 TEST(Lane, IsInTheMiddleOfDoorsAndAtTheGoal) {
   const ReferencePath path = middle();
   auto costs = corridor(1.6);
-  for (const double y : {-0.45, 0.45}) costs.at(costs.geometry().cell_at({4.0, y})) = kCostLethal;
+  for (const double y : {-0.45, 0.45})
+    costs.at(costs.geometry().cell_at({4.0, y})) = grid::kLethalCost;
   Lane lane(kHalf, kGap);
   lane.choose(path, costs, std::vector{walker(5.0, 0.0, -0.8)}, 0.05);
   EXPECT_LT(lane.shift(4.0), 0.06);

@@ -180,7 +180,7 @@ TEST_F(Drive, DoesNotTurnWhereItsOutlineHasNoRoom) {
   for (int y = 0; y < 80; ++y) {
     for (int x = 0; x < 80; ++x) {
       const Point2 at = costs.geometry().center({x, y});
-      if (std::abs(at.x()) > 0.22) costs.at({x, y}) = kCostLethal;
+      if (std::abs(at.x()) > 0.22) costs.at({x, y}) = grid::kLethalCost;
     }
   }
   ASSERT_TRUE(follower->set_path(straight(3.0)));

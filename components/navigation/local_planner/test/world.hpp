@@ -66,9 +66,9 @@ class World {
           const grid::Cell near{cell.x + dx, cell.y + dy};
           const double distance = std::hypot(dx, dy) * g.resolution;
           if (!g.contains(near) || distance > inflation) continue;
-          std::uint8_t cost = kCostLethal;
+          std::uint8_t cost = grid::kLethalCost;
           if (dx != 0 || dy != 0) {
-            cost = distance <= inscribed ? kCostInscribed
+            cost = distance <= inscribed ? grid::kInscribedCost
                                          : static_cast<std::uint8_t>(
                                                252.0 * std::exp(-scaling * (distance - inscribed)));
           }
@@ -91,7 +91,7 @@ class World {
     local.set_origin(g.origin_x + first.x * g.resolution, g.origin_y + first.y * g.resolution);
     for (int y = 0; y < cells; ++y) {
       for (int x = 0; x < cells; ++x)
-        local.at({x, y}) = costs_.value_or({first.x + x, first.y + y}, kCostLethal);
+        local.at({x, y}) = costs_.value_or({first.x + x, first.y + y}, grid::kLethalCost);
     }
   }
 
@@ -164,7 +164,7 @@ inline std::optional<std::vector<Pose2>> World::plan(const Pose2& start, const P
     const grid::Cell cell = g.cell(index);
     for (int k = 0; k < 9; ++k) {
       const grid::Cell next{cell.x + k % 3 - 1, cell.y + k / 3 - 1};
-      if (!g.contains(next) || costs_.at(next) >= kCostInscribed) continue;
+      if (!g.contains(next) || costs_.at(next) >= grid::kInscribedCost) continue;
       const double step =
           std::hypot(k % 3 - 1, k / 3 - 1) * (1.0 + cost_weight * costs_.at(next) / 252.0);
       const std::size_t at = g.index(next);
@@ -202,10 +202,10 @@ inline void mark(const MovingDisc& disc, double inscribed, Costs& costs, double 
     for (int x = std::max(0, first.x); x <= std::min(last.x, g.width - 1); ++x) {
       const double off = (g.center({x, y}) - disc.position).norm() - disc.radius;
       if (off > inflation) continue;
-      std::uint8_t cost = kCostLethal;
+      std::uint8_t cost = grid::kLethalCost;
       if (off > 0.5 * g.resolution) {
         cost = off <= inscribed
-                   ? kCostInscribed
+                   ? grid::kInscribedCost
                    : static_cast<std::uint8_t>(252.0 * std::exp(-scaling * (off - inscribed)));
       }
       costs.at({x, y}) = std::max(costs.at({x, y}), cost);

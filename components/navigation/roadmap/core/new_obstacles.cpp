@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-namespace usher::roadmap {
+#include "foundation/grid/costs.hpp"
 
-namespace {
-constexpr std::uint8_t kLethal = 254;
-}
+namespace usher::roadmap {
 
 void new_obstacles(const grid::Grid<std::uint8_t>& costs, const grid::DistanceField& map_distances,
                    const Point2& robot, double radius, double tolerance,
@@ -17,7 +15,7 @@ void new_obstacles(const grid::Grid<std::uint8_t>& costs, const grid::DistanceFi
   const grid::Cell low = g.cell_at(Point2(robot - reach)), high = g.cell_at(Point2(robot + reach));
   for (int y = std::max(0, low.y); y <= std::min(g.height - 1, high.y); ++y) {
     for (int x = std::max(0, low.x); x <= std::min(g.width - 1, high.x); ++x) {
-      if (costs.at({x, y}) != kLethal) continue;
+      if (costs.at({x, y}) != grid::kLethalCost) continue;
       const Point2 point = g.center({x, y});
       if ((point - robot).norm() > radius) continue;
       const grid::Cell cell = map_distances.geometry().cell_at(point);

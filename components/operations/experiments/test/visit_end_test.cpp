@@ -15,29 +15,28 @@ usher_msgs::msg::SupervisorStatus well() {
 }
 
 TEST(VisitEnd, ARobotThatStandsForNoReasonIsADeadEnd) {
-  EXPECT_FALSE(waits_safely_for({"guide_active", true, well()}));
-  EXPECT_FALSE(waits_safely_for({"location_ask", true, well()}));
-  EXPECT_FALSE(waits_safely_for({"inactive", true, std::nullopt}));
+  EXPECT_FALSE(waits_safely_for({true, well()}));
+  EXPECT_FALSE(waits_safely_for({true, std::nullopt}));
 }
 
-TEST(VisitEnd, WaitsForWhoStoppedItOrForAnAnswer) {
-  EXPECT_TRUE(waits_safely_for({"guide_paused", true, well()}));
-  EXPECT_TRUE(waits_safely_for({"guide_error", true, well()}));
+TEST(VisitEnd, WaitsForWhoStoppedIt) {
   auto held = well();
   held.stopped_by({"guide"});
-  EXPECT_FALSE(waits_safely_for({"guide_active", true, held})) << "its own stop";
+  EXPECT_FALSE(waits_safely_for({true, held})) << "its own stop";
   held.stopped_by({"guide", "operator"});
-  EXPECT_TRUE(waits_safely_for({"guide_active", true, held}));
+  EXPECT_TRUE(waits_safely_for({true, held}));
   held = well();
   held.granted(false);
-  EXPECT_TRUE(waits_safely_for({"guide_active", true, held}));
+  EXPECT_TRUE(waits_safely_for({true, held}));
   held = well();
   held.state(state::STATE_FAULT);
-  EXPECT_TRUE(waits_safely_for({"guide_active", true, held}));
+  EXPECT_TRUE(waits_safely_for({true, held}));
 }
 
 TEST(VisitEnd, NobodyWaitsSafelyWhileItMoves) {
-  EXPECT_FALSE(waits_safely_for({"guide_paused", false, well()}));
+  auto held = well();
+  held.stopped_by({"operator"});
+  EXPECT_FALSE(waits_safely_for({false, held}));
 }
 
 }  // namespace

@@ -454,6 +454,12 @@ TEST_F(Launching, ABootEndsTheSessionAndNoLatch) {
   std::filesystem::remove_all(folder_.path() + "/usher");  // as a boot does to XDG_RUNTIME_DIR
   launcher();
   EXPECT_FALSE(std::filesystem::exists(pose));
+  // A machine whose folder outlives a boot, as /tmp may.
+  folder_.file("run/kept/amcl/session.pose", "7 8 9");
+  for (const auto& lock : std::filesystem::directory_iterator(folder_.path() + "/usher"))
+    std::ofstream(lock.path()) << "1234\n8a1f-of-another-boot\n";
+  launcher();
+  EXPECT_FALSE(std::filesystem::exists(pose)) << "locks of before the boot";
   EXPECT_TRUE(std::filesystem::exists(latch));
 }
 

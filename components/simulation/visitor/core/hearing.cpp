@@ -5,6 +5,15 @@
 
 namespace usher::visitor {
 
+namespace {
+
+/// As the robot's ear has it (interaction/speech/core/conversation.cpp).
+bool unasked(const std::string& option) {
+  return option == "stop" || option == "cancel" || option == "stay" || option == "done";
+}
+
+}  // namespace
+
 void Hearing::want(std::uint64_t screen_id, std::string option, double now) {
   if (wanted_ == option && screen_id_ == screen_id) return;
   screen_id_ = screen_id;
@@ -14,8 +23,9 @@ void Hearing::want(std::uint64_t screen_id, std::string option, double now) {
   tries_ = 0;
 }
 
-void Hearing::see(std::uint64_t screen_id, std::vector<std::string> options) {
+void Hearing::see(std::uint64_t screen_id, std::vector<std::string> options, bool listens) {
   options_ = std::move(options);
+  listens_ = listens;
   if (!wanted_) return;
   const bool offered = std::ranges::find(options_, *wanted_) != options_.end();
   if (screen_id != screen_id_ || !offered) wanted_.reset();
@@ -47,6 +57,7 @@ std::optional<Hearing::Answer> Hearing::step(double now) {
   }
   ++tries_;
   ++said_;
+  if (!listens_ && !unasked(*wanted_)) return std::nullopt;
   const double drawn = random_.uniform();
   if (drawn < rates_.understood) return Answer{*wanted_};
   if (drawn < rates_.understood + rates_.asked_back) {

@@ -35,8 +35,8 @@ class Hearing {
   /// The newest answer is the one that counts; the same one again changes nothing.
   void want(std::uint64_t screen_id, std::string option, double now);
   /// Another screen, or one that does not offer it any more: the answer has got there, or comes too
-  /// late.
-  void see(std::uint64_t screen_id, std::vector<std::string> options);
+  /// late. One that does not listen hears only what may be said unasked.
+  void see(std::uint64_t screen_id, std::vector<std::string> options, bool listens);
   /// What reaches the robot now, if anything.
   std::optional<Answer> step(double now);
 
@@ -52,6 +52,7 @@ class Hearing {
   Random random_;
   std::uint64_t screen_id_ = 0;
   std::vector<std::string> options_;
+  bool listens_ = true;
   std::optional<std::string> wanted_;
   bool asks_ = false;  ///< the robot has asked back
   double next_at_ = 0.0;

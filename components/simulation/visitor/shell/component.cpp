@@ -141,7 +141,7 @@ void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
   if (screen.time_left() >= 0.0F) seen.time_left = screen.time_left();
   core_.see(seen, in_seconds(host_.now()));
   delivery_.see(seen.id, seen.options);
-  hearing_.see(seen.id, seen.options);
+  hearing_.see(seen.id, seen.options, screen.listens());
 }
 
 std::string VisitorComponent::label_of(const std::string& option) const {

@@ -57,6 +57,7 @@ class Someone : public testing::Test {
     screen.state(state);
     screen.language(language);
     screen.time_left(std::numeric_limits<float>::quiet_NaN());
+    screen.listens(true);
     for (const auto& option : options) {
       auto& entry = screen.options().emplace_back();
       entry.id(option);

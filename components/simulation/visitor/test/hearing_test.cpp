@@ -8,7 +8,7 @@ namespace {
 /// Says "yes" on screen 7 until something reaches the robot; nothing: it did not within a
 /// minute.
 std::optional<Hearing::Answer> say(Hearing& hearing, double& now) {
-  hearing.see(7, {"yes", "no", "guide_me"});
+  hearing.see(7, {"yes", "no", "guide_me"}, true);
   hearing.want(7, "yes", now);
   for (int steps = 0; steps < 300; ++steps, now += 0.2) {
     hearing.want(7, "yes", now);
@@ -47,7 +47,7 @@ TEST(Hearing, TakesAWordForAnotherOfTheScreen) {
   const auto answer = say(hearing, now);
   EXPECT_TRUE(answer->option == "no" || answer->option == "guide_me") << answer->option;
   EXPECT_EQ(hearing.mistaken(), 1U);
-  hearing.see(8, {"yes", "no"});
+  hearing.see(8, {"yes", "no"}, true);
   EXPECT_FALSE(hearing.step(now + 10.0)) << "that screen is gone, and the wish with it";
 }
 
@@ -60,6 +60,15 @@ TEST(Hearing, WhatIsNeverHeardIsTouched) {
   EXPECT_EQ(hearing.said(), 4U);
   EXPECT_EQ(hearing.fell_back(), 1U);
   EXPECT_NEAR(now, 3.0 + 4.0 * Delivery::kSayAgain, 1.0);
+}
+
+TEST(Hearing, HearsOnlyWhatMayBeSaidUnaskedWhereNobodyListens) {
+  Hearing hearing({1.0, 0.0, 0.0}, Random(1));
+  hearing.see(7, {"language:de", "stop"}, false);
+  hearing.want(7, "language:de", 0.0);
+  EXPECT_FALSE(hearing.step(0.0));
+  hearing.want(7, "stop", 1.0);
+  EXPECT_EQ(hearing.step(1.0)->option, "stop");
 }
 
 TEST(Hearing, KeepsItsRates) {

@@ -86,7 +86,11 @@ Guide::Guide(const Parameters& parameters, phrases::PhraseBook phrases, std::uin
     }
   }
   screen_.id = next_id_++;
-  speak_screen();
+  screen_ = build(now);
+  if (state_ == State::kInitialise)
+    speak({});
+  else
+    speak_screen();
   if (move_at_) screen_.tone = Tone::kMoving;
   finish(now);
 }
@@ -442,6 +446,7 @@ bool Guide::rate(const std::string& option, Time now) {
 const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
   surroundings_ = surroundings;
+  keep_own_stop();
   watch_encounter(now);
   if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);
   if (state_ == State::kGuideActive || follows()) tell_why_it_stands(now);
@@ -450,7 +455,7 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   if (journey()) move_when_due(now);
   if (journey() && goal_id_ != 0) watch_navigation(now);
   if (state_ == State::kGuideActive && goal_id_ != 0) watch_follower(now);
-  if (state_ == State::kGuideActive && goal_id_ != 0) watch_obstacle(now);
+  if ((state_ == State::kGuideActive || follows()) && goal_id_ != 0) watch_obstacle(now);
   if (state_ == State::kGuideActive) refresh_journey(now);
   pass_time(now);
   watch_turns(now);

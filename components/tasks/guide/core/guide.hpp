@@ -92,6 +92,7 @@ struct VisitorSighting {
 struct Surroundings {
   Supervisor supervisor = Supervisor::kUnknown;
   Permission permission = Permission::kGiven;
+  std::optional<bool> stop_holds;          ///< this guide's own; nothing: not known
   std::optional<Navigation> navigation;    ///< nothing: the navigator is silent
   std::optional<VisitorSighting> visitor;  ///< nothing: nobody looks
   std::optional<geometry::Pose2> pose;     ///< in map; nothing: not localized
@@ -242,6 +243,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void depart(Time now);
   void move_when_due(Time now);
   void stop_robot();
+  void keep_own_stop();
   void go_on(Time now);
   void fail(Text reason, Cause cause, Time now);
   void watch_robot(Time now);

@@ -66,6 +66,13 @@ void Guide::stop_robot() {
   actions_.remember = true;
 }
 
+/// An operator ends every stop, but not what this one waits for; a boot forgets that it waited.
+void Guide::keep_own_stop() {
+  const auto& holds = surroundings_.stop_holds;
+  if (!holds || *holds == stopped_) return;
+  actions_.requests.push_back({stopped_ ? RequestKind::kStop : RequestKind::kMovementOn, {}});
+}
+
 /// After a stop, with the time of a departure for the visitor to step behind.
 void Guide::go_on(Time now) {
   say_on_the_way(Text::kHereWeGo, Tone::kMoving, now);
@@ -201,7 +208,12 @@ void Guide::watch_navigation(Time now) {
   if (navigation && navigation->goal_id == goal_id_) {
     const auto reached = goal_reached(now);
     if (reached && *reached) arrive(now);
-    if (reached && !*reached) fail(Text::kNoWay, Cause::kFailure, now);
+    if (!reached || *reached) return;
+    if (state_ != State::kGuidePaused)
+      return fail(surroundings_.pose ? Text::kNoWay : Text::kNotLocated, Cause::kFailure, now);
+    goal_id_ = 0;  // its patience is shorter than the visitor's pause; going on gives it anew
+    acknowledged_ = false;
+    actions_.remember = true;
     return;
   }
   const bool forgot = acknowledged_ && navigation && navigation->goal_id == 0;
@@ -279,13 +291,14 @@ void Guide::watch_obstacle(Time now) {
   const auto& navigation = surroundings_.navigation;
   const bool blocked =
       navigation && navigation->goal_id == goal_id_ && navigation->blocked && !stopped_;
-  if (pleads_ && navigation && navigation->replans != replans_at_plea_) {
+  if (pleads_ && journey() && navigation && navigation->replans != replans_at_plea_) {
     pleads_ = false;
     say_on_the_way(Text::kAnotherWay, Tone::kNone, now);
     pleaded_ = now;
   }
   if (!blocked) {
     blocked_since_.reset();
+    if (pleads_ && follows()) say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
     pleads_ = false;
     return;
   }

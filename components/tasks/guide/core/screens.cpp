@@ -323,7 +323,7 @@ Screen Guide::build(Time now) const {
   screen.state = text(state_);
   screen.language = phrases_.languages()[language_].tag;
   screen.status = status();
-  screen.listens = question();
+  screen.listens = question() || state_ == State::kIntroduction;
   build_state(screen);
   add_services(screen, now);
   return screen;

@@ -4,6 +4,7 @@
 #include "tasks/service/shell/messages.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/own_stop.hpp"
 
 namespace usher::guide {
 
@@ -176,6 +177,7 @@ Surroundings GuideComponent::surroundings() const {
     s.permission = stopped             ? Permission::kStopped
                    : status->granted() ? Permission::kGiven
                                        : Permission::kRefused;
+    s.stop_holds = wire::own_stop(*status, host_.name(), requests_);
   }
   if (const auto* status = navigation_.fresh()) {
     const auto* follow = follow_.fresh();

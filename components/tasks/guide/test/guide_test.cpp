@@ -858,6 +858,67 @@ TEST(Guide, AStopOnArrivalHoldsUntilHeGoesOnOrLeaves) {
   EXPECT_EQ(leads.taken(), "start:visitor go on");
 }
 
+TEST(Guide, StopsAgainWhenAnOperatorEndsTheStopThatItNeeds) {
+  Rig rig;
+  rig.to_active(), rig.press("stop");
+  EXPECT_EQ(rig.taken(), "stop");
+  rig.around.stop_holds = true, rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "");
+  rig.around.stop_holds = false, rig.wait(100);
+  EXPECT_EQ(rig.taken(), "stop") << "the visitor has not gone on";
+  rig.around.stop_holds = std::nullopt, rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "") << "that is not answered yet";
+}
+
+TEST(Guide, LiftsAStopThatABootHasMadeItForget) {
+  Rig rig;
+  rig.around.stop_holds = true, rig.wait(100);
+  EXPECT_EQ(rig.taken(), "on");
+}
+
+TEST(Guide, AGoalThatEndsInAPauseIsGivenAgain) {
+  Rig rig;
+  rig.to_active(), rig.press("stop");
+  rig.navigate(GoalState::kFailed), rig.wait(2000);
+  EXPECT_EQ(rig.state(), "guide_paused") << "the visitor has more patience than the navigator";
+  EXPECT_EQ(rig.taken(), "stop");
+  rig.press("continue"), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "on goal:am218");
+}
+
+TEST(Guide, SaysThatItIsLostWhenItsGoalFailsWithoutAPose) {
+  Rig rig;
+  rig.to_active();
+  rig.around.pose.reset();
+  rig.navigate(GoalState::kFailed);
+  ASSERT_EQ(rig.state(), "guide_error");
+  EXPECT_NE(rig.guide.screen().text.find("not sure where we are"), std::string::npos)
+      << rig.guide.screen().text;
+}
+
+TEST(Guide, AsksAgainAfterARestart) {
+  Rig rig;
+  rig.to_location_ask();
+  Rig after(quick(), rig.guide.memory(), 1000000);
+  ASSERT_FALSE(after.said.empty());
+  EXPECT_EQ(after.said.front(), "Would you like to see our location?");
+}
+
+TEST(Guide, AsksToBeLetThroughWhileItFollows) {
+  Rig rig;
+  rig.to_following(), rig.see(3.0), rig.wait(2000);
+  ASSERT_NE(rig.goal, 0U);
+  rig.navigate(GoalState::kActive);
+  rig.around.navigation->blocked = true;
+  const auto count = rig.said.size();
+  rig.wait(4000);
+  ASSERT_GT(rig.said.size(), count);
+  EXPECT_EQ(rig.said.back(), "Excuse me, may I pass?");
+  rig.around.navigation->replans = 3;
+  rig.around.navigation->blocked = false, rig.wait(200);
+  EXPECT_NE(rig.said.back(), "I am looking for another way.");
+}
+
 TEST(Guide, AStopThatNobodyAnswersLeavesTheRobotAsItStands) {
   Rig rig;
   rig.see(-1.5), rig.to_active(), rig.press("stop");
