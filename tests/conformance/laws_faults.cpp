@@ -84,9 +84,14 @@ TEST_F(HostLaw, NothingOfAFaultyHandlerLeavesAndNoHandlerRunsAfterIt) {
   ASSERT_GE(beats.size(), 2U);
   EXPECT_EQ(beats.back().state(), usher_msgs::msg::Heartbeat_Constants::STATE_FAULT);
   EXPECT_EQ(beats.back().reason(), "the laser is upside down");
-  for (std::size_t i = 0; i + 1 < beats.size(); ++i) {
-    EXPECT_EQ(beats[i].state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
-  }
+  // The last word may be said more than once.
+  const auto ended = std::ranges::find_if(beats, [](const auto& beat) {
+    return beat.state() != usher_msgs::msg::Heartbeat_Constants::STATE_OK;
+  });
+  EXPECT_TRUE(std::all_of(ended, beats.end(), [&](const auto& beat) {
+    return beat.state() == beats.back().state() && beat.reason() == beats.back().reason();
+  }));
+  EXPECT_NE(ended, beats.begin());
 }
 
 TEST_F(HostLaw, AnExceptionIsAFault) {

@@ -100,7 +100,6 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
 
   void write(std::shared_ptr<const Bytes> cdr) override {
     last_ = cdr;
-    matches_at_write_ = matches_.load();
     std::span<const std::uint8_t> payload(*cdr);
     if (!writer_->write(&payload) && !failed_) {
       failed_ = true;
@@ -112,24 +111,20 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
   Guid guid() const override { return guid_; }
 
   const std::string& topic() const { return topic_; }
-  /// Writes the last sample again when readers were matched after it.
-  void repeat_for_new_readers() {
-    if (last_ != nullptr && matches_.load() != matches_at_write_) write(last_);
+  /// Writes the last sample again.
+  void repeat() {
+    if (last_ != nullptr) write(last_);
   }
-  void wait_for_readers() { writer_->wait_for_acknowledgments({0, 200'000'000}); }
 
  private:
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) override {
     readers_.store(static_cast<std::size_t>(status.current_count), std::memory_order_relaxed);
-    matches_.store(status.total_count);
   }
 
   const std::string topic_;
   // Before writer_: the listener may be called while it is being made.
   std::atomic<std::size_t> readers_{0};
-  std::atomic<std::int32_t> matches_{0};
-  std::int32_t matches_at_write_ = 0;
   std::shared_ptr<const Bytes> last_;
   dds::DataWriter* writer_;
   Guid guid_;
@@ -214,11 +209,15 @@ void DdsTransport::watch_writers(const std::string& topic,
 
 void DdsTransport::farewell(const std::string& topic) {
   constexpr Duration kDiscovery = std::chrono::milliseconds(500);
+  constexpr Duration kBetween = std::chrono::milliseconds(50);
+  constexpr int kTimes = 3;
   for (const auto& writer : implementation_->writers) {
     if (writer->topic() != topic) continue;
     std::this_thread::sleep_for(implementation_->begin + kDiscovery - implementation_->clock.now());
-    writer->repeat_for_new_readers();
-    writer->wait_for_readers();
+    for (int i = 0; i < kTimes; ++i) {
+      writer->repeat();
+      std::this_thread::sleep_for(kBetween);
+    }
   }
 }
 
