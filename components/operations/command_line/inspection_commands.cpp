@@ -83,9 +83,10 @@ int status(std::uint32_t domain, double patience) {
   for (const auto& client : message->stopped_by())
     stopped += (stopped.empty() ? "" : ", ") + client;
   std::cout << "state " << state_name(message->state())
-            << (!message->granted() ? ", may not drive: " + message->reason()
-                : !stopped.empty()  ? ", stands: stopped by " + stopped
-                                    : ", may drive")
+            << (!message->granted()         ? ", may not drive: " + message->reason()
+                : !stopped.empty()          ? ", stands: stopped by " + stopped
+                : message->reason().empty() ? ", may drive"
+                                            : ", may drive; " + message->reason())
             << "\n";
   if (const auto line = goal ? goal_line(*goal) : ""; !line.empty()) std::cout << line << "\n";
   Table table({"component", "health", "loss means", "heard s ago", "why"});

@@ -100,9 +100,9 @@ void HeartbeatTable::judge(Time now) {
   }
 }
 
-const ComponentHealth* HeartbeatTable::missing_critical() const {
+const ComponentHealth* HeartbeatTable::first_lost(Criticality criticality) const {
   for (const ComponentHealth& entry : health_) {
-    if (entry.criticality == Criticality::kStop && !entry.able()) return &entry;
+    if (entry.criticality == criticality && !entry.able()) return &entry;
   }
   return nullptr;
 }

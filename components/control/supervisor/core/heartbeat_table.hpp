@@ -78,8 +78,8 @@ class HeartbeatTable {
   const std::vector<ComponentHealth>& components() const { return health_; }
   const ComponentHealth* find(std::string_view name) const;
 
-  /// The first component without which nobody may drive and that is not able; null when all are.
-  const ComponentHealth* missing_critical() const;
+  /// The first component of that criticality that is not able; null when all are.
+  const ComponentHealth* first_lost(Criticality criticality) const;
 
   /// Whether something that matters for the speed is not well.
   bool degraded() const;

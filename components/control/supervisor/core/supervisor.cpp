@@ -286,7 +286,7 @@ void Supervisor::explain(Time now) {
   if (const Fault* latched = faults_.latched()) {
     reason_.assign(text(latched->cause)).append(": ").append(latched->component);
     reason_.append(": ").append(latched->detail);
-  } else if (const ComponentHealth* missing = table_.missing_critical()) {
+  } else if (const ComponentHealth* missing = table_.first_lost(Criticality::kStop)) {
     reason_.assign(missing->name).append(": ").append(missing->reason);
   } else if (!holder()) {
     reason_.assign(parameters_.names.movement).append(": writes no drive/command yet");
@@ -306,6 +306,8 @@ void Supervisor::explain(Time now) {
     reason_.assign(parameters_.names.base).append(": ").append(refused);
   } else if (barred_since_ && now - *barred_since_ >= parameters_.barred_patience) {
     reason_.assign(parameters_.names.movement).append(": ").append(barred_by_);
+  } else if (const ComponentHealth* lost = table_.first_lost(Criticality::kDegrade)) {
+    reason_.assign(lost->name).append(": ").append(lost->reason);  // it may stand for want of it
   } else {
     reason_.clear();
   }
@@ -322,7 +324,7 @@ void Supervisor::grant(bool able) {
 const Decision& Supervisor::step(Time now) {
   table_.judge(now);
   note_faults(now);
-  const bool able = !table_.missing_critical() && holder() && base_heard(now) &&
+  const bool able = !table_.first_lost(Criticality::kStop) && holder() && base_heard(now) &&
                     !base_->emergency && base_->ready;
   const bool fault = faults_.latched() != nullptr;
   decision_.state = behavior_.step(able, fault, now);

@@ -60,7 +60,7 @@ TEST(HeartbeatTable, JudgesByTheTable) {
     EXPECT_EQ(amcl->health, row.health) << row.name;
     EXPECT_EQ(amcl->reason, row.expected_reason) << row.name;
     const bool able = row.health == Health::kOk || row.health == Health::kDegraded;
-    EXPECT_EQ(heartbeats.missing_critical() == nullptr, able) << row.name;
+    EXPECT_EQ(heartbeats.first_lost(Criticality::kStop) == nullptr, able) << row.name;
   }
 }
 
@@ -73,7 +73,7 @@ TEST(HeartbeatTable, OnlyCriticalOnesStopAndOnlyTheseTwoSlow) {
   };
   beat_all(0);
   heartbeats.judge(milliseconds(0));
-  EXPECT_EQ(heartbeats.missing_critical(), nullptr);
+  EXPECT_EQ(heartbeats.first_lost(Criticality::kStop), nullptr);
   EXPECT_FALSE(heartbeats.degraded());
 
   for (int ms = 50; ms <= 600; ms += 50) {  // the tablet and then the people detector fall silent
@@ -88,14 +88,14 @@ TEST(HeartbeatTable, OnlyCriticalOnesStopAndOnlyTheseTwoSlow) {
   heartbeats.judge(milliseconds(690));
   EXPECT_EQ(heartbeats.find("people")->health, Health::kMissing);
   EXPECT_TRUE(heartbeats.degraded());
-  EXPECT_EQ(heartbeats.missing_critical(), nullptr);
+  EXPECT_EQ(heartbeats.first_lost(Criticality::kStop), nullptr);
   beat_all(700);
   heartbeats.judge(milliseconds(700));
   EXPECT_FALSE(heartbeats.degraded());
   heartbeats.hear(beat("amcl", Reported::kDegraded), milliseconds(710));
   heartbeats.judge(milliseconds(710));
   EXPECT_TRUE(heartbeats.degraded());
-  EXPECT_EQ(heartbeats.missing_critical(), nullptr);
+  EXPECT_EQ(heartbeats.first_lost(Criticality::kStop), nullptr);
 }
 
 TEST(HeartbeatTable, DoesNotKnowWhatTheManifestDoesNot) {

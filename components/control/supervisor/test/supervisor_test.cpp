@@ -58,10 +58,11 @@ TEST(Supervisor, EveryLossMeansWhatTheManifestSays) {
       {"status older than its arrival", [](Robot& r) { r.base.age = milliseconds(150); },
        [](Robot& r) { r.base.age = {}; }, true, 1.0, "segway_rmp: base/status is silent"},
       {"degrading component silent", [](Robot& r) { r.silent.insert("people_detector"); },
-       [](Robot& r) { r.silent.clear(); }, false, 0.5, ""},
+       [](Robot& r) { r.silent.clear(); }, false, 0.5, "people_detector: silent"},
       {"degrading component of another IDL",
        [](Robot& r) { r.other_idl.insert("people_detector"); },
-       [](Robot& r) { r.other_idl.clear(); }, false, 0.5, ""},
+       [](Robot& r) { r.other_idl.clear(); }, false, 0.5,
+       "people_detector: built from another IDL than the supervisor"},
       {"notifying component silent", [](Robot& r) { r.silent.insert("tablet"); },
        [](Robot& r) { r.silent.clear(); }, false, 1.0, ""},
   };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "foundation/result/bounds.hpp"
 
@@ -268,35 +269,43 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
   return decision;
 }
 
-/// Along the slowest of the arcs that stays free, with half of the clearance, for longest; of equal
-/// ones the one that bends least from now. With the bare outline a hard turn past a door's post,
-/// which the costs know to a cell, seemed free. Nobody is dodged: who walks can step aside, a wall
-/// cannot.
+/// Along the arc that stays free for as far as the base may roll, if any with half of the
+/// clearance; of equal ones the one that bends least from now. Nobody is dodged: who walks can step
+/// aside, a wall cannot.
 Decision DynamicWindow::brake(const Input& input) {
   const bool standing = std::abs(input.measured.v) < kStanding;
   Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
-  if (standing) return decision;
-  Input alone = input;
-  alone.walkers = {};
-  drive(alone, {&narrow_, &roomy_}, config_.slowest, config_.tight_speed);
-  const Trajectory* best = nullptr;
-  double best_bend = 0.0;
-  for (const Trajectory& trajectory : rollout_.trajectories()) {
-    if (trajectory.speed != 0) continue;
-    const double turn = turns_[static_cast<std::size_t>(trajectory.turn)].target;
-    const double bend = std::abs(turn - decision.command.w);
-    if (best != nullptr && (trajectory.free_steps < best->free_steps ||
-                            (trajectory.free_steps == best->free_steps && bend >= best_bend)))
-      continue;
-    best = &trajectory;
-    best_bend = bend;
-  }
-  if (best != nullptr && decision.command.v > 0.0) {
-    const double turn = turns_[static_cast<std::size_t>(best->turn)].target;
-    decision.command.w = ramped(input, {0.0, turn}, config_.braking).w;
-  }
+  if (std::abs(input.measured.v) < kSlowEnoughToTurn) return decision;  // sways, on the spot
+  sample(input, config_.slowest);
+  keep_speed(std::abs(input.measured.v), turns_.front().steps);
+  rollout_.run({input.pose, input.measured, input.last_command}, {&kept_, 1}, turns_, input.costs,
+               bits_, {&whole_, &narrow_}, config_.footprint, {});
+  const auto bend = [&](const Trajectory& trajectory) {
+    return std::abs(turns_[static_cast<std::size_t>(trajectory.turn)].target -
+                    input.last_command.w);
+  };
+  const auto best =
+      std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
+        return std::tuple(-trajectory.free_steps, trajectory.close > 0.0F, bend(trajectory));
+      });
+  const double turn = turns_[static_cast<std::size_t>(best->turn)].target;
+  decision.command.w = ramped(input, {0.0, turn}, config_.braking).w;
   return decision;
+}
+
+/// The way that the base may need to stop, as its speed now: told to stand it leans first, and
+/// covers most of it before it gets slower.
+void DynamicWindow::keep_speed(double v, int most_steps) {
+  const double step = rollout_.settings().step;
+  kept_.target = v;
+  kept_.contact = 0;
+  kept_.needed = config_.stopping.distance(v) + config_.margin;
+  kept_.steps = std::clamp(static_cast<int>(std::ceil(kept_.needed / (v * step))), 1, most_steps);
+  kept_.values.assign(static_cast<std::size_t>(kept_.steps) + 1, v);
+  kept_.way.resize(kept_.values.size());
+  for (std::size_t k = 0; k < kept_.way.size(); ++k)
+    kept_.way[k] = static_cast<double>(k) * step * v;
 }
 
 Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,

@@ -152,6 +152,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   void stand_in_the_way(const Input& input);
   void find_walkers(const geometry::Pose2& pose, std::span<const MovingDisc> people);
   void find_neighbours(const Input& input);
+  void keep_speed(double v, int most_steps);
   void load(const Input& input);
 
   // What to do (dynamic_window.cpp).
@@ -202,6 +203,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Lane lane_;
   std::vector<MovingDisc> walkers_;
   std::vector<MovingDisc> neighbours_;
+  SpeedProfile kept_;
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]
   LethalBits bits_;
 
