@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "foundation/result/bounds.hpp"
 
@@ -273,24 +274,27 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
 /// clearance; of equal ones the one that bends least from now. Nobody is dodged: who walks can step
 /// aside, a wall cannot.
 Decision DynamicWindow::brake(const Input& input) {
-  const bool standing = std::abs(input.measured.v) < kStanding;
-  Decision decision = halt(input, standing ? Reason::kBlocked : Reason::kBraking, config_.braking);
+  const double v = std::abs(input.measured.v);
+  Decision decision =
+      halt(input, v < kStanding ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
-  if (std::abs(input.measured.v) < kSlowEnoughToTurn) return decision;  // sways, on the spot
+  if (v < kSlowEnoughToTurn) return decision;  // it sways, on the spot
   sample(input, config_.slowest);
-  keep_speed(std::abs(input.measured.v), turns_.front().steps);
+  keep_speed(v, turns_.front().steps);
   rollout_.run({input.pose, input.measured, input.last_command}, {&kept_, 1}, turns_, input.costs,
                bits_, {&whole_, &narrow_}, config_.footprint, {});
-  const auto bend = [&](const Trajectory& trajectory) {
-    return std::abs(turns_[static_cast<std::size_t>(trajectory.turn)].target -
-                    input.last_command.w);
+  const auto turn = [&](const Trajectory& trajectory) {
+    return turns_[static_cast<std::size_t>(trajectory.turn)].target;
   };
+  // The turn rate falls with the speed, else an arc ends in a turn on the spot.
+  const double along = braked_arc_ ? *braked_arc_ * v : input.last_command.w;
   const auto best =
       std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
-        return std::tuple(-trajectory.free_steps, trajectory.close > 0.0F, bend(trajectory));
+        return std::tuple(-trajectory.free_steps, trajectory.close > 0.0F,
+                          std::abs(turn(trajectory) - along));
       });
-  const double turn = turns_[static_cast<std::size_t>(best->turn)].target;
-  decision.command.w = ramped(input, {0.0, turn}, config_.braking).w;
+  arc_ = turn(*best) / v;
+  decision.command.w = ramped(input, {0.0, turn(*best)}, config_.braking).w;
   return decision;
 }
 
@@ -314,6 +318,7 @@ Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   Input input{costs, pose, measured, last_command, seconds, people, {}};
+  braked_arc_ = std::exchange(arc_, std::nullopt);
   if (!valid(input)) return refused();
   find_walkers(pose, people);
   input.walkers = walkers_;

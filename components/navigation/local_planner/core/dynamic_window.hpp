@@ -204,6 +204,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   std::vector<MovingDisc> walkers_;
   std::vector<MovingDisc> neighbours_;
   SpeedProfile kept_;
+  std::optional<double> arc_, braked_arc_;    ///< [1/m] that it brakes on, now and a cycle before
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]
   LethalBits bits_;
 
