@@ -122,6 +122,7 @@ class Visit {
     around_.visitor = guide::VisitorSighting{true, -1.0, 0.0, 0.0};
     wait(1500);
     press("stop"), show("");
+    press("continue"), wait(1100);
     around_.navigation->state = GoalState::kFailed;
     wait(100), show("");
     press("yes"), press("foyer"), press("start");

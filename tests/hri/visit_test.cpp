@@ -191,8 +191,9 @@ class Witness {
       sentence.shown = sentence.shown || page.find(screen.spoken()) != std::string::npos;
       sentence.until = now();
     }
-    // Before the first question he may have missed the greeting.
-    if (screen.listens() && screen.state() != "location_ask") languages_.insert(screen.language());
+    // The greeting hears the languages in English; the first question may come before his touch.
+    if (screen.listens() && screen.state() != "introduction" && screen.state() != "location_ask")
+      languages_.insert(screen.language());
     if (screen.state() == state()) return;
     if (!said_.empty()) said_.rbegin()->second.until = now();
     states_.emplace_back(now(), screen.state());
