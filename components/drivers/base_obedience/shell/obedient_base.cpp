@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -18,6 +19,9 @@ constexpr auto kCycle = milliseconds(10);
 constexpr auto kSilence = milliseconds(120);
 constexpr auto kReportAge = milliseconds(100);  // an older one tells not how the base rolls
 constexpr const char* kOnLoss = "commands zero to the base";
+constexpr const char* kOdometryKey = "session.odometry";
+constexpr auto kKeep = milliseconds(200);  // the pose, when it is another one
+constexpr double kKeptStep = 0.02;         // [m], [rad] than that
 
 BaseObedience::Limits read_limits(runtime::Parameters& parameters) {
   BaseObedience::Limits limits;
@@ -26,6 +30,21 @@ BaseObedience::Limits read_limits(runtime::Parameters& parameters) {
   limits.angular = parameters.number("robot.limits.angular", "rad/s", {0.1, 5}, limits.angular,
                                      "Faster commands are refused.");
   return limits;
+}
+
+std::string to_text(const geometry::Pose2& pose) {
+  std::ostringstream text;
+  text.precision(17);
+  text << pose.x << ' ' << pose.y << ' ' << pose.yaw;
+  return text.str();
+}
+
+std::optional<geometry::Pose2> read_pose(const std::string& text) {
+  std::istringstream stream(text);
+  geometry::Pose2 pose;
+  stream >> pose.x >> pose.y >> pose.yaw;
+  if (!stream || !pose.finite()) return std::nullopt;
+  return pose;
 }
 
 }  // namespace
@@ -38,6 +57,7 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       obedience_(read_limits(host.parameters())),
       wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
                                              "Of the driven wheels; also the axle's height.")),
+      odometry_memory_(host, kOdometryKey),
       grantors_({host.parameters().text("grantor", "supervisor",
                                         "The component that may grant the right to drive.")}),
       foreign_grants_(host.health().counter("grants: foreign writer")),
@@ -86,6 +106,7 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
   battery_ = host.output(topics::kBattery);
   cycle_timer_ = host.timer("cycle", kCycle, [this](auto) { cycle(); });
   battery_timer_ = host.timer("battery", milliseconds(1000), [this](auto) { publish_battery(); });
+  keep_timer_ = host.timer("keep", kKeep, [this](auto) { keep_odometry(); });
 }
 
 /// By a name that discovery gave. Who took the supervisor's is unmasked by its life, and is nobody
@@ -153,10 +174,15 @@ void ObedientBase::disconnected(const std::string& reason) {
 void ObedientBase::publish_odometry(Time at, const geometry::Pose2& pose,
                                     const geometry::Twist2& twist, double pitch) {
   const runtime::Time stamp(at);
+  if (!odom_T_start_) {
+    const auto kept = read_pose(odometry_memory_.found());
+    odom_T_start_ = kept ? *kept * geometry::inverse(pose) : geometry::Pose2{};
+  }
+  odom_T_base_ = *odom_T_start_ * pose;
   nav_msgs::msg::Odometry message;
   message.header(wire::header(stamp, frames::kOdom));
   message.child_frame_id(frames::kBaseFootprint);
-  message.pose().pose(wire::to_message(pose));
+  message.pose().pose(wire::to_message(odom_T_base_));
   message.twist().twist(wire::to_message(stamp, twist).twist());
   odom_.publish(message);
 
@@ -164,11 +190,18 @@ void ObedientBase::publish_odometry(Time at, const geometry::Pose2& pose,
   footprint_T_base.translation.z() = wheel_radius_;
   footprint_T_base.rotation = geometry::from_roll_pitch_yaw(0.0, pitch, 0.0);
   tf2_msgs::msg::TFMessage frames;
-  frames.transforms().push_back(
-      wire::transform(stamp, frames::kOdom, frames::kBaseFootprint, geometry::to_space(pose)));
+  frames.transforms().push_back(wire::transform(stamp, frames::kOdom, frames::kBaseFootprint,
+                                                geometry::to_space(odom_T_base_)));
   frames.transforms().push_back(
       wire::transform(stamp, frames::kBaseFootprint, frames::kBaseLink, footprint_T_base));
   transforms_.publish(frames);
+}
+
+void ObedientBase::keep_odometry() {
+  const geometry::Pose2 step = geometry::inverse(kept_odometry_) * odom_T_base_;
+  if (std::hypot(step.x, step.y) < kKeptStep && std::abs(step.yaw) < kKeptStep) return;
+  kept_odometry_ = odom_T_base_;
+  odometry_memory_.keep(to_text(odom_T_base_));
 }
 
 void ObedientBase::publish_status() {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "drivers/base_obedience/core/base_obedience.hpp"
@@ -11,6 +12,7 @@
 #include "foundation/kinematics/roll_out.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "wire/keeper.hpp"
 
 namespace usher::drive {
 
@@ -48,7 +50,8 @@ class ObedientBase {
   void disconnected(const std::string& reason);
   bool connected() const { return disconnected_.empty(); }
 
-  /// `pose` of base_footprint in odom.
+  /// `pose` of base_footprint since this driver's start; odom is kept over restarts of the driver,
+  /// so that what is mapped in it stays where it is. A boot begins a new one.
   void publish_odometry(Time stamp, const geometry::Pose2& pose, const geometry::Twist2& twist,
                         double pitch = 0.0);
 
@@ -62,6 +65,7 @@ class ObedientBase {
   void take_request(const usher_msgs::msg::BaseRequest& request, const runtime::Guid& writer);
   void publish_status();
   void publish_battery();
+  void keep_odometry();
 
   runtime::Host& host_;
   BaseDevice device_;
@@ -74,6 +78,9 @@ class ObedientBase {
   std::string disconnected_ = "not heard yet";
   std::uint64_t last_request_ = 0;
   bool motors_off_ = false;  ///< requested, until a reset
+  wire::Keeper odometry_memory_;
+  std::optional<geometry::Pose2> odom_T_start_;
+  geometry::Pose2 odom_T_base_, kept_odometry_;
   WriterRight grantors_;
   std::uint64_t& foreign_grants_;
   std::uint64_t& foreign_;
@@ -88,6 +95,7 @@ class ObedientBase {
   runtime::Output<sensor_msgs::msg::BatteryState> battery_;
   runtime::Timer cycle_timer_;
   runtime::Timer battery_timer_;
+  runtime::Timer keep_timer_;
 };
 
 }  // namespace usher::drive

@@ -210,6 +210,24 @@ TEST_F(DeviceReal, ADriverThatRestartsDrivesOnABaseThatStillBalances) {
   EXPECT_NEAR(device->twist.v, 0.5, 0.01);
 }
 
+TEST_F(DeviceReal, ADriverThatRestartsGoesOnWithItsOdometry) {
+  const auto x = [&] { return host.last(topics::kOdom)->pose().pose().position().x(); };
+  right.v = 0.5;
+  right.run(3000);
+  right.v = 0.0;
+  right.run(1000);
+  const double before = x();
+  ASSERT_GT(before, 0.5);
+  host.world().kill(host.name());
+  host.run_for(milliseconds(20));
+  host.world().start(host.name());
+  right.run(1000);
+  EXPECT_NEAR(x(), before, 0.03);
+  right.v = 0.5;
+  right.run(2000);
+  EXPECT_GT(x(), before + 0.3);
+}
+
 TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {
   right.run(2000);
   request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP, "stranger");

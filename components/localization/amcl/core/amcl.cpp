@@ -42,7 +42,7 @@ constexpr std::size_t kNearbyCandidates = 1000;
 constexpr double kRangeOffsetGain =
     0.1;  // of what one scan says; the systematic error changes slowly if at all
 constexpr double kMostRangeOffset = 0.08;  // [m] LMS100: 30 mm, and half a cell
-constexpr int kIdleScans = 10;  // without motion, between two updates of a robot that is lost
+constexpr int kIdleScans = 10;  // without motion, between two updates of a robot that is unsure
 constexpr std::size_t kGuidedEvery = 5;  // particles that follow the refinement of the estimate
 
 bool finite(const LaserBeams& scan) {
@@ -147,10 +147,10 @@ void Amcl::spread_over_free_space(const LaserBeams& scan) {
 }
 
 bool Amcl::due(const geometry::Pose2& base0_T_base1) {
-  // A robot that does not know where it is stands still: it looks on all the same.
-  const bool lost =
-      search_updates_ > 0 || (estimate_ && estimate_->quality.confidence == Confidence::kLost);
-  if (lost && ++idle_scans_ >= kIdleScans) return true;
+  // A robot that does not know well where it is may stand still: it looks on all the same.
+  const bool unsure =
+      search_updates_ > 0 || (estimate_ && estimate_->quality.confidence != Confidence::kGood);
+  if (unsure && ++idle_scans_ >= kIdleScans) return true;
   return force_update_ || std::hypot(base0_T_base1.x, base0_T_base1.y) >= config_.update_distance ||
          std::abs(base0_T_base1.yaw) >= config_.update_angle;
 }

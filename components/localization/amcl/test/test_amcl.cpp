@@ -363,6 +363,24 @@ TEST(Amcl, TakesAJumpOfTheOdometryForItsRestart) {
   EXPECT_LT(distance(world.amcl.estimate()->map_T_base, place), 0.1);
 }
 
+/// A driver whose odometry begins anew at less than max_step looks as if the robot had moved. In two
+/// of these places the scan fits another one as well.
+TEST(Amcl, FindsBackStandingWhenTheOdometryBeganAnewNearby) {
+  constexpr int kScans = 100, kWorlds = 10, kUnlike = 8;
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= kWorlds; ++seed) {
+    World world(seed);
+    world.start_near();
+    for (int i = 0; i < 20; ++i) world.step();
+    const Pose2 anew = world.robot.odometry() * Pose2{-1.2, 0.8, 0.5};
+    for (int i = 0; i < kScans; ++i) world.amcl.update(anew, world.robot.scan());
+    const Estimate& estimate = *world.amcl.estimate();
+    EXPECT_EQ(estimate.quality.confidence, Confidence::kGood) << "seed " << seed;
+    if (distance(estimate.map_T_base, world.robot.pose()) < 0.1) ++right;
+  }
+  EXPECT_GE(right, kUnlike);
+}
+
 TEST(Amcl, KnowsThatItIsLost) {
   World world(13);
   ASSERT_TRUE(world.amcl.set_initial_pose({1.0, 11.0, 1.0}, spread(0.1, 0.1)).ok());
