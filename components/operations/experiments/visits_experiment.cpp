@@ -116,6 +116,7 @@ struct Visit {
   std::uint32_t touches = 0, utterances = 0, waits = 0;
   std::size_t ratings = 0;
   std::uint32_t contacts = 0, touched = 0;
+  std::string contact_with;
   std::uint64_t digest = 0;
 };
 
@@ -157,6 +158,7 @@ Result<Visit> visit(Deployment deployment, const Manner& manner, const std::stri
   open.stands = stands(record.samples());
   if (!visit.ended) visit.waits_for = waits_safely_for(open);
   visit.contacts = record.summary().contacts;
+  visit.contact_with = record.summary().contact_with;
   visit.touched = record.summary().touches;
   visit.complaints = (*run)->complaints();
   visit.digest = world.digest();
@@ -236,6 +238,7 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
     if (!each->ended || each->contacts > 0) {
       said = name + " to " + each->place + ": " + each->state + ", waits for " +
              each->waits_for.value_or("nothing") + ", contacts " + std::to_string(each->contacts) +
+             (each->contacts > 0 ? ", the last with " + each->contact_with : "") +
              "; again with usher experiment visits --only " + name + "_" +
              std::to_string(first + i) + "\n" + each->complaints;
     }
