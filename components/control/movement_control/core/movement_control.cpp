@@ -141,6 +141,9 @@ MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& 
     } else if (inputs.localization == Localization::kLost) {
       tighten(parameters_.localization_lost, Limit::kLocalizationLost);
     }
+    // The planner's costs take for free what no beam tells of.
+    if (parameters_.guarded && !inputs.view.sees)
+      tighten({parameters_.guard.blind, bound.limit.angular}, Limit::kBlind);
   }
   const double factor = inputs.enables ? inputs.enables->speed_factor : 1.0;
   if (!(factor >= 1.0)) {  // NaN is the careful case

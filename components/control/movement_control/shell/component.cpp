@@ -164,7 +164,7 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
                                              .optional = true});
   base_ = host.input(topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "commands zero"});
   scan_ = host.input(
-      topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "drives as in a confined place"},
+      topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "creeps"},
       [this](const auto& scan, const auto&) { take_scan(scan); },
       [this] {
         seen_at_.reset();

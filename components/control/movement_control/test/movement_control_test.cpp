@@ -26,6 +26,7 @@ Inputs all_well() {
   inputs.situation = Situation::kOpen;
   inputs.localization = Localization::kGood;
   inputs.measured = Twist2{};
+  inputs.view.sees = true;
   return inputs;
 }
 
@@ -469,6 +470,18 @@ TEST_F(Guarded, WithoutAScanItCreeps) {
   const Decision decision = settled(inputs, parameters);
   EXPECT_NEAR(decision.twist.v, 0.1, 1e-9);
   EXPECT_EQ(decision.limit, Limit::kBlind);
+}
+
+// A jacket over the front half of the laser: its costs are free there.
+TEST_F(Guarded, ANavigationThatSeesNothingAheadCreeps) {
+  inputs.navigation = Twist2{0.8, 0.3};
+  inputs.view = {};
+  const Decision decision = settled(inputs, parameters);
+  EXPECT_NEAR(decision.twist.v, 0.1, 1e-9);
+  EXPECT_NEAR(decision.twist.w, 0.3 / 8.0, 1e-9) << "on its arc";
+  EXPECT_EQ(decision.limit, Limit::kBlind);
+  inputs.view = {.sees = true};
+  EXPECT_EQ(settled(inputs, parameters).twist, (Twist2{0.8, 0.3}));
 }
 
 // In a bend along a wall the stick is let go: straight on the robot would roll into the wall.
