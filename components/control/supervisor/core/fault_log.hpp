@@ -39,6 +39,7 @@ struct Fault {
   std::string ended_by;  ///< the operator who cleared it; empty when it ended by itself
 
   bool latched() const { return latches(cause); }
+  bool operator==(const Fault&) const = default;
 };
 
 /// The last faults, newest last. Active ones are never pushed out.

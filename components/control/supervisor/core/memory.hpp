@@ -17,6 +17,8 @@ struct Memory {
   std::vector<Fault> latched;           ///< active latched faults
   std::vector<std::string> stopped_by;  ///< clients that hold a stop; at most kMostStops
   bool manual = false;                  ///< an operator drives: nobody else may begin to
+
+  bool operator==(const Memory&) const = default;
 };
 
 inline constexpr std::size_t kMostStops = 32;

@@ -224,6 +224,7 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       }
       faults_.clear(request.client, now);
       watch_.reset();
+      runs_away_ = false;
       if (base_ && base_->emergency) reset_until_ = now + parameters_.reset_patience;
       return {};
     case Command::kNone:
@@ -254,6 +255,7 @@ void Supervisor::note_faults(Time now) {
 
 void Supervisor::note_base(Time now) {
   const drive::ResponseWatch::Verdict verdict = watch_.verdict();
+  if (watch_.runs_away()) runs_away_ = true;
   if (verdict == drive::ResponseWatch::Verdict::kDisobeys) {
     faults_.raise(Cause::kDisobeyingBase, parameters_.names.base,
                   "moves other than commanded: linear error " +
@@ -333,9 +335,8 @@ const Decision& Supervisor::step(Time now) {
   decision_.enables = enables_of(decision_.state);
   if (!stopped_by_.empty()) decision_.enables.movement = false;
   decision_.speed_factor = table_.degraded() ? parameters_.degraded_speed_factor : 1.0;
-  decision_.emergency_stop =
-      faults_.active(Cause::kEmergencyStop) ||
-      (parameters_.emergency_stop_when_disobeying && faults_.active(Cause::kDisobeyingBase));
+  decision_.emergency_stop = faults_.active(Cause::kEmergencyStop) ||
+                             (parameters_.emergency_stop_when_disobeying && runs_away_);
   decision_.reset_base = resetting(now) && !fault;
   decision_.camera_angle =
       decision_.state == State::kInteraction        ? parameters_.camera_angle_interaction

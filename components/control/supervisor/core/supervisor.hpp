@@ -57,7 +57,7 @@ struct Parameters {
   Time barred_patience = std::chrono::milliseconds(500);  ///< so long it may stand and not say why
   Time base_age = std::chrono::milliseconds(150);         ///< {> 0} nobody drives an older report
   Time reset_patience = std::chrono::seconds(5);          ///< for a base that leaves its emergency
-  bool emergency_stop_when_disobeying = true;
+  bool emergency_stop_when_disobeying = true;             ///< see ResponseWatch::runs_away
   drive::ResponseWatch::Parameters response;
   double process_rate = 50.0;                             ///< [Hz] reported only
   double camera_angle_default = 0.0;                      ///< [rad] up is positive
@@ -263,6 +263,7 @@ class Supervisor {
   std::optional<Time> barred_since_;   ///< while it should navigate
   std::optional<Time> refused_since_;  ///< the base refuses though somebody has the right
   std::optional<Commanded> commanded_;
+  bool runs_away_ = false;           ///< the base, until an operator clears
   std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
 
   std::string goal_;

@@ -137,7 +137,8 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
                       "Whether the robot may move without being told so first.");
   p.emergency_stop_when_disobeying =
       parameters.flag("emergency_stop_when_disobeying", p.emergency_stop_when_disobeying,
-                      "Switch the motors of a base off that does not do as it is told.");
+                      "Switch the motors of a base off that moves otherwise than it is told by "
+                      "more than the thresholds.");
   p.response.response =
       time_from(parameters.number("response_time", "s", {0.2, 10}, in_seconds(p.response.response),
                                   "Within this time the base gets from any command to any other."));
@@ -176,7 +177,9 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                                                 "Life of a grant without renewal.")),
       parameters_(read_parameters(host)),
       memory_(host, kMemoryKey, [this](const Status& kept) { core_.memory_kept(kept, now()); }),
-      core_(parameters_, remembered(host, memory_.found())) {
+      core_(parameters_, remembered(host, memory_.found())),
+      unknown_heartbeats_(host.health().counter("heartbeats: unknown")),
+      rejected_reports_(host.health().counter("reports: rejected")) {
   heartbeat_ =
       host.input(topics::kHeartbeat, {.depth = 4 * kMostComponents},
                  [this](const auto& message, const auto& info) {
@@ -303,7 +306,12 @@ void SupervisorComponent::step() {
   // What a crash loses before the disk has it is an epoch at most, which a restart skips, or a stop
   // of the last milliseconds. A full disk stops no robot: the operator reads what would be
   // forgotten.
-  memory_.keep(to_text(core_.memory()));
+  if (const Memory memory = core_.memory(); memory != told_memory_) {
+    memory_.keep(to_text(memory));
+    told_memory_ = memory;
+  }
+  unknown_heartbeats_ = core_.unknown_heartbeats();
+  rejected_reports_ = core_.rejected_reports();
   const bool fault = decision.state == State::kFault;
   host_.health().set(fault ? HealthState::kDegraded : HealthState::kOk,
                      fault ? std::string(decision.reason) : "");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "control/supervisor/core/supervisor.hpp"
@@ -38,6 +39,9 @@ class SupervisorComponent final : public runtime::Component {
   const Parameters parameters_;
   wire::Keeper memory_;
   Supervisor core_;
+  std::optional<Memory> told_memory_;  ///< to the keeper
+  std::uint64_t& unknown_heartbeats_;
+  std::uint64_t& rejected_reports_;
   Time answered_at_{};         ///< the last request that acted at once
   bool answer_later_ = false;  ///< another one, with the next step
   bool told_fault_ = false;    ///< in the status: an operator reads of a fault at once

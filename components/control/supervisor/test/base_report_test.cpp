@@ -147,6 +147,28 @@ TEST(Supervisor, WithoutAGrantTheBaseShallStand) {
   EXPECT_TRUE(robot.supervisor.decision().emergency_stop);
 }
 
+TEST(Supervisor, WhoPushesAStandingBaseDoesNotSwitchItOff) {
+  for (const geometry::Twist2& push : {geometry::Twist2{0.3, 0.0}, geometry::Twist2{0.0, 0.5}}) {
+    Robot robot = ready();
+    robot.run(3000);
+    robot.base.measured = push;
+    robot.run(1500);
+    EXPECT_EQ(robot.state(), State::kFault);
+    EXPECT_FALSE(robot.granted());
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+    robot.base.measured = {1.2, 0.0};
+    robot.run(1500);
+    EXPECT_TRUE(robot.supervisor.decision().emergency_stop) << "it drives away";
+    robot.base.measured = {};
+    robot.run(100);
+    EXPECT_TRUE(robot.supervisor.decision().emergency_stop) << "until an operator clears";
+    robot.ask(Command::kClear);
+    robot.run(500);
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+    EXPECT_TRUE(robot.granted());
+  }
+}
+
 TEST(Supervisor, RejectsAnOdometryThatIsNotANumber) {
   Robot robot = ready();
   robot.base.measured.v = std::numeric_limits<double>::quiet_NaN();

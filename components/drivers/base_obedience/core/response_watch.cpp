@@ -66,6 +66,9 @@ ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits,
       std::abs(axis.error.error) > threshold ? axis.error.lasting + elapsed : Time::zero();
   axis.excess_lasting = std::abs(excess) > threshold ? axis.excess_lasting + elapsed : Time::zero();
 
+  axis.far_lasting =
+      std::abs(excess) > limits.threshold ? axis.far_lasting + elapsed : Time::zero();
+
   if (axis.excess_lasting > Time::zero() && axis.excess_lasting >= limits.patience) {
     return Verdict::kDisobeys;
   }
@@ -73,6 +76,13 @@ ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits,
     return Verdict::kFallsShort;
   }
   return Verdict::kObeys;
+}
+
+bool ResponseWatch::runs_away() const {
+  const auto lasts = [](const AxisState& axis, const Axis& limits) {
+    return axis.far_lasting > Time::zero() && axis.far_lasting >= limits.patience;
+  };
+  return lasts(linear_, parameters_.linear) || lasts(angular_, parameters_.angular);
 }
 
 ResponseWatch::Verdict ResponseWatch::observe(const geometry::Twist2& commanded,

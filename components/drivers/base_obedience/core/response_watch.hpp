@@ -52,6 +52,9 @@ class ResponseWatch {
   Verdict observe(const geometry::Twist2& commanded, const geometry::Twist2& measured, Time now);
 
   Verdict verdict() const { return verdict_; }
+  /// It disobeys by more than `threshold`, also of one that stands: it drives by itself. Who pushes
+  /// a standing base makes it disobey, but seldom so.
+  bool runs_away() const;
   const AxisError& linear() const { return linear_.error; }
   const AxisError& angular() const { return angular_.error; }
 
@@ -71,6 +74,7 @@ class ResponseWatch {
     double last = 0.0;                     ///< the command that holds until the next one
     AxisError error;
     Time excess_lasting{};
+    Time far_lasting{};  ///< of an excess over `threshold`, also where it stands
   };
 
   void advance(Time now);

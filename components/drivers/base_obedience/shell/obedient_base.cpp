@@ -32,19 +32,11 @@ BaseObedience::Limits read_limits(runtime::Parameters& parameters) {
   return limits;
 }
 
-std::string to_text(const geometry::Pose2& pose) {
+std::string to_text(const geometry::Pose2& pose, const std::string& beside) {
   std::ostringstream text;
   text.precision(17);
-  text << pose.x << ' ' << pose.y << ' ' << pose.yaw;
+  text << pose.x << ' ' << pose.y << ' ' << pose.yaw << '\n' << beside;
   return text.str();
-}
-
-std::optional<geometry::Pose2> read_pose(const std::string& text) {
-  std::istringstream stream(text);
-  geometry::Pose2 pose;
-  stream >> pose.x >> pose.y >> pose.yaw;
-  if (!stream || !pose.finite()) return std::nullopt;
-  return pose;
 }
 
 }  // namespace
@@ -63,6 +55,12 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       foreign_grants_(host.health().counter("grants: foreign writer")),
       foreign_(host.health().counter("commands: foreign writer")),
       foreign_requests_(host.health().counter("requests: foreign writer")) {
+  std::istringstream found(odometry_memory_.found());
+  geometry::Pose2 pose;
+  if (found >> pose.x >> pose.y >> pose.yaw && pose.finite()) {
+    odom_T_start_ = odom_T_base_ = kept_odometry_ = pose;
+    std::getline(found >> std::ws, found_beside_);
+  }
   grant_ = host.input(
       topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
@@ -174,11 +172,7 @@ void ObedientBase::disconnected(const std::string& reason) {
 void ObedientBase::publish_odometry(Time at, const geometry::Pose2& pose,
                                     const geometry::Twist2& twist, double pitch) {
   const runtime::Time stamp(at);
-  if (!odom_T_start_) {
-    const auto kept = read_pose(odometry_memory_.found());
-    odom_T_start_ = kept ? *kept * geometry::inverse(pose) : geometry::Pose2{};
-  }
-  odom_T_base_ = *odom_T_start_ * pose;
+  odom_T_base_ = odom_T_start_ * pose;
   nav_msgs::msg::Odometry message;
   message.header(wire::header(stamp, frames::kOdom));
   message.child_frame_id(frames::kBaseFootprint);
@@ -201,7 +195,7 @@ void ObedientBase::keep_odometry() {
   const geometry::Pose2 step = geometry::inverse(kept_odometry_) * odom_T_base_;
   if (std::hypot(step.x, step.y) < kKeptStep && std::abs(step.yaw) < kKeptStep) return;
   kept_odometry_ = odom_T_base_;
-  odometry_memory_.keep(to_text(odom_T_base_));
+  odometry_memory_.keep(to_text(odom_T_base_, beside_()));
 }
 
 void ObedientBase::publish_status() {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include "drivers/base_obedience/core/base_obedience.hpp"
 #include "drivers/base_obedience/core/writer_right.hpp"
@@ -55,6 +55,11 @@ class ObedientBase {
   void publish_odometry(Time stamp, const geometry::Pose2& pose, const geometry::Twist2& twist,
                         double pitch = 0.0);
 
+  /// What a driver wants kept with the pose, one line, to count what its base rolls on without it.
+  void keep_beside_odometry(std::function<std::string()> line) { beside_ = std::move(line); }
+  /// What an earlier life of it kept there; empty: nothing.
+  const std::string& found_beside_odometry() const { return found_beside_; }
+
   double wheel_radius() const { return wheel_radius_; }  ///< [m]
 
  private:
@@ -79,8 +84,9 @@ class ObedientBase {
   std::uint64_t last_request_ = 0;
   bool motors_off_ = false;  ///< requested, until a reset
   wire::Keeper odometry_memory_;
-  std::optional<geometry::Pose2> odom_T_start_;
-  geometry::Pose2 odom_T_base_, kept_odometry_;
+  std::string found_beside_;
+  std::function<std::string()> beside_ = [] { return std::string(); };
+  geometry::Pose2 odom_T_start_, odom_T_base_, kept_odometry_;
   WriterRight grantors_;
   std::uint64_t& foreign_grants_;
   std::uint64_t& foreign_;

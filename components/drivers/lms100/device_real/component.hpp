@@ -15,6 +15,8 @@ class Lms100Component final : public runtime::Component {
 
   std::uint64_t& lost_;
   std::uint64_t& rejected_;
+  std::uint64_t& skipped_bytes_;
+  std::uint64_t& damaged_;
   laser_scanner::ScannerLine<Session> line_;
 };
 

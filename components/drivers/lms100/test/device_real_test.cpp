@@ -86,6 +86,7 @@ TEST_F(DeviceReal, NoticesASilentScannerAndHalfTelegrams) {
   host.run_for(milliseconds(1000));
   device->damaged = false;
   host.run_for(milliseconds(8000));
+  EXPECT_GT(host.counter("bytes: skipped") + host.counter("telegrams: damaged"), 0U);
   EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
   EXPECT_TRUE(host.running());
 }

@@ -28,8 +28,8 @@ struct SegwayFeedback {
   double yaw_rate = 0.0;        ///< [rad/s] positive left
   double left_velocity = 0.0;   ///< [m/s] of the wheel, relative to the body
   double right_velocity = 0.0;  ///< [m/s]
-  /// [m] Sums of the odometers since the connection was opened, relative to the body: a base that
-  /// leans forward over standing wheels counts backward. They never jump or wrap.
+  /// [m] Of the odometers, from where they stood when this driver first heard them, relative to the
+  /// body: a base that leans forward over standing wheels counts backward. They never jump or wrap.
   double left_travel = 0.0;
   double right_travel = 0.0;
   double left_torque = 0.0;                                           ///< [Nm]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <sstream>
 
 namespace usher::segway_rmp {
 
@@ -29,11 +30,11 @@ bool Odometry::update(const SegwayFeedback& feedback) {
       return false;
     }
   }
-  const double left = feedback.left_travel - last_left_;
-  const double right = feedback.right_travel - last_right_;
-  const double lean = feedback.pitch - last_pitch_;
-  const bool bridged =
-      interrupted_ && rolled_out(left, left_velocity_) && rolled_out(right, right_velocity_);
+  const double left = feedback.left_travel - last_.left_travel;
+  const double right = feedback.right_travel - last_.right_travel;
+  const double lean = feedback.pitch - last_.pitch;
+  const bool bridged = interrupted_ && rolled_out(left, last_.left_velocity) &&
+                       rolled_out(right, last_.right_velocity);
   const bool first = !started_ || (interrupted_ && !bridged);
   const double fastest =
       std::max(std::abs(feedback.left_velocity), std::abs(feedback.right_velocity));
@@ -41,11 +42,8 @@ bool Odometry::update(const SegwayFeedback& feedback) {
     counted_at_ = feedback.stamp;
   started_ = true;
   interrupted_ = false;
-  last_left_ = feedback.left_travel;
-  last_right_ = feedback.right_travel;
-  last_pitch_ = feedback.pitch;
-  left_velocity_ = feedback.left_velocity;
-  right_velocity_ = feedback.right_velocity;
+  last_ = {feedback.left_travel, feedback.right_travel, feedback.left_velocity,
+           feedback.right_velocity, feedback.pitch};
   if (!first && !bridged && std::abs(left) + std::abs(right) > 2.0 * parameters_.longest_step) {
     ++rejected_;
     return false;
@@ -71,6 +69,30 @@ bool Odometry::update(const SegwayFeedback& feedback) {
 void Odometry::interrupt() {
   interrupted_ = started_;
   twist_ = raw_twist_ = {};
+}
+
+void Odometry::resume(const Wheels& wheels) {
+  last_ = wheels;
+  started_ = true;
+  interrupt();
+}
+
+std::string to_text(const Odometry::Wheels& wheels) {
+  std::ostringstream text;
+  text.precision(17);
+  text << wheels.left_travel << ' ' << wheels.right_travel << ' ' << wheels.left_velocity << ' '
+       << wheels.right_velocity << ' ' << wheels.pitch;
+  return text.str();
+}
+
+std::optional<Odometry::Wheels> read_wheels(const std::string& text) {
+  std::istringstream stream(text);
+  Odometry::Wheels wheels;
+  for (double* value : {&wheels.left_travel, &wheels.right_travel, &wheels.left_velocity,
+                        &wheels.right_velocity, &wheels.pitch}) {
+    if (!(stream >> *value) || !std::isfinite(*value)) return std::nullopt;
+  }
+  return wheels;
 }
 
 }  // namespace usher::segway_rmp

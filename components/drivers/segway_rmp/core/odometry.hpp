@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "drivers/segway_rmp/core/device.hpp"
 #include "foundation/geometry/pose2.hpp"
 
@@ -22,6 +25,15 @@ class Odometry {
     Time hangs_after = std::chrono::milliseconds(250);  ///< {> 0} of that
   };
 
+  /// Of the last cycle, what the way of the next one is counted from.
+  struct Wheels {
+    double left_travel = 0.0;     ///< [m]
+    double right_travel = 0.0;    ///< [m]
+    double left_velocity = 0.0;   ///< [m/s]
+    double right_velocity = 0.0;  ///< [m/s]
+    double pitch = 0.0;           ///< [rad]
+  };
+
   Odometry();
   explicit Odometry(const Parameters& parameters);
 
@@ -35,6 +47,11 @@ class Odometry {
   /// reset of the counters, the next cycle is a new beginning of the way, wherever they stand.
   void interrupt();
 
+  /// As after an interruption: a driver that ended left its base with these, where it now begins.
+  void resume(const Wheels& wheels);
+  /// Nothing: no cycle was heard yet.
+  std::optional<Wheels> wheels() const { return started_ ? std::optional(last_) : std::nullopt; }
+
   const geometry::Pose2& pose() const { return pose_; }          ///< of base_footprint in odom
   const geometry::Twist2& twist() const { return twist_; }       ///< over the floor
   const geometry::Pose2& raw_pose() const { return raw_pose_; }  ///< without the pitch taken out
@@ -47,10 +64,7 @@ class Odometry {
 
   bool started_ = false;
   bool interrupted_ = false;
-  double last_left_ = 0.0;
-  double last_right_ = 0.0;
-  double last_pitch_ = 0.0;
-  double left_velocity_ = 0.0, right_velocity_ = 0.0;  ///< [m/s]
+  Wheels last_;
   Time counted_at_{};  ///< when the odometers last changed, or had no reason to
   geometry::Pose2 pose_;
   geometry::Twist2 twist_;
@@ -58,5 +72,10 @@ class Odometry {
   geometry::Twist2 raw_twist_;
   std::uint64_t rejected_ = 0;
 };
+
+/// One line.
+std::string to_text(const Odometry::Wheels& wheels);
+/// Nothing where that is no such line, or not finite.
+std::optional<Odometry::Wheels> read_wheels(const std::string& text);
 
 }  // namespace usher::segway_rmp

@@ -50,6 +50,7 @@ void FeedbackAssembler::reopened() {
   anew.counters_known_ = counters_known_;
   anew.left_counter_ = left_counter_;
   anew.right_counter_ = right_counter_;
+  anew.incomplete_cycles_ = incomplete_cycles_;
   anew.counter_jumps_ = counter_jumps_;
   *this = anew;
 }
@@ -75,6 +76,10 @@ void FeedbackAssembler::travel(const Packet& packet) {
       feedback_.left_travel += left_step;
       feedback_.right_travel += right_step;
     }
+  }
+  if (!counters_known_) {
+    feedback_.left_travel = left / calibration_.counts_per_meter;
+    feedback_.right_travel = right / calibration_.counts_per_meter;
   }
   counters_known_ = true;
   left_counter_ = left;
@@ -127,7 +132,7 @@ std::optional<SegwayFeedback> FeedbackAssembler::take(const Packet& packet, Time
       status_heard_ = true;
       break;
     case kIdEcho: {
-      const bool whole = has_ == kHasAll;
+      const bool whole = has_ == kHasAll && mode_known();
       has_ = 0;
       if (!whole) {
         ++incomplete_cycles_;

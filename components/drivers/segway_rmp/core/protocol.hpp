@@ -53,8 +53,8 @@ class FeedbackAssembler {
   explicit FeedbackAssembler(const Calibration& calibration) : calibration_(calibration) {}
 
   /// A packet arrived at `now`. The feedback, when it completes a cycle in which pitch, velocities
-  /// and wheels were all heard. One of the two channels is followed; the other one takes over when
-  /// this one falls silent.
+  /// and wheels were all heard, and the base has said since its line was opened what it does. One
+  /// of the two channels is followed; the other one takes over when this one falls silent.
   std::optional<SegwayFeedback> take(const Packet& packet, Time now);
 
   /// The connection was opened anew: the counters have counted on, nothing else is known.
@@ -71,6 +71,7 @@ class FeedbackAssembler {
 
   void travel(const Packet& packet);
   Mode mode() const;
+  bool mode_known() const { return status_heard_ || operational_mode_.has_value(); }
 
   Calibration calibration_;
   SegwayFeedback feedback_;

@@ -24,7 +24,11 @@ Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parame
 }
 
 SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
-    : line_(host, Link(read_parameters(host.parameters()))),
+    : damaged_packets_(host.health().counter("packets: damaged")),
+      skipped_bytes_(host.health().counter("bytes: skipped")),
+      incomplete_cycles_(host.health().counter("cycles: incomplete")),
+      counter_jumps_(host.health().counter("odometers: jumped")),
+      line_(host, Link(read_parameters(host.parameters()))),
       driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
                      .emergency_stop = [this] { emergency(true); },
                      .reset = [this] { emergency(false); }}),
@@ -48,7 +52,8 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
              driver_.take(feedback);
              remember();  // that it balances, and that it fell
            },
-       .lost = [this](const std::string& reason) { driver_.disconnected(reason); }});
+       .lost = [this](const std::string& reason) { driver_.disconnected(reason); },
+       .heard = [this] { count(); }});
 }
 
 void SegwayRmpComponent::emergency(bool on) {
@@ -59,6 +64,14 @@ void SegwayRmpComponent::emergency(bool on) {
     line_.link().reset();
   }
   remember();
+}
+
+void SegwayRmpComponent::count() {
+  const Link& link = line_.link();
+  damaged_packets_ = link.decoder().bad_checksums();
+  skipped_bytes_ = link.decoder().skipped_bytes();
+  incomplete_cycles_ = link.assembler().incomplete_cycles();
+  counter_jumps_ = link.assembler().counter_jumps();
 }
 
 void SegwayRmpComponent::remember() {

@@ -16,7 +16,12 @@ class SegwayRmpComponent final : public runtime::Component {
   static Link::Parameters read_parameters(runtime::Parameters& parameters);
   void emergency(bool on);
   void remember();
+  void count();
 
+  std::uint64_t& damaged_packets_;
+  std::uint64_t& skipped_bytes_;
+  std::uint64_t& incomplete_cycles_;
+  std::uint64_t& counter_jumps_;
   drive::BaseLine<Link, SegwayFeedback> line_;
   BaseDriver driver_;
   wire::Keeper memory_;    ///< that its motors were switched off

@@ -22,7 +22,13 @@ BaseDriver::BaseDriver(runtime::Host& host, drive::BaseDevice device)
     : host_(host),
       base_(host, std::move(device), Odometry::Parameters{}.wheel_radius),
       odometry_(read_odometry(host.parameters(), base_.wheel_radius())),
-      rejected_feedback_(host.health().counter("feedback: rejected")) {}
+      rejected_feedback_(host.health().counter("feedback: rejected")) {
+  if (const auto wheels = read_wheels(base_.found_beside_odometry())) odometry_.resume(*wheels);
+  base_.keep_beside_odometry([this] {
+    const auto wheels = odometry_.wheels();
+    return wheels ? to_text(*wheels) : std::string();
+  });
+}
 
 void BaseDriver::take(const SegwayFeedback& feedback) {
   const bool understood = odometry_.update(feedback);

@@ -33,15 +33,24 @@ class Device final : public runtime::LockstepDevice {
     state_.left_travel += 0.01 * twist.v;
     state_.right_travel += 0.01 * twist.v;
     const auto said = base_.feedback(state_);
-    return {said.begin(), said.end()};
+    runtime::Bytes bytes{said.begin(), said.end()};
+    if (damaged) bytes.at(10) ^= 1;
+    return bytes;
   }
 
+  /// As it does while nobody hears it, until it stands.
+  void roll_out(double way) {
+    state_.left_travel += way;
+    state_.right_travel += way;
+    twist = {};
+  }
   void switch_off() { state_.mode = Mode::kStandby, twist = {}; }
 
   geometry::Twist2 twist;  ///< last ordered
   int shutdowns = 0, balances = 0;
   bool silent = false;
-  bool hangs = false;  ///< what it measures
+  bool damaged = false;  ///< one frame of each cycle
+  bool hangs = false;    ///< what it measures
 
  private:
   EmulatedBase base_{Calibration{}};
@@ -225,7 +234,26 @@ TEST_F(DeviceReal, ADriverThatRestartsGoesOnWithItsOdometry) {
   EXPECT_NEAR(x(), before, 0.03);
   right.v = 0.5;
   right.run(2000);
-  EXPECT_GT(x(), before + 0.3);
+  const double moving = x();
+  EXPECT_GT(moving, before + 0.3);
+  host.world().kill(host.name());
+  device->roll_out(0.4);
+  host.run_for(milliseconds(20));
+  right.v = 0.0;
+  host.world().start(host.name());
+  right.run(1000);
+  EXPECT_NEAR(x(), moving + 0.4, 0.03) << "it rolled on";
+}
+
+TEST_F(DeviceReal, CountsWhatItsLineSpoils) {
+  right.run(2000);
+  EXPECT_EQ(host.counter("packets: damaged"), 0U);
+  device->damaged = true;
+  right.run(100);
+  EXPECT_GT(host.counter("packets: damaged"), 0U);
+  EXPECT_GT(host.counter("bytes: skipped"), 0U);
+  EXPECT_GT(host.counter("cycles: incomplete"), 0U);
+  EXPECT_EQ(host.counter("odometers: jumped"), 0U);
 }
 
 TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {

@@ -75,8 +75,8 @@ TEST(EmulatedBase, TheRealLinkReadsWhatItSays) {
   EXPECT_NEAR(heard->yaw_rate, 0.3, 0.003);
   EXPECT_NEAR(heard->left_velocity, 0.9, 0.003);
   EXPECT_NEAR(heard->right_velocity, 1.1, 0.003);
-  EXPECT_NEAR(heard->left_travel, 199 * 0.009, 1e-3) << "since the first cycle";
-  EXPECT_NEAR(heard->right_travel, 199 * 0.011, 1e-3);
+  EXPECT_NEAR(heard->left_travel, 200 * 0.009, 1e-3) << "as the base counts";
+  EXPECT_NEAR(heard->right_travel, 200 * 0.011, 1e-3);
   EXPECT_NEAR(heard->battery_percent, 75.0, 3.0);
   EXPECT_EQ(link.assembler().incomplete_cycles(), 0U);
 }

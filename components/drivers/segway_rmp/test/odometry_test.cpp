@@ -139,6 +139,25 @@ TEST(Odometry, CountsWhatTheBaseRolledOnWhileItsLineWasCut) {
   EXPECT_NEAR(odometry.pose().yaw, truth.yaw, 1e-9);
 }
 
+TEST(Odometry, ResumesWhereAnEarlierOneEnded) {
+  Odometry first;
+  EXPECT_FALSE(first.wheels()) << "nothing heard";
+  TrueBase base;
+  base.left = base.right = 1234.5;
+  base.drive(0.7, 0.2);
+  first.update(base.feedback());
+  const auto wheels = read_wheels(to_text(first.wheels().value()));
+  ASSERT_TRUE(wheels);
+  Odometry second;
+  second.resume(*wheels);
+  for (int i = 0; i < 100; ++i) base.drive(0.4, 0.0);
+  base.drive(0.0, 0.0);
+  ASSERT_TRUE(second.update(base.feedback()));
+  EXPECT_NEAR(second.pose().x, 0.4, 1e-9);
+  for (const char* text : {"", "1 2 3 4", "1 2 3 4 nan", "1 2 x 4 5"})
+    EXPECT_FALSE(read_wheels(text)) << text;
+}
+
 TEST(Odometry, AnInterruptedLineIsNoMotion) {
   Odometry odometry;
   SegwayFeedback feedback;

@@ -204,19 +204,22 @@ TEST(Feedback, TravelWrapsNeverAndJumpsNever) {
   FeedbackAssembler assembler{Calibration{}};
   Cycle cycle;
   cycle.left = cycle.right = std::numeric_limits<std::int32_t>::max() - 1000;
-  take(assembler, cycle_packets(cycle));
-  cycle.left = cycle.right = std::numeric_limits<std::int32_t>::min() + 2321;  // 3322 counts on
   auto feedback = take(assembler, cycle_packets(cycle));
   ASSERT_TRUE(feedback);
-  EXPECT_NEAR(feedback->left_travel, 3322.0 / 33215.0, 1e-9);
+  const double start = feedback->left_travel;
+  EXPECT_NEAR(start, cycle.left / 33215.0, 1e-9) << "the base's own count";
+  cycle.left = cycle.right = std::numeric_limits<std::int32_t>::min() + 2321;  // 3322 counts on
+  feedback = take(assembler, cycle_packets(cycle));
+  ASSERT_TRUE(feedback);
+  EXPECT_NEAR(feedback->left_travel - start, 3322.0 / 33215.0, 1e-9);
   cycle.left = cycle.right = 0;  // the integrators were reset
   feedback = take(assembler, cycle_packets(cycle));
-  EXPECT_NEAR(feedback->left_travel, 3322.0 / 33215.0, 1e-9);
+  EXPECT_NEAR(feedback->left_travel - start, 3322.0 / 33215.0, 1e-9);
   EXPECT_EQ(assembler.counter_jumps(), 1U);
   cycle.left = 332;
   feedback = take(assembler, cycle_packets(cycle));
-  EXPECT_NEAR(feedback->left_travel, (3322.0 + 332.0) / 33215.0, 1e-9);
-  EXPECT_NEAR(feedback->right_travel, 3322.0 / 33215.0, 1e-9);
+  EXPECT_NEAR(feedback->left_travel - start, (3322.0 + 332.0) / 33215.0, 1e-9);
+  EXPECT_NEAR(feedback->right_travel - start, 3322.0 / 33215.0, 1e-9);
 }
 
 TEST(Feedback, TravelGoesOnWhereTheLineWasOpenedAnew) {
@@ -304,11 +307,13 @@ struct Base {
     if (word(13) == 16 && word(15) == kModeBalance) off = false;
     cycle.status_1 = off ? 0 : kMotorsEnabled | kBalanceMode;
   }
-  Bytes speak() const {
+  Bytes speak(const std::vector<std::uint16_t>& damaged = {}) const {
     Bytes stream;
     for (const bool channel_b : {false, true}) {
-      for (const Packet& packet : cycle_packets(cycle, channel_b))
-        append(stream, from_base(packet));
+      for (const Packet& packet : cycle_packets(cycle, channel_b)) {
+        if (std::find(damaged.begin(), damaged.end(), packet.id) == damaged.end())
+          append(stream, from_base(packet));
+      }
     }
     return stream;
   }
@@ -320,6 +325,7 @@ struct Bench {
   int now_ms = 0;
   int feedbacks = 0;
   bool base_speaks = true;
+  std::vector<std::uint16_t> damaged{};  ///< frames that do not arrive
 
   Bench() { link.opened(now()); }
   Time now() const { return milliseconds(now_ms); }
@@ -328,7 +334,7 @@ struct Bench {
       now_ms += 10;
       base.hear(link.cycle(wanted, now()));
       if (base_speaks) {
-        link.received(base.speak(), now(), [this](const SegwayFeedback&) { ++feedbacks; });
+        link.received(base.speak(damaged), now(), [this](const SegwayFeedback&) { ++feedbacks; });
       }
     }
   }
@@ -415,6 +421,27 @@ TEST(Link, ABaseThatStillBalancesIsConfiguredAnewWhenItsLineIsBack) {
   bench.run(500, {0.5, 0.0});
   EXPECT_EQ(bench.base.settings, settings);
   EXPECT_EQ(bench.base.speed, 164);
+}
+
+TEST(Link, DamagedFramesAfterOpeningAreNoFall) {
+  Bench bench;
+  bench.link.balanced_before();
+  bench.base.off = false;
+  for (int opening = 0; opening < 2; ++opening) {
+    bench.damaged = {kIdMode, kIdStatus};
+    bench.run(260);
+    EXPECT_EQ(bench.link.mode(bench.now()), Mode::kDisconnected) << "it has not said what it does";
+    bench.damaged = {kIdStatus};
+    bench.run(20);
+    EXPECT_EQ(bench.link.mode(bench.now()), Mode::kBalancing);
+    bench.damaged = {};
+    bench.run(500);
+    EXPECT_FALSE(bench.base.off);
+    EXPECT_EQ(bench.link.mode(bench.now()), Mode::kBalancing);
+    bench.link.closed();
+    bench.run(100);
+    bench.link.opened(bench.now());
+  }
 }
 
 TEST(Link, NoticesASilentBase) {
