@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -10,7 +11,8 @@
 namespace usher::wire {
 
 /// The asking side of a request: repeats it at 5 Hz until it is answered, one after the other in
-/// the order of asking. Message needs id() and client(); ids grow over restarts too.
+/// the order of asking, but for what is asked first. Message needs id() and client(); ids grow over
+/// restarts too.
 template <class Message>
 class Repeater {
  public:
@@ -38,11 +40,29 @@ class Repeater {
     waiting_.push_back(std::move(message));
     if (waiting_.size() == 1) output_.publish(waiting_.front());
   }
-  /// An answer names the id: true when it ends a request of ours.
+  /// Asks before all that waits, and gives up those of them that it contradicts: a stop waits for
+  /// no answer to something else. When 32 already wait the newest is given up.
+  template <class Contradicts>
+  void ask_first(Message message, Contradicts contradicts) {
+    message.client(host_.name());
+    std::erase_if(waiting_, contradicts);
+    if (waiting_.size() == kMostWaiting) waiting_.pop_back();
+    waiting_.push_front(std::move(message));
+    output_.publish(waiting_.front());
+  }
+  /// An answer names id and client, since ids are unique per client only: true when it ends a
+  /// request of ours.
+  bool answered(std::uint64_t id, const std::string& client) {
+    return client == host_.name() && answered(id);
+  }
+  /// The same for who has compared the client.
   bool answered(std::uint64_t id) {
-    if (waiting_.empty() || waiting_.front().id() != id) return false;
-    waiting_.pop_front();
-    if (!waiting_.empty()) output_.publish(waiting_.front());
+    const auto asked = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [id](const Message& each) { return each.id() == id; });
+    if (asked == waiting_.end()) return false;
+    const bool was_asking = asked == waiting_.begin();
+    waiting_.erase(asked);
+    if (was_asking && !waiting_.empty()) output_.publish(waiting_.front());
     return true;
   }
   void give_up() { waiting_.clear(); }

@@ -56,7 +56,9 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
     const auto until = std::chrono::steady_clock::now() + kRepeat;
     while (std::chrono::steady_clock::now() < until) {
       const auto answer = status->take(milliseconds(50));
-      if (!answer || answer->last_request() != request.id()) continue;
+      const bool ours = answer && answer->last_request() == request.id() &&
+                        answer->last_request_client() == request.client();
+      if (!ours) continue;
       if (!answer->last_request_done()) return Error{"refused: " + answer->last_request_reason()};
       return {};
     }

@@ -63,10 +63,11 @@ ManualControlComponent::ManualControlComponent(runtime::Host& host)
        .on_loss = "takes the dead-man button as released",
        .optional = true},
       [this](const auto& joy, const auto& info) { take(joy, info); }, [this] { drive(); });
-  supervisor_ = host.input(topics::kSupervisorStatus, {.optional = true},
-                           [this](const auto& status, const auto&) {
-                             if (requests_.answered(status.last_request())) asks_to_stop_ = false;
-                           });
+  supervisor_ = host.input(
+      topics::kSupervisorStatus, {.optional = true}, [this](const auto& status, const auto&) {
+        if (requests_.answered(status.last_request(), status.last_request_client()))
+          asks_to_stop_ = false;
+      });
   command_ = host.output(topics::kCmdVelManual);
   timer_ = host.timer("drive", kPeriod, [this](auto) {
     drive();

@@ -68,6 +68,13 @@ TEST(ManualControlShell, AsksUntilAnsweredAndNotForEverButForAStop) {
   EXPECT_EQ(asked.front().id(), asked.back().id());
   usher_msgs::msg::SupervisorStatus status;
   status.last_request(asked.front().id());
+  status.last_request_client("tablet");
+  host.publish(topics::kSupervisorStatus, status);
+  host.run_for(milliseconds(20));
+  host.clear();
+  host.run_for(milliseconds(500));
+  EXPECT_FALSE(host.written(topics::kSupervisorRequest).empty()) << "somebody else's request";
+  status.last_request_client("manual_control");
   host.publish(topics::kSupervisorStatus, status);
   host.run_for(milliseconds(20));
   host.clear();

@@ -36,7 +36,7 @@ void Conversation::take(const Screen& screen, Time now) {
       screen_.id != 0 && screen.answer_id != 0 &&
       (screen.answer_id != screen_.answer_id || screen.answer_client != screen_.answer_client);
   screen_ = screen;
-  if (!offers(kStop)) halts_at_.reset();
+  if (offers(kContinue)) halts_at_.reset();  // whatever else has come instead holds nothing
   // An answer, by touch or voice, sets the robot off; unless it was given before the stop.
   const bool sets_off = another && answered && alive_ && offers(kStop);
   const bool late = sets_off && holds_ && now - stopped_at_ < kAnswerLate;
@@ -48,7 +48,10 @@ void Conversation::take(const Screen& screen, Time now) {
     if (waited_ && !screen.listens) wishes_.tones.push_back(Tone::kHeard);
     waited_ = false;
   }
-  if (late) wishes_.answer = Wishes::Answer{screen_.id, std::string(kStop)};
+  if (late) {
+    answered_ = kStop;
+    wishes_.answer = Wishes::Answer{screen_.id, answered_};
+  }
   if (more) {
     said_ = screen.spoken_id;
     if (screen.tone != Tone::kNone) wishes_.tones.push_back(screen.tone);
@@ -82,8 +85,13 @@ void Conversation::ask(Time now) {
 
 void Conversation::answer(const std::string& option_id) {
   question_.reset();
+  answered_ = option_id;
   wishes_.break_off = true;
   wishes_.answer = Wishes::Answer{screen_.id, option_id};
+}
+
+void Conversation::hear_done() {
+  if (answered_ == kStop) halts_at_.reset();
 }
 
 void Conversation::stop(Time now) {
@@ -121,7 +129,8 @@ void Conversation::lift_hold() {
   wishes_.go_on = true;
 }
 
-void Conversation::hear_visit(bool goes_on) {
+void Conversation::hear_visit(bool served, bool navigates) {
+  const bool goes_on = served || (visit_ && navigates);
   if (visit_ && !goes_on) lift_hold();
   visit_ = goes_on;
 }

@@ -81,8 +81,12 @@ class Conversation {
   void take(const Screen& screen, Time now);
   /// The dialogue is heard from or is not.
   void hear_dialogue(bool alive) { alive_ = alive; }
-  /// A visit goes on or does not. Its end ends our stop, too: the next visitor finds no held robot.
-  void hear_visit(bool goes_on);
+  /// The dialogue has done what our newest answer says.
+  void hear_done();
+  /// Somebody is served or not, the supervisor navigates or not. The end of a visit ends our stop,
+  /// too: the next visitor finds no held robot. A dialogue that forgets its visit has not ended the
+  /// journey.
+  void hear_visit(bool served, bool navigates);
   /// What was heard, with the phrases that it was listened for and their number. A stop is one
   /// whatever has come to the screen since; anything else was said to the buttons of then.
   void heard(const Hearing& hearing, std::span<const Phrase> phrases, std::uint64_t phrases_id,
@@ -138,6 +142,7 @@ class Conversation {
   std::uint64_t said_ = 0;
   bool able_ = false, alive_ = true, visit_ = false;
   bool holds_ = false, waited_ = false, greeted_ear_ = false;
+  std::string answered_;          ///< our newest answer
   Time stopped_at_{};             ///< by voice
   std::optional<Time> halts_at_;  ///< unless the dialogue has stopped the robot by then
   std::optional<Question> question_;

@@ -101,13 +101,12 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
   meeting_ = host.input(topics::kMeetingStatus, {.max_age = kDialogueAge,
                                                  .on_loss = "a spoken stop goes to the supervisor",
                                                  .optional = true});
-  supervisor_ = host.input(topics::kSupervisorStatus, {.optional = true},
-                           [this](const auto& status, const auto&) {
-                             requests_.answered(status.last_request());
-                             const auto holds = wire::own_stop(status, host_.name(), requests_);
-                             if (holds && conversation_.hear_stop(*holds))
-                               memory_.keep(*holds ? kHoldKey : "");
-                           });
+  supervisor_ = host.input(
+      topics::kSupervisorStatus, {.optional = true}, [this](const auto& status, const auto&) {
+        requests_.answered(status.last_request(), status.last_request_client());
+        const auto holds = wire::own_stop(status, host_.name(), requests_);
+        if (holds && conversation_.hear_stop(*holds)) memory_.keep(*holds ? kHoldKey : "");
+      });
   timer_ = host.timer("step", kStep, [this](std::uint64_t skipped) { tick(skipped); });
   player_.set_gain(settings_.volume);
   if (recognizer_ == nullptr) models_trouble_ = "there is no recognizer";
@@ -138,7 +137,10 @@ void SpeechComponent::load() {
 }
 
 void SpeechComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen) {
-  if (screen.answer_client() == host_.name()) answers_.answered(screen.answer_id());
+  const bool done =
+      screen.answer_result() == usher_msgs::msg::DialogueScreen_Constants::RESULT_DONE;
+  if (answers_.answered(screen.answer_id(), screen.answer_client()) && done)
+    conversation_.hear_done();
   Screen taken;
   taken.id = screen.id();
   taken.language = screen.language();
@@ -287,7 +289,9 @@ void SpeechComponent::tick(std::uint64_t skipped) {
   if (ticks_ % kRetryEvery == 1) open_devices();
   conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
   conversation_.hear_dialogue(guide_.fresh() != nullptr || meeting_.fresh() != nullptr);
-  if (const auto* guide = guide_.fresh()) conversation_.hear_visit(guide->serves());
+  const auto* supervisor = supervisor_.latest();
+  const bool navigates = supervisor != nullptr && !supervisor->current_goal().empty();
+  if (const auto* guide = guide_.fresh()) conversation_.hear_visit(guide->serves(), navigates);
   // A sound card of its own has gone on meanwhile; files have not.
   for (std::uint64_t i = 0; i <= std::min(skipped, kMostSkipped); ++i) {
     play();

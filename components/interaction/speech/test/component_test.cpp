@@ -356,6 +356,31 @@ TEST_F(Speech, StopsThroughTheSupervisorWhenTheGuideIsGone) {
   EXPECT_TRUE(answers().empty());
 }
 
+TEST_F(Speech, StopsThroughTheSupervisorUnlessTheDialogueHasDoneIt) {
+  namespace result = usher_msgs::msg::DialogueScreen_Constants;
+  for (const auto what : {result::RESULT_DONE, result::RESULT_LATE}) {
+    start();
+    show(5, {"stop", "done"}, "Go.");
+    pass(2.0);
+    room_.hearing = {{{0, 0.0, 0.0}, {1, -10.0, 10.0}}};
+    room_.voice = 0.3;
+    pass(0.6);
+    room_.voice = 0.0;
+    for (int i = 0; i < 10 && answers().empty(); ++i) pass(0.1);
+    ASSERT_FALSE(answers().empty());
+    usher_msgs::msg::DialogueScreen reply;
+    reply.id(6);
+    reply.language("en");
+    reply.answer_client("speech");
+    reply.answer_id(answers().back().id());
+    reply.answer_result(what);
+    host_->publish(topics::kDialogueScreen, reply, "guide");
+    pass(1.0);
+    const auto requests = host_->written(topics::kSupervisorRequest);
+    EXPECT_EQ(requests.empty(), what == result::RESULT_DONE) << "the robot has arrived before";
+  }
+}
+
 TEST_F(Speech, HearsAStopThoughNoAnswerIsWaitedFor) {
   start();
   waits_ = false;

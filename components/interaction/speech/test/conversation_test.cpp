@@ -335,6 +335,32 @@ TEST_F(Talk, StopsThroughTheSupervisorWhenTheDialogueDoesNotReact) {
   EXPECT_TRUE(talk_.holds());
 }
 
+TEST_F(Talk, AScreenThatHasNoStopAnyMoreIsNoStop) {
+  show(screen(7, {"stop", "cancel"}));
+  hear("stop", kSure);
+  show(screen(8, {}));
+  pass(Conversation::kStopLate + milliseconds(40));
+  EXPECT_TRUE(talk_.take_wishes().halt) << "the robot has arrived meanwhile, and may turn";
+
+  talk_.hear_stop(false);
+  show(screen(9, {"stop", "done"}));
+  hear("stop", kSure);
+  talk_.hear_done();
+  show(screen(10, {"yes", "no"}));
+  pass(Conversation::kStopLate + milliseconds(40));
+  EXPECT_FALSE(talk_.take_wishes().halt) << "the dialogue has stopped it";
+}
+
+TEST_F(Talk, HoldsWhatStillNavigates) {
+  show(screen(7, {"yes"}));
+  talk_.hear_visit(true, true);
+  hear("stop", kSure);
+  talk_.hear_visit(false, true);
+  EXPECT_TRUE(talk_.holds()) << "the dialogue has forgotten its visit";
+  talk_.hear_visit(false, false);
+  EXPECT_FALSE(talk_.holds());
+}
+
 TEST_F(Talk, BelievesTheSupervisorWhoseStopHolds) {
   show(screen(7, {"library"}));
   hear("stop", kSure);
@@ -431,14 +457,14 @@ TEST_F(Talk, KeepsItsStopOverRestarts) {
 
 TEST_F(Talk, LiftsItsStopAtTheEndOfTheVisit) {
   show(screen(7, {"yes"}));
-  talk_.hear_visit(false);
+  talk_.hear_visit(false, false);
   hear("stop", kUnsure);
   talk_.take_wishes();
-  talk_.hear_visit(false);
+  talk_.hear_visit(false, false);
   EXPECT_TRUE(talk_.holds()) << "nobody was served";
-  talk_.hear_visit(true);
+  talk_.hear_visit(true, false);
   EXPECT_TRUE(talk_.holds());
-  talk_.hear_visit(false);
+  talk_.hear_visit(false, false);
   EXPECT_FALSE(talk_.holds()) << "the next visitor finds no held robot";
   EXPECT_TRUE(talk_.take_wishes().go_on);
   EXPECT_EQ(talk_.hint(), "");

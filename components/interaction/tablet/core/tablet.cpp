@@ -53,7 +53,8 @@ void Tablet::hear(bool robot, bool dialogue, Time now) {
 }
 
 /// A stop of this visitor must not hold the robot for the next.
-Touched Tablet::hear_visit(bool goes_on, Time now) {
+Touched Tablet::hear_visit(bool served, bool navigates, Time now) {
+  const bool goes_on = served || (visit_ && navigates);
   const bool ended = visit_ && !goes_on;
   visit_ = goes_on;
   Touched touched{.move = ended && lift_hold()};

@@ -89,8 +89,9 @@ class Tablet {
 
   /// Whether robot (supervisor) and dialogue (guide) are heard.
   void hear(bool robot, bool dialogue, Time now);
-  /// A visit goes on or does not; whether the tablet's own stop ends with it.
-  Touched hear_visit(bool goes_on, Time now);
+  /// Somebody is served or not, the supervisor navigates or not; whether the tablet's own stop ends
+  /// with the visit. A dialogue that forgets its visit has not ended the journey.
+  Touched hear_visit(bool served, bool navigates, Time now);
   void locate(const std::optional<geometry::Pose2>& pose) { pose_ = pose; }
   /// What the robot's ear has to say: a question back takes the place of the text, anything else
   /// that of the status; empty: nothing.

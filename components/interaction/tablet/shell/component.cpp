@@ -51,7 +51,11 @@ TabletComponent::TabletComponent(runtime::Host& host, std::unique_ptr<Window> ow
   guide_ = host.input(
       topics::kGuideStatus,
       {.max_age = kDialogueAge, .on_loss = "asks for a moment; Stop still works", .optional = true},
-      [this](const auto& status, const auto&) { act(core_.hear_visit(status.serves(), now())); },
+      [this](const auto& status, const auto&) {
+        const auto* supervisor = supervisor_.latest();
+        const bool navigates = supervisor != nullptr && !supervisor->current_goal().empty();
+        act(core_.hear_visit(status.serves(), navigates, now()));
+      },
       [this] { show(); });
   meeting_ = host.input(
       topics::kMeetingStatus,
@@ -97,9 +101,7 @@ void TabletComponent::open_finger(const std::string& address) {
 }
 
 void TabletComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen) {
-  if (screen.answer_client() == host_.name() && answers_.answered(screen.answer_id())) {
-    core_.replied();
-  }
+  if (answers_.answered(screen.answer_id(), screen.answer_client())) core_.replied();
   if (screen.language() != language_) {
     language_ = screen.language();
     if (const auto* locations = locations_.latest()) take_locations(*locations);
@@ -125,7 +127,7 @@ void TabletComponent::take_screen(const usher_msgs::msg::DialogueScreen& screen)
 }
 
 void TabletComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
-  requests_.answered(status.last_request());
+  requests_.answered(status.last_request(), status.last_request_client());
   const auto holds = wire::own_stop(status, host_.name(), requests_);
   if (holds && core_.hear_stop(*holds, now())) act({});
 }

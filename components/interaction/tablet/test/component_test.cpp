@@ -17,6 +17,8 @@ class Component : public testing::Test {
     usher_msgs::msg::SupervisorStatus supervisor;
     supervisor.header(wire::header(host_.now(), ""));
     supervisor.last_request(request_seen_);
+    supervisor.last_request_client(client_seen_);
+    supervisor.current_goal(goal_);
     supervisor.stopped_by(stopped_by_);
     host_.publish(topics::kSupervisorStatus, supervisor, "supervisor");
     usher_msgs::msg::GuideStatus status;
@@ -55,6 +57,7 @@ class Component : public testing::Test {
                           "site.locations: [{name: kitchen, title: Kitchen, x: 0, y: 0, yaw: 0}]\n"
                           "site.titles: [{place: kitchen, language: de, title: Küche}]"};
   std::uint64_t request_seen_ = 0;
+  std::string client_seen_ = "tablet", goal_;
   std::vector<std::string> stopped_by_;
   bool serves_ = false;
 };
@@ -193,6 +196,38 @@ TEST_F(Component, LiftsItsStopAtTheEndOfTheVisit) {
   hear();
   EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
   EXPECT_FALSE(window_.view.start_offered);
+}
+
+TEST_F(Component, HoldsARobotWhoseDialogueHasForgottenTheJourney) {
+  serves_ = true, goal_ = "lab";
+  hear();
+  show(screen(5, "guide_active", {"stop"}));
+  window_.touches.push_back({false, "stop"});
+  hear();
+  request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  stopped_by_ = {"tablet"};
+  serves_ = false;
+  hear(), hear();
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_STOP)
+      << "the navigation would drive on";
+  goal_.clear();
+  hear();
+  hear();
+  EXPECT_EQ(host_.last(topics::kSupervisorRequest)->command(), command::COMMAND_MOVEMENT_ON);
+}
+
+TEST_F(Component, TakesNobodyElsesAnswerForItsOwn) {
+  hear();
+  show(screen(5, "inactive", {"language:en"}));
+  window_.touches.push_back({false, Tablet::kStop});
+  host_.run_for(milliseconds(25));
+  request_seen_ = host_.last(topics::kSupervisorRequest)->id();
+  client_seen_ = "speech";
+  hear();
+  EXPECT_TRUE(window_.view.start_offered) << "its stop is not answered yet";
+  host_.clear();
+  hear(), hear();
+  EXPECT_FALSE(host_.written(topics::kSupervisorRequest).empty());
 }
 
 TEST_F(Component, OffersStopAgainWhenAnOperatorHasLiftedItsStop) {

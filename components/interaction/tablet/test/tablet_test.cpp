@@ -269,14 +269,26 @@ TEST(Tablet, LiftsItsOwnStopWhenTheVisitorStartsOrIsStillHere) {
 TEST(Tablet, LiftsItsOwnStopAtTheEndOfTheVisit) {
   Tablet tablet = make();
   static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes"}), {}));
-  EXPECT_FALSE(tablet.hear_visit(true, {}).move);
+  EXPECT_FALSE(tablet.hear_visit(true, false, {}).move);
   static_cast<void>(tablet.touch(Tablet::kStop, {}));
-  EXPECT_FALSE(tablet.hear_visit(true, {}).move);
-  EXPECT_TRUE(tablet.hear_visit(false, {}).move) << "the next visitor finds no held robot";
+  EXPECT_FALSE(tablet.hear_visit(true, false, {}).move);
+  EXPECT_TRUE(tablet.hear_visit(false, false, {}).move) << "the next visitor finds no held robot";
   EXPECT_FALSE(tablet.holds());
   static_cast<void>(tablet.touch(Tablet::kStop, {}));
-  EXPECT_FALSE(tablet.hear_visit(false, {}).move) << "while nobody is served it is nobody's end";
+  EXPECT_FALSE(tablet.hear_visit(false, false, {}).move)
+      << "while nobody is served it is nobody's end";
   EXPECT_TRUE(tablet.holds());
+}
+
+TEST(Tablet, HoldsWhatStillNavigates) {
+  Tablet tablet = make();
+  static_cast<void>(tablet.hear_visit(true, true, {}));
+  static_cast<void>(tablet.touch(Tablet::kStop, {}));
+  EXPECT_FALSE(tablet.hear_visit(false, true, {}).move) << "the dialogue has forgotten its visit";
+  EXPECT_TRUE(tablet.hear_visit(false, false, {}).move);
+  static_cast<void>(tablet.touch(Tablet::kStop, {}));
+  EXPECT_FALSE(tablet.hear_visit(false, true, {}).move);
+  EXPECT_FALSE(tablet.hear_visit(false, false, {}).move) << "an operator's way is nobody's visit";
 }
 
 TEST(Tablet, StartOrStopIsOneTouchAwayWhateverHappens) {
@@ -294,7 +306,8 @@ TEST(Tablet, StartOrStopIsOneTouchAwayWhateverHappens) {
           tablet.take(screen(static_cast<std::uint64_t>(i), states[which], sets[which]), now));
     }
     tablet.hear(random.below(5) > 0, random.below(5) > 0, now);
-    if (random.below(5) == 0) static_cast<void>(tablet.hear_visit(random.below(2) == 0, now));
+    if (random.below(5) == 0)
+      static_cast<void>(tablet.hear_visit(random.below(2) == 0, random.below(2) == 0, now));
     const char* const ids[] = {"stop", "continue", Tablet::kStart, Tablet::kStop, "yes", "start"};
     if (random.below(2) == 0) static_cast<void>(tablet.touch(ids[random.below(6)], now));
     const View view = tablet.view(now);

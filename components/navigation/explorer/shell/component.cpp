@@ -149,7 +149,7 @@ void ExplorerComponent::tell_fleet(const Pose2& robot) {
 }
 
 void ExplorerComponent::take_navigation(const usher_msgs::msg::NavigateStatus& status) {
-  if (status.client() == host_.name()) drives_.answered(status.id());
+  drives_.answered(status.id(), status.client());
   step();
 }
 

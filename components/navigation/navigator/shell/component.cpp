@@ -182,7 +182,8 @@ void NavigatorComponent::take_goal_pose(const geometry_msgs::msg::PoseStamped& g
 }
 
 void NavigatorComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
-  if (!requests_.answered(status.last_request()) || !viewer_goal_) return;
+  const bool ours = requests_.answered(status.last_request(), status.last_request_client());
+  if (!ours || !viewer_goal_) return;
   if (!status.last_request_done()) return refuse_viewer(status.last_request_reason());
   if (requests_.waits()) return;
   core_.request({viewer_goal_->id, kViewer, "", viewer_goal_->pose, 0.0});

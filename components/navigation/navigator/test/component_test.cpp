@@ -60,6 +60,7 @@ class Component : public testing::Test {
     supervisor.state(behavior);
     if (const auto asked = host.last(topics::kSupervisorRequest); asked && answers) {
       supervisor.last_request(asked->id());
+      supervisor.last_request_client(answered_client);
       supervisor.last_request_done(refusal.empty());
       supervisor.last_request_reason(refusal);
       if (refusal.empty() && asked->id() != answered) current_goal = asked->goal();
@@ -151,7 +152,7 @@ class Component : public testing::Test {
   bool granted = true, blocked = false, answers = true;
   std::vector<std::string> stopped_by;  ///< whose stops hold
   std::uint8_t behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
-  std::string current_goal, refusal;
+  std::string current_goal, refusal, answered_client = "navigator";
   std::uint64_t answered = 0;
   std::uint64_t planned = 0;
   std::optional<usher_msgs::msg::FollowGoal> task;  ///< that the follower was told last
@@ -471,6 +472,14 @@ TEST_F(ViewerGoal, DoesNotWaitForANavigationOfSomebodyElse) {
   EXPECT_EQ(reason_of(STATE_FAILED), "an operator drives");
   guide_sets_out();
   EXPECT_FALSE(motions().contains(follow::MODE_PATH));
+  EXPECT_EQ(plans(), 0U);
+}
+
+TEST_F(ViewerGoal, AnAnswerToAnotherClientIsNone) {
+  answered_client = "guide";
+  click();
+  run(500);
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), command::COMMAND_NAVIGATION_START);
   EXPECT_EQ(plans(), 0U);
 }
 

@@ -22,7 +22,8 @@ bool Guide::choose_following(const std::string& option, Time now) {
     const bool there = option == button::kDone;
     visit_.travel_time += now - departed_;
     if (there && visit_.arrived++ == 0) ++funnel_.arrived;
-    leave_journey();
+    if (!there) stop_robot();
+    leave_journey(!there);
     enter(State::kEndAsk, there ? Cause::kYes : Cause::kNo, now);
     return true;
   }

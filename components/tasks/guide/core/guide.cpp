@@ -446,6 +446,7 @@ bool Guide::rate(const std::string& option, Time now) {
 const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   begin();
   surroundings_ = surroundings;
+  end_forgotten_journey();
   keep_own_stop();
   watch_encounter(now);
   if (state_ == State::kGuideStart || on_the_way()) watch_robot(now);

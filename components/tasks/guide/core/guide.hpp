@@ -62,6 +62,7 @@ struct Navigation {
   double remaining = kNothing;  ///< [m]
   bool blocked = false;         ///< something stands in the way now
   std::uint32_t replans = 0;
+  bool ours = false;  ///< this guide gave the goal, in this life or an earlier one
 };
 
 /// Whether the robot may drive where it wants to.
@@ -178,7 +179,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void enter(State state, Cause cause, Time now);
   void begin_visit(bool greeted, Time now);
   void end_visit(Cause cause, Time now);
-  void leave_journey();
+  void leave_journey(bool stopped = false);
   void lift_stop();
 
   // Screens.
@@ -244,6 +245,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void move_when_due(Time now);
   void stop_robot();
   void keep_own_stop();
+  void end_forgotten_journey();
   void go_on(Time now);
   void fail(Text reason, Cause cause, Time now);
   void watch_robot(Time now);

@@ -66,11 +66,31 @@ void Guide::stop_robot() {
   actions_.remember = true;
 }
 
-/// An operator ends every stop, but not what this one waits for; a boot forgets that it waited.
+/// An operator ends every stop, but not what this one waits for. A boot, or a memory that cannot be
+/// read, forgets that it waited: then the stop is lifted when no navigation can drive off, and who
+/// stopped the robot may still lie before it.
 void Guide::keep_own_stop() {
   const auto& holds = surroundings_.stop_holds;
   if (!holds || *holds == stopped_) return;
-  actions_.requests.push_back({stopped_ ? RequestKind::kStop : RequestKind::kMovementOn, {}});
+  if (stopped_) {
+    actions_.requests.push_back({RequestKind::kStop, {}});
+  } else if (on_the_way() || surroundings_.supervisor == Supervisor::kAvailable) {
+    if (!on_the_way()) stays_ = actions_.remember = true;
+    actions_.requests.push_back({RequestKind::kMovementOn, {}});
+  }
+}
+
+/// Nothing drives on, or off with the end of a stop, for a visit that this guide has forgotten.
+void Guide::end_forgotten_journey() {
+  if (state_ != State::kInitialise) return;
+  const auto& navigation = surroundings_.navigation;
+  const bool drives = navigator_drives() && navigation->ours;
+  if (drives) actions_.cancel = navigation->goal_id;
+  const auto& holds = surroundings_.stop_holds;
+  const bool stands = holds && *holds && !stopped_;
+  // Once: while a request waits it is not known what holds.
+  if (surroundings_.supervisor == Supervisor::kNavigation && holds && (drives || stands))
+    actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
 }
 
 /// After a stop, with the time of a departure for the visitor to step behind.
@@ -86,15 +106,15 @@ void Guide::lift_stop() {
   stopped_ = false;
 }
 
-/// Gives up the goal, if there is one. A stop of the visitor holds the robot until he goes on or
-/// his visit ends.
-void Guide::leave_journey() {
+/// Gives up the goal, if there is one. A stop of the visitor (`stopped`, or a pause) holds the
+/// robot until he goes on or his visit ends.
+void Guide::leave_journey(bool stopped) {
   const auto stray = follows() ? own_goal() : std::nullopt;
   if (goal_id_ != 0 || stray) actions_.cancel = goal_id_ != 0 ? goal_id_ : *stray;
   goal_id_ = first_goal_ = 0;
   move_at_.reset();
   actions_.requests.push_back({RequestKind::kNavigationEnd, {}});
-  if (state_ != State::kGuidePaused) lift_stop();
+  if (!stopped && state_ != State::kGuidePaused) lift_stop();
 }
 
 void Guide::fail(Text reason, Cause cause, Time now) {

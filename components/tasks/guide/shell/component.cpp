@@ -84,7 +84,12 @@ Guide GuideComponent::make(runtime::Host& host, const std::string& kept) {
   if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
     host.fault("follow_near and follow_resume must be below follow_far");
   Memory memory;
-  if (auto read = memory_from_text(kept)) memory = std::move(read).value();
+  auto& unreadable = host.health().counter("memory: unreadable");
+  if (auto read = memory_from_text(kept)) {
+    memory = std::move(read).value();
+  } else if (!kept.empty()) {
+    ++unreadable;
+  }
   // Ids above all that were used before a restart.
   const auto first_id = static_cast<std::uint64_t>(host.now().time_since_epoch().count() / 1000);
   return Guide(p, std::move(phrases), first_id, memory, host.now().time_since_epoch());
@@ -112,7 +117,7 @@ GuideComponent::GuideComponent(runtime::Host& host)
       {.max_age = kNavigationAge,
        .on_loss = "a guidance fails after a while and offers another try"},
       [this](const auto& status, const auto&) {
-        goals_.answered(status.id());
+        goals_.answered(status.id(), status.client());
         step();
       },
       [this] { step(); });
@@ -188,7 +193,7 @@ Surroundings GuideComponent::surroundings() const {
         status->id(),        static_cast<GoalState>(std::min<std::uint8_t>(status->state(), 6)),
         status->progress(),  status->eta(),
         status->remaining(), blocked,
-        status->replans()};
+        status->replans(),   status->client() == host_.name()};
   }
   namespace seen = usher_msgs::msg::Visitor_Constants;
   const auto* visitor = visitor_.fresh();
@@ -238,9 +243,8 @@ void GuideComponent::take_locations(const usher_msgs::msg::Locations& message) {
 }
 
 void GuideComponent::take_supervisor(const usher_msgs::msg::SupervisorStatus& status) {
-  if (requests_.answered(status.last_request()) && !status.last_request_done()) {
-    act(core_.refused(now()));
-  }
+  const bool ours = requests_.answered(status.last_request(), status.last_request_client());
+  if (ours && !status.last_request_done()) act(core_.refused(now()));
   step();
 }
 
@@ -258,7 +262,13 @@ void GuideComponent::act(const Actions& actions) {
     message.id(requests_.next_id());
     message.command(service::command_for(request.kind));
     message.goal(request.goal);
-    requests_.ask(std::move(message));
+    if (request.kind != RequestKind::kStop) {
+      requests_.ask(std::move(message));
+      continue;
+    }
+    requests_.ask_first(std::move(message), [](const auto& waiting) {
+      return waiting.command() == usher_msgs::msg::SupervisorRequest_Constants::COMMAND_MOVEMENT_ON;
+    });
   }
   if (actions.goal) {
     usher_msgs::msg::NavigateGoal goal;

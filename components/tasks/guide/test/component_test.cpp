@@ -26,6 +26,8 @@ class Stage : public testing::Test {
 
   void run(int ms) {
     for (int at = 0; at < ms; at += 100) {
+      const auto asked = host.last(topics::kSupervisorRequest);
+      if (asked && answers_requests) obey(*asked);
       supervisor.header(wire::header(host.now(), ""));
       host.publish(topics::kSupervisorStatus, supervisor);
       navigation.header(wire::header(host.now(), frames::kMap));
@@ -40,6 +42,19 @@ class Stage : public testing::Test {
       }
       host.run_for(milliseconds(100));
     }
+  }
+  /// What the supervisor does with a request.
+  void obey(const SupervisorRequest& request) {
+    if (supervisor.last_request() == request.id()) return;
+    supervisor.last_request(request.id());
+    supervisor.last_request_client(answered_client);
+    supervisor.last_request_done(true);
+    const bool stops = request.command() == SupervisorRequest_Constants::COMMAND_STOP;
+    if (stops || request.command() == SupervisorRequest_Constants::COMMAND_MOVEMENT_ON)
+      std::erase(supervisor.stopped_by(), host.name());
+    if (stops) supervisor.stopped_by().push_back(host.name());
+    if (request.command() == SupervisorRequest_Constants::COMMAND_NAVIGATION_END)
+      supervisor.state(SupervisorStatus_Constants::STATE_INTERACTION);
   }
   DialogueScreen screen() const { return host.last(topics::kDialogueScreen).value(); }
   void press(const std::string& option) {
@@ -56,6 +71,7 @@ class Stage : public testing::Test {
     supervisor.state(SupervisorStatus_Constants::STATE_NAVIGATION_ACTIVE);
     run(1200);
     navigation.id(host.last(topics::kNavigateGoal).value().id());
+    navigation.client("guide");
     navigation.state(GoalStatus_Constants::STATE_ACTIVE);
     run(1000);
     ASSERT_EQ(screen().state(), "guide_active");
@@ -75,6 +91,8 @@ class Stage : public testing::Test {
   std::optional<SpeechStatus> speech;
   std::optional<usher_msgs::msg::Visitor> visitor;
   std::uint64_t answers = 0;
+  bool answers_requests = true;
+  std::string answered_client = "guide";
 };
 
 TEST_F(Stage, ShowsThatSomebodyElseHoldsTheRobot) {
@@ -93,6 +111,58 @@ TEST_F(Stage, ShowsThatSomebodyElseHoldsTheRobot) {
   run(1500);
   EXPECT_EQ(screen().status(), "standing");
   EXPECT_EQ(screen().text(), "one_moment");
+}
+
+TEST_F(Stage, DrivesNowhereAfterALostMemory) {
+  drive();
+  press("stop"), run(500);
+  ASSERT_EQ(supervisor.stopped_by().size(), 1U);
+  host.world().kill("guide");
+  host.world().kept("guide")["session.dialogue"] = {'?'};
+  host.run_for(milliseconds(100));
+  host.world().start("guide");
+  host.clear();
+  run(500);
+  Locations locations;
+  locations.locations().emplace_back().name("lab");
+  host.publish(topics::kLocations, locations);
+  run(1500);
+  EXPECT_EQ(host.counter("memory: unreadable"), 1U);
+  const auto requests = host.written(topics::kSupervisorRequest);
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.front().command(), SupervisorRequest_Constants::COMMAND_NAVIGATION_END)
+      << "before its stop is lifted";
+  const auto cancel = host.last(topics::kNavigateCancel);
+  ASSERT_TRUE(cancel);
+  EXPECT_EQ(cancel->id(), navigation.id());
+  EXPECT_TRUE(supervisor.stopped_by().empty()) << "no dead end";
+  EXPECT_EQ(supervisor.state(), SupervisorStatus_Constants::STATE_INTERACTION);
+}
+
+TEST_F(Stage, AStopWaitsForNoOtherRequest) {
+  drive();
+  press("stop"), run(500), press("continue");
+  answers_requests = false;
+  run(1200);
+  ASSERT_EQ(host.last(topics::kSupervisorRequest)->command(),
+            SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
+  press("stop");
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(),
+            SupervisorRequest_Constants::COMMAND_STOP);
+  answers_requests = true;
+  host.clear();
+  run(1000);
+  EXPECT_EQ(supervisor.stopped_by().size(), 1U);
+  for (const auto& request : host.written(topics::kSupervisorRequest))
+    EXPECT_NE(request.command(), SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
+}
+
+TEST_F(Stage, TakesNobodyElsesAnswerForItsOwn) {
+  answered_client = "tablet";
+  press("language:en"), run(3000), press("guide_me"), press("lab"), press("start"), run(500);
+  for (const auto& request : host.written(topics::kSupervisorRequest))
+    EXPECT_EQ(request.command(), SupervisorRequest_Constants::COMMAND_NAVIGATION_START)
+        << "not answered yet";
 }
 
 TEST_F(Stage, LetsItsVoiceFinishWhereOneIsHeard) {

@@ -143,7 +143,7 @@ const std::vector<Case>& cases() {
         {[](Rig& r) { r.navigate(GoalState::kActive); }, State::kFollowMe, ""},
         PRESS("done", kEndAsk, "end cancel")}},
       {"walks nowhere", {kFollowing, WAIT(120000, kEndAsk, "end")}},
-      {"walks ahead, stops the robot", {kFollowing, PRESS("stop", kEndAsk, "end")}},
+      {"walks ahead, stops the robot", {kFollowing, PRESS("stop", kEndAsk, "stop end")}},
       {"walks ahead, the robot fails",
        {kFollowing,
         {[](Rig& r) { r.around.supervisor = Supervisor::kFault, r.wait(100); }, State::kGuideError,

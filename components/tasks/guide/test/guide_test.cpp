@@ -876,6 +876,61 @@ TEST(Guide, LiftsAStopThatABootHasMadeItForget) {
   EXPECT_EQ(rig.taken(), "on");
 }
 
+TEST(Guide, EndsAJourneyThatItHasForgottenBeforeItLiftsItsStop) {
+  Rig rig;
+  rig.goal = 7;
+  rig.around.supervisor = Supervisor::kNavigation;
+  rig.around.stop_holds = true;
+  rig.around.navigation->ours = true;
+  rig.navigate(GoalState::kWaiting), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "end cancel") << "the supervisor navigates: it would drive off";
+  rig.around.stop_holds.reset();
+  rig.navigate(GoalState::kCancelled), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "");
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.around.stop_holds = true;
+  rig.see_nobody(), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "on");
+  rig.around.stop_holds = false;
+  rig.wait(60000);
+  EXPECT_FALSE(rig.guide.seeks()) << "who stopped it may lie before it";
+}
+
+TEST(Guide, EndsAJourneyThatItHasForgottenThoughNothingHoldsIt) {
+  Rig rig;
+  rig.goal = 7;
+  rig.around.supervisor = Supervisor::kNavigation;
+  rig.around.stop_holds = false;
+  rig.navigate(GoalState::kActive);
+  EXPECT_EQ(rig.taken(), "") << "somebody else's way";
+  rig.around.navigation->ours = true;
+  rig.wait(100);
+  EXPECT_EQ(rig.taken(), "end cancel");
+}
+
+TEST(Guide, AStopInAFollowingHoldsUntilHeGoesOnOrLeaves) {
+  Rig rig;
+  rig.to_following(), rig.wait(1000), rig.taken();
+  rig.press("stop");
+  ASSERT_EQ(rig.state(), "end_ask");
+  EXPECT_EQ(rig.taken(), "stop end");
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.around.stop_holds = true;
+  rig.wait(2000);
+  EXPECT_EQ(rig.taken(), "") << "it holds";
+  rig.press("yes"), rig.press("no"), rig.press("follow_me"), rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "start:visitor go on");
+  rig.around.stop_holds.reset();
+  rig.press("stop"), rig.taken();
+  rig.press("no");
+  ASSERT_EQ(rig.state(), "end");
+  EXPECT_EQ(rig.taken(), "on") << "the next visitor finds a robot that can go";
+  Rig done;
+  done.to_following(), done.wait(1000), done.taken();
+  done.press("done");
+  EXPECT_EQ(done.taken(), "end") << "that is no stop";
+}
+
 TEST(Guide, AGoalThatEndsInAPauseIsGivenAgain) {
   Rig rig;
   rig.to_active(), rig.press("stop");

@@ -227,7 +227,7 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
       topics::kSupervisorStatus,
       {.max_age = kSupervisorAge, .on_loss = "waits; a mission fails after a while"},
       [this](const auto& status, const auto&) {
-        requests_.answered(status.last_request());
+        requests_.answered(status.last_request(), status.last_request_client());
         step();
       },
       [this] { step(); });
@@ -235,7 +235,7 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
       topics::kNavigateStatus,
       {.max_age = kGoalAge, .on_loss = "a drive fails after a while; what it was for is left out"},
       [this](const auto& status, const auto&) {
-        if (status.client() == host_.name()) goals_.answered(status.id());
+        goals_.answered(status.id(), status.client());
         step();
       },
       [this] { step(); });
@@ -243,7 +243,7 @@ MeetingComponent::MeetingComponent(runtime::Host& host)
       topics::kExploreStatus,
       {.max_age = kGoalAge, .on_loss = "an exploration fails after a while and is begun again"},
       [this](const auto& status, const auto&) {
-        if (status.client() == host_.name()) explorations_.answered(status.id());
+        explorations_.answered(status.id(), status.client());
         step();
       },
       [this] { step(); });
