@@ -9,6 +9,8 @@ namespace {
 constexpr std::size_t kMaxFrames = 64;
 constexpr std::size_t kMaxSamples = 2048;
 constexpr double kUnitTolerance = 1e-3;
+// Of samples nearer to each other the difference is no rate.
+constexpr TransformBuffer::Stamp kShortestStep = std::chrono::milliseconds(1);
 
 double in_seconds(TransformBuffer::Stamp d) { return std::chrono::duration<double>(d).count(); }
 
@@ -82,6 +84,7 @@ Result<Pose3> TransformBuffer::at(const std::string& child, const Frame& frame, 
   if (after == samples.end()) --after;
   const auto& a = *(after - 1);
   const auto& b = *after;
+  if (stamp > b.stamp && b.stamp - a.stamp < kShortestStep) return b.pose;
   return interpolate(a.pose, b.pose, in_seconds(stamp - a.stamp) / in_seconds(b.stamp - a.stamp));
 }
 

@@ -18,7 +18,8 @@ class TransformBuffer {
   using Stamp = std::chrono::nanoseconds;  ///< since the epoch of the host
 
   /// Samples older than `memory` before a frame's newest are forgotten; a lookup may lie at most
-  /// `reach` after the newest sample, and is then extrapolated from the last two.
+  /// `reach` after the newest sample, and is then extrapolated from the last two, or the newest
+  /// when they are less than 1 ms apart.
   explicit TransformBuffer(Stamp memory = std::chrono::seconds(10),
                            Stamp reach = std::chrono::milliseconds(20))
       : memory_(memory), reach_(reach) {}

@@ -48,7 +48,6 @@ class LockstepHost {
     return file_.robot.empty() ? file_.name : file_.robot + "/" + file_.name;
   }
   bool running() const { return life_ != nullptr; }
-  bool in_turn() const { return in_turn_; }
   /// Of the last life that ended with one; empty = none.
   const std::string& fault_reason() const { return fault_reason_; }
   std::uint64_t lives() const { return lives_; }

@@ -58,6 +58,14 @@ TEST(TransformBuffer, ExtrapolatesByTheRateAndNoFurtherThanItsReach) {
   EXPECT_FALSE(buffer.lookup("odom", "base", milliseconds(999)));
 }
 
+TEST(TransformBuffer, HoldsTheNewestOfSamplesTooNearForARate) {
+  auto buffer = robot();
+  ASSERT_TRUE(buffer.add("odom", "base", seconds(2) + std::chrono::nanoseconds(1), along_x(1.001)));
+  const auto pose = buffer.lookup("odom", "base", milliseconds(2020));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->translation.x(), 1.001, 1e-9);
+}
+
 TEST(TransformBuffer, ForgetsWhatIsOlderThanItsMemory) {
   auto buffer = robot();
   ASSERT_TRUE(buffer.add("odom", "base", seconds(12), along_x(2.0)));

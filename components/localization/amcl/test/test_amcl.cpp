@@ -363,8 +363,8 @@ TEST(Amcl, TakesAJumpOfTheOdometryForItsRestart) {
   EXPECT_LT(distance(world.amcl.estimate()->map_T_base, place), 0.1);
 }
 
-/// A driver whose odometry begins anew at less than max_step looks as if the robot had moved. In two
-/// of these places the scan fits another one as well.
+/// A driver whose odometry begins anew at less than max_step looks as if the robot had moved. In
+/// two of these places the scan fits another one as well.
 TEST(Amcl, FindsBackStandingWhenTheOdometryBeganAnewNearby) {
   constexpr int kScans = 100, kWorlds = 10, kUnlike = 8;
   int right = 0;

@@ -102,7 +102,6 @@ class Costmap {
 
   const geometry::Footprint& footprint() const { return footprint_; }
   const Raster& raster() const { return raster_; }
-  std::size_t layer_count() const { return layers_.size(); }
   const ObstacleLayer& layer(LayerId id) const { return layers_[id]; }
 
  private:

@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 constexpr double kRemembered = 0.15;  // [m]
 constexpr int kConeBeams = 13;        // a cell apart at 2.5 m
 constexpr auto kScanAge = milliseconds(300);
+constexpr auto kUltrasonicAge = milliseconds(500);
 constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
@@ -41,8 +42,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
     : host_(host),
       footprint_(wire::read_footprint(host)),
       rejected_scans_(host.health().counter("scan: rejected")),
-      late_scans_(host.health().counter("scan: late")),
       placeless_scans_(host.health().counter("scan: without pose")),
+      invalid_ranges_(host.health().counter("ranges: invalid")),
+      sensors_outside_(host.health().counter("scan: sensor outside")),
       rejected_maps_(host.health().counter("map: rejected")),
       transforms_(host) {
   auto& parameters = host.parameters();
@@ -99,6 +101,16 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   echo_tolerance_ =
       parameters.number("echo_tolerance", "m", {0, 1}, 0.3, "How far apart laser and echo may be.");
 
+  const auto judge = [&host](Beams& beams, runtime::Duration max_age, const std::string& name) {
+    beams.max_age = max_age;
+    beams.late = &host.health().counter(name + ": late");
+  };
+  judge(laser_beams_, kScanAge, "scan");
+  judge(ultrasonic_beams_, kUltrasonicAge, "ultrasonic");
+  judge(depth_beams_, kDepthAge, "kinect");
+  judge(low_beams_, kDepthAge, "kinect low");
+  judge(rear_beams_, kDepthAge, "rear camera");
+
   local_.frame = frames::kOdom;
   global_.frame = frames::kMap;
   const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
@@ -114,12 +126,12 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
         take_scan(scan_.share(), info, laser_beams_, &Map::laser);
       },
       [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
-  ultrasonic_ = host.input(
-      topics::kUltrasonicFiltered,
-      {.max_age = milliseconds(500), .on_loss = "goes on without glass", .optional = true},
-      [this](const auto&, const auto& info) {
-        take_scan(ultrasonic_.share(), info, ultrasonic_beams_, &Map::ultrasonic);
-      });
+  ultrasonic_ =
+      host.input(topics::kUltrasonicFiltered,
+                 {.max_age = kUltrasonicAge, .on_loss = "goes on without glass", .optional = true},
+                 [this](const auto&, const auto& info) {
+                   take_scan(ultrasonic_.share(), info, ultrasonic_beams_, &Map::ultrasonic);
+                 });
   read_depth();
   whiskers_ =
       host.input(topics::kWhiskers,
@@ -276,19 +288,20 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
     const float first = scan->angle_min();
     const float increment = scan->angle_increment();
     const std::size_t count = scan->ranges().size();
-    beams = {first, increment, count,
-             layer == &Map::ultrasonic
-                 ? cone_directions(first, increment, count, ultrasonic_cone_, kConeBeams)
-                 : beam_directions(first, increment, count),
-             beams.turn};
+    beams.angle_min = first;
+    beams.increment = increment;
+    beams.count = count;
+    beams.directions = layer == &Map::ultrasonic
+                           ? cone_directions(first, increment, count, ultrasonic_cone_, kConeBeams)
+                           : beam_directions(first, increment, count);
   }
   const runtime::Time stamp = wire::from_message(scan->header().stamp());
   const std::string frame = scan->header().frame_id();
   transforms_.when_known(frames::kOdom, frame, stamp,
                          [this, scan = std::move(scan), &beams, layer, stamp,
                           since = info.effective](const auto& pose) {
-                           if (layer == &Map::laser && host_.now() - since > kScanAge) {
-                             ++late_scans_;  // nobody drives on what was
+                           if (host_.now() - since > beams.max_age) {
+                             ++*beams.late;  // nobody drives on what was
                            } else {
                              place_scan(*scan, beams, layer, stamp, geometry::to_plane(pose));
                            }
@@ -348,10 +361,15 @@ std::span<const float> CostmapComponent::unexplained(const sensor_msgs::msg::Las
 void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor,
                                const Beams& beams, std::span<const float> ranges,
                                runtime::Time stamp) {
+  const ObstacleLayer& taken = map.costs->layer(layer);
+  const std::uint64_t invalid = taken.invalid_ranges();
+  const std::uint64_t outside = taken.sensors_outside();
   if (!map.costs->observe(layer, {sensor, beams.directions, ranges, in_seconds(stamp)})) {
     ++rejected_scans_;
     return;
   }
+  if (&map == &local_) invalid_ranges_ += taken.invalid_ranges() - invalid;
+  sensors_outside_ += taken.sensors_outside() - outside;
   // The local costs are as old as their laser scan, whatever else was seen since.
   if (&map == &global_ || layer == map.laser) map.newest = std::max(map.newest, stamp);
 }

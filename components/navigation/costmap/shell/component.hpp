@@ -32,7 +32,9 @@ class CostmapComponent final : public runtime::Component {
     float angle_min = 0.0F, increment = 0.0F;
     std::size_t count = 0;
     std::vector<geometry::Point2> directions;
-    int turn = 0;  ///< of the scans, those that go into the global costs
+    int turn = 0;                   ///< of the scans, those that go into the global costs
+    runtime::Duration max_age{};    ///< older ones say what was
+    std::uint64_t* late = nullptr;  ///< counts them
   };
 
   CostmapConfig config(bool rolling, const grid::GridGeometry& window) const;
@@ -78,8 +80,9 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
 
   std::uint64_t& rejected_scans_;
-  std::uint64_t& late_scans_;
   std::uint64_t& placeless_scans_;
+  std::uint64_t& invalid_ranges_;
+  std::uint64_t& sensors_outside_;
   std::uint64_t& rejected_maps_;
   Map local_, global_;
   std::optional<grid::OccupancyGrid> waiting_map_;  ///< for the window, until its place is known

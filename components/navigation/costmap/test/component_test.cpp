@@ -246,6 +246,47 @@ TEST_F(Component, DropsAndCountsLateScansOfItsOwnHost) {
   EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost);
 }
 
+TEST_F(Component, DropsAndCountsLateScansOfEverySensor) {
+  const std::pair<const topics::Topic<sensor_msgs::msg::LaserScan>*, const char*> sensors[] = {
+      {&topics::kUltrasonicFiltered, "ultrasonic: late"},
+      {&topics::kKinectScan, "kinect: late"},
+      {&topics::kKinectScanLow, "kinect low: late"},
+      {&topics::kRearScan, "rear camera: late"}};
+  give_map();
+  run(1000);
+  const auto beside = base.x;
+  base.x += 1.0;
+  run(700);
+  for (const auto& [topic, counter] : sensors) {
+    SCOPED_TRACE(topic->name);
+    auto old = scan("laser", 1.0F);
+    old.header(wire::header(host.now() - milliseconds(400), "laser"));
+    host.publish(*topic, old);
+    EXPECT_EQ(host.counter(counter), 0U) << "not yet";
+    old.header(wire::header(host.now() - milliseconds(900), "laser"));
+    host.publish(*topic, old);
+    run(100);
+    EXPECT_EQ(host.counter(counter), 1U);
+  }
+  EXPECT_LT(local_cost(beside + 1.0, 0.0), kLethalCost) << "nobody marks what was";
+}
+
+TEST_F(Component, CountsWhatItsLayersCannotUse) {
+  give_map();
+  run(500);
+  EXPECT_EQ(host.counter("ranges: invalid"), 0U);
+  auto spoilt = scan();
+  spoilt.ranges()[3] = std::numeric_limits<float>::quiet_NaN();
+  spoilt.ranges()[4] = -1.0F;
+  host.publish(topics::kScanFiltered, spoilt);
+  run(200);
+  EXPECT_EQ(host.counter("ranges: invalid"), 2U);
+  EXPECT_EQ(host.counter("scan: sensor outside"), 0U);
+  base.x = 4.5;  // beyond the map's border
+  run(500);
+  EXPECT_GT(host.counter("scan: sensor outside"), 0U);
+}
+
 TEST_F(Component, JudgesNoOtherHostsStampsByItsOwnClock) {
   give_map();
   for (int i = 0; i < 20; ++i) {  // the clock of the scanner's host is 0.4 s behind

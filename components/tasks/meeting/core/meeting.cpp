@@ -409,7 +409,8 @@ void Meeting::pass_time(Time now) {
   const Time passed = now - since_;
   switch (state_) {
     case State::kScanRoom:
-      if (passed >= parameters_.scan_most) leave_room(Cause::kNoWay, false, now);
+      if (robot_.stopped) since_ = now;
+      if (now - since_ >= parameters_.scan_most) leave_room(Cause::kNoWay, false, now);
       break;
     case State::kCheckRoom:
     case State::kCheckFace:
@@ -421,7 +422,7 @@ void Meeting::pass_time(Time now) {
       }
       break;
     case State::kRevisit:
-      if (arrived_at_ && is_blind()) arrived_at_ = now;
+      if (arrived_at_ && (is_blind() || robot_.stopped)) arrived_at_ = now;
       if (arrived_at_ && now - *arrived_at_ >= parameters_.nobody) {
         met(Met::kGone, person_, now + parameters_.refused);
         look_for_people(Cause::kLost, now);

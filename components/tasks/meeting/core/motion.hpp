@@ -22,6 +22,7 @@ struct GoalReport {
 /// What is known of the rest of the robot.
 struct Surroundings {
   service::Supervisor supervisor = service::Supervisor::kUnknown;
+  bool stopped = false;                     ///< somebody's stop holds
   std::optional<Pose2> pose;                ///< in map; nothing: not localized
   std::optional<GoalReport> navigation;     ///< nothing: the navigator is silent
   std::optional<GoalReport> exploration;    ///< nothing: the explorer is silent
@@ -81,7 +82,7 @@ class Motion {
   bool resting() const { return phase_ == Phase::kResting; }
   /// The robot stands and interaction_control may turn it.
   bool may_turn(const Surroundings& robot) const {
-    return resting() && robot.supervisor == service::Supervisor::kAvailable;
+    return resting() && robot.supervisor == service::Supervisor::kAvailable && !robot.stopped;
   }
 
   /// At 5 Hz or faster. kBusy while resting, too.

@@ -114,6 +114,7 @@ service::Screen Meeting::build(Time now) const {
       says(screen, screen.title, Tone::kNone);
       break;
   }
+  if (active(state_) && robot_.stopped) screen.status = say(Text::kStopped);
   return screen;
 }
 

@@ -31,14 +31,15 @@ enum class Text : std::size_t {
   kYes,
   kNo,
   kLeave,
+  kStopped,
 };
 
-inline constexpr std::array<std::string_view, 22> kTextKeys{
+inline constexpr std::array<std::string_view, 23> kTextKeys{
     "not_ready",  "ready",     "looks_for_room", "looks_round", "looks_for_people",
     "one_moment", "coming",    "invitation",     "would_you",   "follow_me",
     "with_me",    "come_in",   "where_are_you",  "thank_you",   "there",
     "count",      "all_there", "ended",          "listening",   "yes",
-    "no",         "leave"};
-static_assert(static_cast<std::size_t>(Text::kLeave) + 1 == kTextKeys.size());
+    "no",         "leave",     "stopped"};
+static_assert(static_cast<std::size_t>(Text::kStopped) + 1 == kTextKeys.size());
 
 }  // namespace usher::meeting

@@ -440,8 +440,10 @@ std::optional<Pose2> MeetingComponent::pose() const {
 Surroundings MeetingComponent::surroundings() const {
   Surroundings s;
   s.pose = pose();
-  if (const auto* status = supervisor_.fresh())
+  if (const auto* status = supervisor_.fresh()) {
     s.supervisor = service::supervisor_from(status->state());
+    s.stopped = !status->stopped_by().empty();
+  }
   const auto report = [this](const auto& status) {
     const bool ours = status.client() == host_.name();
     return GoalReport{ours ? status.id() : 0, goal_state(status.state()), status.reason()};

@@ -43,6 +43,7 @@ class Stage {
 
   runtime::TestHost host;
   std::uint8_t supervisor = SupervisorStatus_Constants::STATE_INTERACTION;
+  std::vector<std::string> stopped_by;
   bool navigator = true, explorer = true, detector = true, localized = true;
   geometry::Pose2 pose{6.0, 6.0, 0.0};
   NavigateStatus navigation;
@@ -54,6 +55,7 @@ class Stage {
       SupervisorStatus status;
       status.header(wire::header(host.now(), ""));
       status.state(supervisor);
+      status.stopped_by(stopped_by);
       if (supervisor != 255) host.publish(topics::kSupervisorStatus, status);
       navigation.header(wire::header(host.now(), frames::kMap));
       if (navigator) host.publish(topics::kNavigateStatus, navigation);
@@ -138,6 +140,19 @@ TEST(MeetingComponent, TurnsRoundAndFacesWhomItSees) {
   EXPECT_NEAR(stage.host.last(topics::kInteractionTarget)->bearing(), 0.2, 0.02);
   stage.run(600);
   EXPECT_EQ(stage.status().mission().rooms_occupied(), 1U);
+}
+
+TEST(MeetingComponent, TellsOfAStop) {
+  Stage stage;
+  stage.call(1);
+  const auto told = [&] { return stage.host.last(topics::kDialogueScreen)->status(); };
+  const std::string before = told();
+  stage.stopped_by = {"tablet"};
+  stage.run(300);
+  EXPECT_NE(told(), before);
+  stage.stopped_by.clear();
+  stage.run(300);
+  EXPECT_EQ(told(), before);
 }
 
 TEST(MeetingComponent, RepeatsItsExplorationWhileItGoesOn) {

@@ -447,6 +447,48 @@ TEST(Meeting, LosesNobodyWhileItMayNotTurn) {
   EXPECT_EQ(rig.state(), State::kArrived);
 }
 
+TEST(Meeting, LosesNobodyWhileSomebodyStopsIt) {
+  Rig rig;
+  rig.to_look_back();
+  rig.robot.stopped = true;  // the supervisor stays in Interaction
+  rig.wait(40000);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  EXPECT_EQ(rig.meeting.screen().status, "Somebody has stopped me.");
+  rig.robot.stopped = false;
+  rig.wait(26000);
+  EXPECT_EQ(rig.state(), State::kLookBack);
+  EXPECT_EQ(rig.meeting.screen().status, "Here: 0 of 1.");
+  rig.see(1.1, 0.0, 2);
+  EXPECT_EQ(rig.state(), State::kArrived);
+}
+
+TEST(Meeting, TakesNoStopForAnObstacle) {
+  for (const bool stopped : {true, false}) {
+    Rig rig;
+    rig.to_guide();
+    rig.wait(1500);
+    rig.robot.pose->y += 2.5;
+    rig.wait(18500);
+    ASSERT_EQ(rig.state(), State::kLookBack);
+    rig.robot.stopped = stopped;
+    rig.wait(5000);  // it does not turn
+    EXPECT_EQ(rig.state(), stopped ? State::kLookBack : State::kGuide);
+  }
+}
+
+TEST(Meeting, PassesNoRoomOverWhileSomebodyStopsIt) {
+  Rig rig;
+  rig.to_scan();
+  rig.robot.stopped = true;
+  rig.wait(90000);
+  EXPECT_EQ(rig.state(), State::kScanRoom);
+  rig.turn_round();
+  EXPECT_EQ(rig.state(), State::kScanRoom) << "who is pushed round has not looked";
+  rig.robot.stopped = false;
+  rig.turn_round();
+  EXPECT_EQ(rig.state(), State::kExplore);
+}
+
 TEST(Meeting, AsksNobodyTwiceWhoSaidNo) {
   Rig rig;
   rig.to_invite();
