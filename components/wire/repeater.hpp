@@ -53,10 +53,7 @@ class Repeater {
   /// An answer names id and client, since ids are unique per client only: true when it ends a
   /// request of ours.
   bool answered(std::uint64_t id, const std::string& client) {
-    return client == host_.name() && answered(id);
-  }
-  /// The same for who has compared the client.
-  bool answered(std::uint64_t id) {
+    if (client != host_.name()) return false;
     const auto asked = std::find_if(waiting_.begin(), waiting_.end(),
                                     [id](const Message& each) { return each.id() == id; });
     if (asked == waiting_.end()) return false;

@@ -29,17 +29,6 @@ inline void low_variance_resample(std::span<const double> weights, double offset
   }
 }
 
-/// 1 / sum of squared normalized weights: how many equally weighted samples are worth as much. In
-/// [1, size].
-inline double effective_sample_size(std::span<const double> weights) {
-  double sum = 0.0, squares = 0.0;
-  for (const double weight : weights) {
-    sum += weight;
-    squares += weight * weight;
-  }
-  return squares > 0.0 ? sum * sum / squares : 0.0;
-}
-
 /// How many samples keep the Kullback-Leibler distance between the sampled and the true
 /// distribution over `bins` occupied bins below `epsilon`, with the probability whose standard
 /// normal quantile is `quantile` (2.326 for 99 %): the chi-square bound in the Wilson-Hilferty form

@@ -238,7 +238,10 @@ bool AttackedRobot::ask(std::uint8_t command, milliseconds patience) {
   while (Clock::now() < until) {
     request.id(static_cast<std::uint64_t>(Clock::now().time_since_epoch().count() / 1000));
     request_->write(request);
-    const auto answered = [&] { return status_ && status_->last_request() == request.id(); };
+    const auto answered = [&] {
+      return status_ && status_->last_request() == request.id() &&
+             status_->last_request_client() == kOperator;
+    };
     if (wait_for(answered, milliseconds(300))) {
       const std::lock_guard lock(mutex_);
       if (status_->last_request_done()) return true;

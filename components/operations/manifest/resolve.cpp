@@ -59,12 +59,34 @@ void flatten(const Tree& node, const std::string& name, Layer& layer,
     findings.push_back({Verdict::kWrongValue, "'" + name + "' is given twice", node.origin});
 }
 
-/// Reads the robot's or site's file: `components:` holds settings of single components, all else
-/// are facts under PREFIX.
-Layer read_layer(const std::string& path, const std::string& prefix,
+/// What the manifest could have named instead of the file, which is not there: of robots the files
+/// beside it, of sites the folders beside its own.
+std::string others_than(const std::filesystem::path& file, const std::string& prefix) {
+  const bool robots = prefix == "robot";
+  const auto named = robots ? file.stem() : file.parent_path().filename();
+  const auto folder = robots ? file.parent_path() : file.parent_path().parent_path();
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    known.push_back(robots ? entry.path().stem().string() : entry.path().filename().string());
+  std::sort(known.begin(), known.end());
+  return suggestion(named.string(), known);
+}
+
+/// Reads the robot's or site's file, which the manifest names at `origin`: `components:` holds
+/// settings of single components, all else are facts under PREFIX.
+Layer read_layer(const std::string& path, const std::string& prefix, const std::string& origin,
                  std::vector<Finding>& findings) {
   Layer layer;
   if (path.empty()) return layer;  // not named, which is a finding already
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    findings.push_back(
+        {Verdict::kMissingFile,
+         "'" + prefix + "' names " + path + ", which is not there" + others_than(path, prefix),
+         origin});
+    return layer;
+  }
   const auto tree = read_tree(path);
   if (!tree) {
     findings.push_back({Verdict::kUnreadable, tree.error(), path + ":1"});
@@ -114,8 +136,10 @@ class Resolver {
       : manifest_(manifest),
         contracts_(contracts),
         out_(deployment),
-        robot_(read_layer(manifest.robot_file, "robot", deployment.findings)),
-        site_(read_layer(manifest.site_file, "site", deployment.findings)) {}
+        robot_(read_layer(manifest.robot_file, "robot", manifest.origin_of("robot"),
+                          deployment.findings)),
+        site_(read_layer(manifest.site_file, "site", manifest.origin_of("site"),
+                         deployment.findings)) {}
 
   void run(const std::vector<Override>& overrides) {
     if (!manifest_.fleet.robot.empty() && !manifest_.keys.empty())

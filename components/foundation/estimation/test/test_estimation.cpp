@@ -85,12 +85,6 @@ TEST(LowVarianceResample, SurvivesOffsetsAtTheBorder) {
   EXPECT_LE(picked.back(), 2U);
 }
 
-TEST(EffectiveSampleSize, GoesFromOneToAll) {
-  EXPECT_NEAR(effective_sample_size(std::vector<double>(8, 0.3)), 8.0, 1e-12);
-  EXPECT_NEAR(effective_sample_size(std::vector<double>{0.0, 2.0, 0.0}), 1.0, 1e-12);
-  EXPECT_EQ(effective_sample_size(std::vector<double>{}), 0.0);
-}
-
 TEST(KldSampleBound, IsHalfTheChiSquareQuantileOverEpsilon) {
   // Chi-square quantiles at 0.99 from tables; Wilson-Hilferty is good to a percent there.
   const std::vector<std::pair<std::size_t, double>> table = {

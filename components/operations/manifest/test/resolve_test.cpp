@@ -269,10 +269,11 @@ TEST_F(Resolving, FindsUnreadableAndShapelessFiles) {
               ElementsAre(HasSubstr("config/robots/r.yaml:1: unreadable: not valid YAML")));
 }
 
-TEST_F(Resolving, SaysThatTheRobotsFileIsNotThere) {
+TEST_F(Resolving, SaysWhereAFileIsNamedThatIsNotThere) {
   const auto path =
       folder_.file("deploy/n.yaml",
-                   "robot: nobody\nsite: s\nhosts: {nuc: {}}\ncomponents: {legs: {host: nuc}}\n");
+                   "robot: marvn\nsite: hall\nhosts: {nuc: {}}\ncomponents: {legs: {host: nuc}}\n");
+  folder_.file("config/robots/marvin.yaml", "");
   folder_.file("config/sites/s/site.yaml", site_);
   const auto manifest = read_manifest(path, {folder_.path() + "/config"});
   ASSERT_TRUE(manifest);
@@ -281,10 +282,13 @@ TEST_F(Resolving, SaysThatTheRobotsFileIsNotThere) {
   for (const auto& finding : deployment.findings) {
     if (finding.verdict != Verdict::kWrongIdl) found.push_back(shortened(to_string(finding)));
   }
-  // Not also each fact that the file would have.
+  // Not also each fact that the files would have.
   EXPECT_THAT(
-      found, ElementsAre(
-                 "config/robots/nobody.yaml:1: unreadable: cannot read config/robots/nobody.yaml"));
+      found,
+      ElementsAre("deploy/n.yaml:1: missing file: 'robot' names config/robots/marvn.yaml, which is "
+                  "not there; did you mean marvin?",
+                  "deploy/n.yaml:2: missing file: 'site' names config/sites/hall/site.yaml, which "
+                  "is not there"));
 }
 
 TEST(ReadContracts, RefusesFoldersWithoutContractsAndBrokenOnes) {

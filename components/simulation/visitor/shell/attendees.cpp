@@ -57,7 +57,7 @@ AttendeesComponent::AttendeesComponent(runtime::Host& host)
 }
 
 void AttendeesComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
-  if (screen.answer_client() == host_.name()) answers_.answered(screen.answer_id());
+  answers_.answered(screen.answer_id(), screen.answer_client());
   shown_.id = screen.id();
   shown_.state = screen.state();
   room_ = screen.place();

@@ -129,7 +129,7 @@ VisitorComponent::VisitorComponent(runtime::Host& host, std::shared_ptr<Voice> v
 }
 
 void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
-  if (screen.answer_client() == host_.name()) answers_.answered(screen.answer_id());
+  answers_.answered(screen.answer_id(), screen.answer_client());
   Screen seen{.id = screen.id(),
               .state = screen.state(),
               .language = screen.language(),
