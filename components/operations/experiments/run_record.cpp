@@ -37,9 +37,11 @@ void RunRecord::take(const usher_sim_msgs::msg::GroundTruth& truth) {
                       wanted_.twist().angular().z(), command_.v(), command_.w(), whiskers_, nearest,
                       bearing, navigation_ ? state_of(*navigation_) : ""});
   if (truth.contacts() > contacts_) {
+    // What it touches holds it: its speed was that of the sample before.
+    const double speed = samples_[samples_.size() > 1 ? samples_.size() - 2 : 0].v;
     char where[120];
-    std::snprintf(where, sizeof where, " at (%.2f, %.2f), %.2f m/s, %.2f rad/s, %.1f s",
-                  truth.pose().position().x(), truth.pose().position().y(), truth.v(), truth.w(),
+    std::snprintf(where, sizeof where, " at (%.2f, %.2f), %.2f m/s, %.1f s",
+                  truth.pose().position().x(), truth.pose().position().y(), speed,
                   runtime::seconds(samples_.back().stamp - samples_.front().stamp));
     contact_with_ = truth.contact_with() + where;
   }

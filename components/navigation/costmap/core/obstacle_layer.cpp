@@ -126,8 +126,9 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     const geometry::Point2& direction = observation.directions[beam];
     const double dx = c * direction.x() - s * direction.y();
     const double dy = s * direction.x() + c * direction.y();
-    if (!measures(range) || !(std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001)) {
-      ++invalid_ranges_;
+    const bool directed = std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001;
+    if (!measures(range) || !directed) {
+      invalid_ranges_ += range <= 0.0F || !directed ? 1 : 0;  // the others say: nothing is known
       continue;
     }
     const auto cell_along = [&](double distance) -> grid::Cell {

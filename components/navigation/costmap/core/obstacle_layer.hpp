@@ -86,6 +86,8 @@ class ObstacleLayer {
   const grid::Grid<std::uint8_t>& states() const { return states_; }
   /// Cells outside of it are unseen.
   const CellRect& seen() const { return seen_; }
+  /// Ranges that are none, not what says that nothing is known: NaN, an infinity that clears
+  /// nothing.
   std::uint64_t invalid_ranges() const { return invalid_ranges_; }
   /// Scans that cleared nothing since the sensor was outside of the window.
   std::uint64_t sensors_outside() const { return sensors_outside_; }

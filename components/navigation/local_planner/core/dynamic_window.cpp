@@ -253,6 +253,23 @@ void DynamicWindow::stand_in_the_way(const Input& input) {
   }
 }
 
+/// Frees the cells of everybody; false: there is nobody.
+bool DynamicWindow::leave_out_people(const Input& input) {
+  const grid::GridGeometry& g = input.costs.geometry();
+  for (const MovingDisc& person : input.people) {
+    const double radius = person.radius + kUnsure;
+    const grid::Cell middle = g.cell_at(person.position.x(), person.position.y());
+    const int reach = static_cast<int>(radius / g.resolution) + 1;
+    for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+      for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
+        if (g.contains({x, y}) && (g.center({x, y}) - person.position).norm() <= radius)
+          bits_.clear(x + bits_.rim(), y + bits_.rim());
+      }
+    }
+  }
+  return !input.people.empty();
+}
+
 Twist2 DynamicWindow::ramped(const Input& input, const Twist2& target, double fall) const {
   kinematics::AccelerationLimits limits = config_.limits;
   limits.deceleration = fall;
@@ -271,8 +288,8 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
 }
 
 /// Along the arc that stays free for as far as the base may roll, if any with half of the
-/// clearance; of equal ones the one that bends least from now. Nobody is dodged: who walks can step
-/// aside, a wall cannot.
+/// clearance; of equal ones the one that bends least from now. Where none is free, nobody is dodged
+/// into a wall: people can step aside, a wall cannot.
 Decision DynamicWindow::brake(const Input& input) {
   const double v = std::abs(input.measured.v);
   Decision decision =
@@ -281,8 +298,16 @@ Decision DynamicWindow::brake(const Input& input) {
   if (v < kSlowEnoughToTurn) return decision;  // it sways, on the spot
   sample(input, config_.slowest);
   keep_speed(v, turns_.front().steps);
-  rollout_.run({input.pose, input.measured, input.last_command}, {&kept_, 1}, turns_, input.costs,
-               bits_, {&whole_, &narrow_}, config_.footprint, {});
+  const RolloutStart start{input.pose, input.measured, input.last_command};
+  const auto run = [&] {
+    rollout_.run(start, {&kept_, 1}, turns_, input.costs, bits_, {&whole_, &narrow_},
+                 config_.footprint, {});
+  };
+  run();
+  among_people_.clear();
+  for (const Trajectory& trajectory : rollout_.trajectories())
+    among_people_.push_back(trajectory.free_steps);
+  if (*std::ranges::max_element(among_people_) < kept_.steps && leave_out_people(input)) run();
   const auto turn = [&](const Trajectory& trajectory) {
     return turns_[static_cast<std::size_t>(trajectory.turn)].target;
   };
@@ -290,7 +315,8 @@ Decision DynamicWindow::brake(const Input& input) {
   const double along = braked_arc_ ? *braked_arc_ * v : input.last_command.w;
   const auto best =
       std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
-        return std::tuple(-trajectory.free_steps, trajectory.close > 0.0F,
+        const auto index = static_cast<std::size_t>(&trajectory - rollout_.trajectories().data());
+        return std::tuple(-trajectory.free_steps, -among_people_[index], trajectory.close > 0.0F,
                           std::abs(turn(trajectory) - along));
       });
   arc_ = turn(*best) / v;
@@ -378,6 +404,21 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
     if (i > 0 && touches(input, least, turned)) return 0.0;
   }
   return rate;
+}
+
+/// Part of a turn whose end has no room: askew between the posts of a door the base gets straight
+/// by turning as far as they let it, then on by a little. Nothing where that is hardly any.
+std::optional<Decision> DynamicWindow::turn_a_little(const Input& input, double angle) {
+  const double sense = angle > 0.0 ? 1.0 : -1.0;
+  double free = 0.0;
+  while (free + kSweep < std::abs(angle) && turn_rate(input, sense * (free + kSweep)) > 0.0)
+    free += kSweep;
+  if (free < 2.0 * kSweep) return std::nullopt;
+  Decision decision;
+  decision.reason = Reason::kTurning;
+  decision.target = {0.0, sense * config_.tight_turn};
+  decision.command = ramped(input, decision.target, config_.braking);
+  return decision;
 }
 
 /// The small move that takes a touched corner out of the way of a turn; nothing when none does, or
@@ -592,7 +633,11 @@ Decision DynamicWindow::follow(const Input& input) {
                      config_.tight_turn * config_.footprint.circumscribed_radius());
   }
   decision.reason = Reason::kTight;
-  return with_obstacle(decision.admissible > 0 ? decision : brake(input));
+  if (decision.admissible > 0) return with_obstacle(decision);
+  if (standing && std::abs(error) > kAligned) {
+    if (const auto turn = turn_a_little(input, error)) return with_obstacle(*turn);
+  }
+  return with_obstacle(brake(input));
 }
 
 Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, double fastest,

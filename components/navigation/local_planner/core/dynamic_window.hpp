@@ -157,6 +157,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
 
   // What to do (dynamic_window.cpp).
   Decision at_goal(const Input& input);
+  std::optional<Decision> turn_a_little(const Input& input, double angle);
   std::optional<Decision> free_corner(const Input& input, double angle);
   Decision turn_to(const Input& input, double yaw, Reason reason);
   Decision follow(const Input& input);
@@ -175,6 +176,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   bool is_given_up(const geometry::Point2& position, int sense);
   void forget_other_places(const geometry::Point2& position);
   double turn_rate(const Input& input, double angle) const;
+  bool leave_out_people(const Input& input);
   geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;
 
   // What the critics see (critics.cpp).
@@ -203,6 +205,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Lane lane_;
   std::vector<MovingDisc> walkers_;
   std::vector<MovingDisc> neighbours_;
+  std::vector<int> among_people_;  ///< free steps of each arc to brake on, people in the way
   SpeedProfile kept_;
   std::optional<double> arc_, braked_arc_;    ///< [1/m] that it brakes on, now and a cycle before
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]

@@ -380,6 +380,39 @@ TEST(Decide, BrakesPastAPostThatATurnLeavesFree) {
   EXPECT_GT(decision.command.w, 0.05) << "away from it";
 }
 
+TEST(Decide, DodgesAPostAndNobodyWhenItBrakesBetweenWalls) {
+  // In a corridor of 1.3 m, too near to stop before it. People step aside, and the wall is certain.
+  World world(-3, -3, 3, 3);
+  world.add(Box{-3, 0.65, 3, 0.75});
+  world.add(Box{-3, -0.75, 3, -0.65});
+  world.add(Disc{1.2, -0.4, 0.25});
+  world.finish(0.305);
+  const auto braked = [&](std::span<const MovingDisc> people) {
+    DynamicWindow planner = planner_to(8.0);
+    const Decision decision = planner.decide(world.costs(), {}, {0.9, 0}, {0.9, 0}, 0.05, people);
+    EXPECT_EQ(decision.reason, Reason::kBraking);
+    return decision.command.w;
+  };
+  EXPECT_GT(braked({}), 0.05);
+  const std::vector<MovingDisc> somebody{{{1.2, -0.4}, {0.0, 0.5}, 0.25}};
+  EXPECT_EQ(braked(somebody), 0.0);
+}
+
+TEST(Decide, AskewBeforeADoorTurnsAsFarAsThePostsLetIt) {
+  World world(-3, -3, 3, 3);
+  world.add(Box{0.1, 0.38, 0.2, 3});
+  world.add(Box{0.1, -3, 0.2, -0.38});
+  world.add(Box{-3, 0.5, 0.1, 0.6});
+  world.finish(0.305);
+  DynamicWindowConfig config;
+  const std::vector<Point2> outline{{0.305, 0.33}, {-0.305, 0.33}, {-0.305, -0.33}, {0.305, -0.33}};
+  config.footprint = Footprint::make(outline).value();
+  DynamicWindow planner = planner_to(8.0, config);
+  const Decision decision = planner.decide(world.costs(), {-0.13, 0.08, 0.48}, {}, {}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kTurning) << "straight it does not fit there";
+  EXPECT_EQ(decision.target, (Twist2{0.0, -config.tight_turn}));
+}
+
 TEST(Decide, GivesUpATurnThatWhiskersBarInBothSenses) {
   DynamicWindow planner = DynamicWindow::make({}).value();
   ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {-2, 0, 0}}).ok());
