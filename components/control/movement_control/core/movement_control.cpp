@@ -202,7 +202,7 @@ double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const
 geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
                                          const Inputs& inputs) const {
   geometry::Twist2 twist =
-      whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+      kinematics::whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   const double measured = inputs.measured ? inputs.measured->v : 0.0;
   const double slowest = std::min(std::abs(measured) - parameters_.reflex_drop, std::abs(ramped.v));
   if (measured * ramped.v > 0.0 && slowest > std::abs(twist.v))
@@ -285,8 +285,9 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
   } else {
     acceleration_ = {};
     const geometry::Twist2 rolls = roll_out_.stop(inputs.measured, now);
-    decision.twist = whisker_reflex(inputs.motors_off ? geometry::Twist2{} : rolls,
-                                    inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+    decision.twist =
+        kinematics::whisker_reflex(inputs.motors_off ? geometry::Twist2{} : rolls,
+                                   inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   }
 
   last_ = decision.twist;

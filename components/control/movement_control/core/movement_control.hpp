@@ -6,12 +6,14 @@
 
 #include "control/movement_control/core/guard.hpp"
 #include "control/movement_control/core/situation.hpp"
-#include "control/movement_control/core/whisker_reflex.hpp"
 #include "drivers/base_obedience/core/response_watch.hpp"
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/kinematics/roll_out.hpp"
+#include "foundation/kinematics/whisker_reflex.hpp"
 
 namespace usher::movement_control {
+
+using kinematics::Whiskers;
 
 /// Who is driving. The numbers are those of MovementStatus on the wire.
 enum class Source : std::uint8_t { kNone = 0, kManual = 1, kInteraction = 2, kNavigation = 3 };

@@ -315,52 +315,6 @@ TEST(MovementControl, WorksWithoutWhiskersWhereThereAreNone) {
   EXPECT_EQ(settled(inputs, parameters).twist.v, 0.5);
 }
 
-TEST(WhiskerReflex, BarsPerCornerAndDirection) {
-  struct Row {
-    double forward, backward;  ///< [m/s] of 0.5
-    Whiskers whiskers;
-    bool left, right;  ///< what stays possible
-  };
-  const Row rows[] = {
-      {0.5, 0.5, {false, false, false, false}, true, true},
-      {0.0, 0.5, {true, false, false, false}, false, true},
-      {0.0, 0.5, {false, true, false, false}, true, false},
-      {0.0, 0.5, {true, true, false, false}, false, false},
-      {0.5, 0.0, {false, false, true, false}, true, false},
-      {0.5, 0.0, {false, false, false, true}, false, true},
-      {0.5, 0.0, {false, false, true, true}, false, false},
-      {0.0, 0.0, {true, false, false, true}, false, true},
-      {0.0, 0.0, {false, true, true, false}, true, false},
-      // Beside a wall: creeps along.
-      {0.1, 0.1, {true, false, true, false}, false, false},
-      {0.0, 0.1, {true, true, true, false}, false, false},
-      {0.1, 0.0, {true, false, true, true}, false, false},
-      {0.0, 0.0, {true, true, true, true}, false, false},
-  };
-  for (const Row& row : rows) {
-    EXPECT_EQ(whisker_reflex({0.5, 0.0}, row.whiskers, 0.1).v, row.forward);
-    EXPECT_EQ(whisker_reflex({-0.5, 0.0}, row.whiskers, 0.1).v, -row.backward);
-    EXPECT_EQ(whisker_reflex({0.0, 0.5}, row.whiskers, 0.1).w, row.left ? 0.5 : 0.0);
-    EXPECT_EQ(whisker_reflex({0.0, -0.5}, row.whiskers, 0.1).w, row.right ? -0.5 : 0.0);
-  }
-}
-
-TEST(WhiskerReflex, AnArcWhoseTurnIsBarredIsNotDrivenStraightAtSpeed) {
-  const Whiskers back_right{.back_right = true};
-  EXPECT_EQ(whisker_reflex({0.5, 0.5}, back_right, 0.1), (Twist2{0.1, 0.0}));
-  EXPECT_EQ(whisker_reflex({0.5, -0.5}, back_right, 0.1), (Twist2{0.5, -0.5}));
-}
-
-TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
-  const Whiskers left{.front_left = true, .back_left = true};
-  EXPECT_LT(whisker_reflex({0.1, -0.5}, left, 0.1).w, 0.0);
-  EXPECT_GE(whisker_reflex({0.1, -0.5}, left, 0.1).w, -0.05);
-  EXPECT_EQ(whisker_reflex({0.1, 0.5}, left, 0.1).w, 0.0);
-  EXPECT_GT(whisker_reflex({-0.1, 0.5}, left, 0.1).w, 0.0);
-  const Whiskers all{true, true, true, true};
-  EXPECT_EQ(whisker_reflex({0.1, -0.5}, all, 0.1), Twist2{});
-}
-
 TEST(WhiskerReflex, BrakesABalancingBaseAsFastAsItFollows) {
   Parameters parameters;
   parameters.reflex_drop = 0.25;
@@ -734,7 +688,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
         ASSERT_EQ(out, Twist2{});
       }
       if (inputs.whiskers) {
-        ASSERT_EQ(whisker_reflex(out, *inputs.whiskers, Parameters{}.touched), out);
+        ASSERT_EQ(kinematics::whisker_reflex(out, *inputs.whiskers, Parameters{}.touched), out);
       }
       last = out.v;
     }

@@ -390,7 +390,7 @@ bool DynamicWindow::touches(const Input& input, const ContactTest& contact,
 
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
-  const Touches& t = touches_;
+  const kinematics::Whiskers& t = touches_;
   if (angle > 0.0 ? t.front_left || t.back_right : t.front_right || t.back_left) return 0.0;
   // Cells that it overlaps in part already cannot be asked to stay untouched.
   const ContactTest& least = touches(input, whole_, input.pose) ? center_ : whole_;
@@ -406,14 +406,15 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
   return rate;
 }
 
-/// Part of a turn whose end has no room: askew between the posts of a door the base gets straight
-/// by turning as far as they let it, then on by a little. Nothing where that is hardly any.
+/// Most of a turn whose end has no room: askew before the posts of a door the base gets straight by
+/// turning as far as they let it, then on by a little. Nothing where an arc could not take the
+/// rest: it would wedge itself in.
 std::optional<Decision> DynamicWindow::turn_a_little(const Input& input, double angle) {
   const double sense = angle > 0.0 ? 1.0 : -1.0;
   double free = 0.0;
   while (free + kSweep < std::abs(angle) && turn_rate(input, sense * (free + kSweep)) > 0.0)
     free += kSweep;
-  if (free < 2.0 * kSweep) return std::nullopt;
+  if (free < 2.0 * kSweep || std::abs(angle) - free > kAligned + kSweep) return std::nullopt;
   Decision decision;
   decision.reason = Reason::kTurning;
   decision.target = {0.0, sense * config_.tight_turn};
@@ -424,7 +425,7 @@ std::optional<Decision> DynamicWindow::turn_a_little(const Input& input, double 
 /// The small move that takes a touched corner out of the way of a turn; nothing when none does, or
 /// none bars it (the thesis, fig. 6.3).
 std::optional<Decision> DynamicWindow::free_corner(const Input& input, double angle) {
-  const Touches& t = touches_;
+  const kinematics::Whiskers& t = touches_;
   const bool in_front = angle > 0.0 ? t.front_left : t.front_right;
   const bool behind = angle > 0.0 ? t.back_right : t.back_left;
   if (in_front == behind) return std::nullopt;
@@ -665,10 +666,13 @@ Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, 
   return decision;
 }
 
-Decision DynamicWindow::recover(const Input& input, const Twist2& target) {
-  if (!valid(input) || !plausible(target)) return refused();
+Decision DynamicWindow::recover(const Input& input, const Twist2& wanted) {
+  if (!valid(input) || !plausible(wanted)) return refused();
   load(input);
   turning_ = 0;
+  // What the whiskers leave of it is what will be driven, so that is what must be free.
+  const Twist2 target = kinematics::whisker_reflex(wanted, touches_, config_.tight_speed);
+  if (target.v == 0.0 && target.w == 0.0) return halt(input, Reason::kBlocked, config_.braking);
   // What it touches already must not hold it; anything else stops it.
   const grid::GridGeometry& geometry = input.costs.geometry();
   TurnedFootprint turned;

@@ -107,7 +107,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   double remaining() const override { return path_.remaining(); }
   /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
   /// has been taken away: forward from a touch behind, backward from one in front.
-  void set_touches(const Touches& touches) override { touches_ = touches; }
+  void set_touches(const kinematics::Whiskers& touches) override { touches_ = touches; }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
   Status set_pace(double pace) override;
 
@@ -168,7 +168,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Decision halt(const Input& input, Reason reason, double deceleration) const;
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);
-  Decision recover(const Input& input, const geometry::Twist2& target);
+  Decision recover(const Input& input, const geometry::Twist2& wanted);
   int turn_of_tail() const;
   bool must_turn_first(const Input& input, double& heading);
   bool touches(const Input& input, const ContactTest& contact, const geometry::Pose2& pose) const;
@@ -228,7 +228,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
   Trail trail_;
-  Touches touches_;
+  kinematics::Whiskers touches_;
   double careful_turn_ = 0.0;  // [rad/s] the fastest without the whole clearance
   bool tight_ = false;         // only its own outline fits: the path's line counts for more
 

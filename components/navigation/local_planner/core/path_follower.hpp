@@ -6,15 +6,11 @@
 
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/grid/grid.hpp"
+#include "foundation/kinematics/whisker_reflex.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/local_planner/core/rollout.hpp"
 
 namespace usher::local_planner {
-
-/// Corners whose whisker is bent.
-struct Touches {
-  bool front_left = false, front_right = false, back_left = false, back_right = false;
-};
 
 enum class Reason : std::uint8_t {
   kFollowing,      ///< drives along the path
@@ -71,7 +67,7 @@ class PathFollower {
   /// The speed to keep from now on [m/s]; what the base does not follow is refused.
   virtual Status set_pace(double pace) = 0;
   /// What the corners touch from now on.
-  virtual void set_touches(const Touches& touches) = 0;
+  virtual void set_touches(const kinematics::Whiskers& touches) = 0;
 
   virtual Decision decide(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                           const geometry::Twist2& measured, const geometry::Twist2& last_command,

@@ -70,7 +70,7 @@ class WaypointFollower final : public PathFollower {
   void clear_path() override;
   double remaining() const override { return path_.remaining(); }
   Status set_pace(double pace) override;
-  void set_touches(const Touches& touches) override { window_.set_touches(touches); }
+  void set_touches(const kinematics::Whiskers& touches) override { window_.set_touches(touches); }
   /// What lies ahead; without it the robot does not drive.
   SectorMedians& sectors() { return sectors_; }
 

@@ -215,9 +215,9 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
                                      const geometry::Twist2& measured) {
   const double elapsed = std::clamp(runtime::seconds(host_.now() - last_decision_), 0.0, 0.2);
   const auto* t = whiskers_.fresh();
-  follower_->set_touches(
-      t == nullptr ? Touches{}
-                   : Touches{t->front_left(), t->front_right(), t->back_left(), t->back_right()});
+  follower_->set_touches(t == nullptr ? kinematics::Whiskers{}
+                                      : kinematics::Whiskers{t->front_left(), t->front_right(),
+                                                             t->back_left(), t->back_right()});
   if (mode_ == MODE_BACK_OFF)
     return follower_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_);
   if (mode_ == MODE_ROTATE)

@@ -13,6 +13,7 @@
 namespace usher::local_planner {
 namespace {
 
+using kinematics::Whiskers;
 using namespace testing_world;  // NOLINT: the test's own vocabulary
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -35,6 +36,11 @@ DynamicWindow planner_to(double x, const DynamicWindowConfig& config = {},
   DynamicWindow planner = DynamicWindow::make(config, simd).value();
   EXPECT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {x, 0, 0}}).ok());
   return planner;
+}
+
+Footprint marvin() {
+  const std::vector<Point2> outline{{0.305, 0.33}, {-0.305, 0.33}, {-0.305, -0.33}, {0.305, -0.33}};
+  return Footprint::make(outline).value();
 }
 
 TEST(Configuration, NamesTheValueThatIsOutOfRange) {
@@ -405,10 +411,9 @@ TEST(Decide, AskewBeforeADoorTurnsAsFarAsThePostsLetIt) {
   world.add(Box{-3, 0.5, 0.1, 0.6});
   world.finish(0.305);
   DynamicWindowConfig config;
-  const std::vector<Point2> outline{{0.305, 0.33}, {-0.305, 0.33}, {-0.305, -0.33}, {0.305, -0.33}};
-  config.footprint = Footprint::make(outline).value();
+  config.footprint = marvin();
   DynamicWindow planner = planner_to(8.0, config);
-  const Decision decision = planner.decide(world.costs(), {-0.13, 0.08, 0.48}, {}, {}, 0.05);
+  const Decision decision = planner.decide(world.costs(), {-0.2, -0.065, 0.54}, {}, {}, 0.05);
   EXPECT_EQ(decision.reason, Reason::kTurning) << "straight it does not fit there";
   EXPECT_EQ(decision.target, (Twist2{0.0, -config.tight_turn}));
 }
@@ -476,7 +481,7 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   // The path leads to the left of a robot that stands.
   const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};
   struct Row {
-    Touches touches;
+    Whiskers touches;
     int v, w;  ///< signs of the command
   };
   const Row rows[] = {
@@ -502,7 +507,7 @@ TEST(Turning, GivesUpToAndFroBetweenTwoTouchedCorners) {
   ASSERT_TRUE(planner.set_path(path).ok());
   int moves = 0;
   const auto frees = [&](bool in_front) {
-    planner.set_touches(in_front ? Touches{.front_left = true} : Touches{.back_right = true});
+    planner.set_touches(in_front ? Whiskers{.front_left = true} : Whiskers{.back_right = true});
     return planner.decide(empty_window(), {}, {}, {}, 0.05).reason == Reason::kRecovering;
   };
   while (moves < 20 && frees(moves % 2 == 0)) ++moves;
@@ -538,7 +543,7 @@ TEST(BackingOff, FollowsTheWayThatItCame) {
 
 TEST(BackingOff, TurnsItsTailAwayFromWhatItTouches) {
   struct Row {
-    Touches touches;
+    Whiskers touches;
     int v, w;  ///< signs of the command
     bool blocked = false;
   };
@@ -558,6 +563,27 @@ TEST(BackingOff, TurnsItsTailAwayFromWhatItTouches) {
     EXPECT_EQ(sign(decision.target.v), row.v);
     EXPECT_EQ(sign(decision.target.w), row.w);
   }
+}
+
+TEST(BackingOff, LooksAtTheWayThatTheWhiskersLeave) {
+  // It came on a bend to the left and would go back on it, past what stands straight behind; with a
+  // wall felt along its right the reflex lets it bend no more.
+  DynamicWindowConfig config;
+  config.footprint = marvin();
+  DynamicWindow planner = planner_to(8.0, config);
+  Pose2 pose{-2.0, 0.0, -1.0};
+  for (int i = 0; i < 40; ++i) {
+    planner.decide(empty_window(), pose, {0.5, 0.5}, {0.5, 0.5}, 0.05);
+    pose = geometry::integrate(pose, {0.5, 0.5}, 0.05);
+  }
+  const Point2 behind = pose * Point2(-0.55, -0.28);
+  Costs costs = empty_window();
+  costs.at(costs.geometry().cell_at(behind.x(), behind.y())) = grid::kLethalCost;
+  const Decision bends = planner.back_off(costs, pose, {}, {}, 0.05, 0.15);
+  EXPECT_FALSE(bends.blocked);
+  EXPECT_LT(bends.target.w, -0.05);
+  planner.set_touches({.front_right = true, .back_right = true});
+  EXPECT_TRUE(planner.back_off(costs, pose, {}, {}, 0.05, 0.15).blocked);
 }
 
 TEST(BackingOff, StopsBeforeAWallBehind) {

@@ -5,7 +5,7 @@
 
 #include "foundation/geometry/pose2.hpp"
 
-namespace usher::movement_control {
+namespace usher::kinematics {
 
 /// Contact at the four corners of the footprint; true is pressed.
 struct Whiskers {
@@ -46,4 +46,4 @@ inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& w
   return twist;
 }
 
-}  // namespace usher::movement_control
+}  // namespace usher::kinematics
