@@ -15,6 +15,7 @@
 #include "foundation/geometry/pose2.hpp"
 #include "interaction/speech/core/loudness.hpp"
 #include "interaction/speech/core/wav_file.hpp"
+#include "operations/experiments/visit_tasks.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::test {
@@ -39,16 +40,6 @@ constexpr double kLeastLoudness = 0.01;  // of full scale, pauses included
 constexpr double kBusy = 1.5;            // times slower than alone
 constexpr double kLag = 0.5;             // [s] that the simulation may fall behind
 const geometry::Point2 kReception{10.2, 4.6}, kFoyer{4.5, 4.5};
-
-/// The tasks of appendix B as the states that show them; the robot leads in between.
-const std::vector<std::pair<std::string, std::vector<std::string>>> kTasks{
-    {"1 approach, wait to be greeted", {"inactive", "introduction", "location_ask"}},
-    {"2 request a map", {"location_show", "guide_ask"}},
-    {"3 request to be guided", {"guide_options", "guide_start"}},
-    {"4 follow", {"guide_active", "guide_success"}},
-    {"5 request to be guided back", {"end_ask", "guide_options", "guide_start"}},
-    {"6 follow back", {"guide_active", "guide_success"}},
-    {"7 end", {"end_ask", "end"}}};
 
 /// What a visitor who wants to go there and back may answer; anything else was not his wish.
 const std::set<std::string> kWishes{"language:en", "language:de", "languages", "yes",
@@ -226,16 +217,9 @@ class Witness {
   }
 
   void judge_tasks(std::vector<std::string>& all) const {
-    auto at = states_.begin();
-    for (const auto& [task, steps] : kTasks) {
-      for (const auto& step : steps) {
-        at = std::find_if(at, states_.end(), [&](const auto& each) { return each.second == step; });
-        if (at != states_.end()) continue;
-        all.push_back("task not done: " + task);
-        all.back() += ", no " + step;
-        return;
-      }
-    }
+    const auto done = operations::tasks_done(states_).size();
+    const auto tasks = operations::visit_tasks();
+    if (done < tasks.size()) all.push_back(std::string("task not done: ") + tasks[done].text);
   }
   void judge_answers(const std::string& input, std::vector<std::string>& all) const {
     std::size_t touches = 0, words = 0;
