@@ -22,7 +22,7 @@ using std::chrono::seconds;
 namespace outcome = usher_msgs::msg::GuideVisit_Constants;
 
 constexpr int kSeeds = 100;
-constexpr auto kLongest = seconds(900);
+constexpr auto kLongest = seconds(1200);
 constexpr double kStands = 0.05;  // [m/s]
 constexpr auto kStandsFor = seconds(10);
 constexpr const char* kVisitor = "visitor";
@@ -146,6 +146,19 @@ Result<Visit> visit(Deployment deployment, const Manner& manner, const std::stri
   const RunRecord& record = (*run)->record();
   std::optional<usher_msgs::msg::GuideVisit> report;
   world.observe(topics::kGuideVisit, [&](const auto& message, const auto&) { report = message; });
+  std::string dialogue;
+  if (!trace.empty()) {
+    world.observe(topics::kDialogueScreen, [&](const auto& screen, const auto&) {
+      if (dialogue.ends_with(screen.state() + ": " + screen.spoken() + "\n")) return;
+      dialogue += format("%7.1f s  ", runtime::seconds(world.elapsed())) + screen.state() + ": " +
+                  screen.spoken() + "\n";
+    });
+    world.observe(topics::kDialogueAnswer, [&](const auto& answer, const auto&) {
+      dialogue += format("%7.1f s  ", runtime::seconds(world.elapsed())) + "    " +
+                  answer.client() + " answers " + answer.option_id() +
+                  (answer.text().empty() ? "" : " \"" + answer.text() + "\"") + "\n";
+    });
+  }
   OpenVisit open;
   world.observe(topics::kSupervisorStatus,
                 [&](const auto& status, const auto&) { open.supervisor = status; });
@@ -173,6 +186,7 @@ Result<Visit> visit(Deployment deployment, const Manner& manner, const std::stri
   }
   if (!trace.empty()) {
     Status saved = write_file(trace + ".csv", run_csv(record));
+    if (saved) saved = write_file(trace + "_dialogue.txt", dialogue);
     if (saved)
       saved = draw_run(record, map, std::string("visitor ") + manner.text + ", to " + place,
                        trace + ".png");
@@ -295,7 +309,7 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
   sheet.metrics["arrived"] = arrived;
   sheet.metrics["ended_politely"] = polite;
   sheet.metrics["answered_the_questionnaire"] = rated;
-  sheet.metrics["wait_safely_after_15_minutes"] = waiting;
+  sheet.metrics["wait_safely_after_20_minutes"] = waiting;
   sheet.metrics["dead_ends"] = dead;
   sheet.targets["dead_ends"] = {Bound::kAtMost, 0.0};
   sheet.metrics["contacts"] = contacts;

@@ -23,7 +23,10 @@ void Visitor::see(const Screen& screen, double now) {
     awaited_at_.reset();
   else if (!awaited_at_)
     awaited_at_ = now;
-  if (more_hits) answered_ = false;
+  if (more_hits) {
+    answered_ = false;
+    typed_ = offers(wanted());  // else once more
+  }
   if (!another) return;
   seen_at_ = now;
   answered_ = typed_ = false;

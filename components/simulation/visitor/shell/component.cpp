@@ -134,14 +134,18 @@ void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
               .state = screen.state(),
               .language = screen.language(),
               .place = screen.place()};
+  std::vector<std::string> sayable;  // what is typed into has no name
   for (const auto& option : screen.options()) {
     seen.options.push_back(option.id());
-    if (option.takes_text()) seen.text_option = option.id();
+    if (option.takes_text())
+      seen.text_option = option.id();
+    else
+      sayable.push_back(option.id());
   }
   if (screen.time_left() >= 0.0F) seen.time_left = screen.time_left();
   core_.see(seen, in_seconds(host_.now()));
   delivery_.see(seen.id, seen.options);
-  hearing_.see(seen.id, seen.options, screen.listens());
+  hearing_.see(seen.id, std::move(sayable), screen.listens());
 }
 
 std::string VisitorComponent::label_of(const std::string& option) const {

@@ -54,6 +54,9 @@ TEST(Visitor, TurnsPagesOrTypesUntilTheDestinationIsOffered) {
   line.options = {"query", "kitchen"};
   types.see(line, 2.0);
   EXPECT_EQ(chosen(types, 2.0), "kitchen");
+  line.options = {"query", "lab"};  // somebody else has spoken
+  types.see(line, 3.0);
+  EXPECT_EQ(chosen(types, 3.0), "querykitc");
 }
 
 TEST(Visitor, NeverStopsOrCancelsByItself) {
