@@ -116,6 +116,8 @@ TEST_F(Commands, AGotoThatCannotBeAsksNobodyAnything) {
   EXPECT_TRUE(contains(text, " meeting_room")) << text;
   EXPECT_TRUE(contains(errors({"goto", "kitchen", "--max-speed=-1"}), "--max-speed"));
   EXPECT_TRUE(contains(errors({"goto", "--pose", "nan", "0", "0"}), "--pose"));
+  EXPECT_TRUE(contains(errors({"goto", "--pose", "1e9", "2", "0"}), "is outside the map of "));
+  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--pose", "1", "2", "3"}), "not both"));
   EXPECT_EQ(robot_->status()->last_request(), asked) << "a visit that runs goes on";
 }
 

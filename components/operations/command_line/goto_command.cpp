@@ -78,11 +78,32 @@ Status judge(const GoalArguments& arguments, const navigator::Locations& locatio
   if (!std::ranges::all_of(arguments.pose, [](double value) { return std::isfinite(value); }))
     return Error{"--pose must be finite"};
   if (arguments.location.empty()) return {};
+  if (!arguments.pose.empty()) return Error{"give a location or --pose, not both"};
   const auto found = locations.find(arguments.location);
   if (found) return {};
   std::string names;
   for (const auto& location : locations.all()) names += (names.empty() ? "" : " ") + location.name;
   return Error{found.error() + "\nlocations: " + names};
+}
+
+/// Whether a pose lies in the running robot's map. Where no map comes the planner will say so.
+Status judge_place(Observer& observer, const std::vector<double>& pose) {
+  if (pose.empty()) return {};
+  auto reader = observer.reader(topics::kMap);
+  if (!reader) return Error{reader.error()};
+  const auto map = reader->take(kPatience);
+  if (!map) return {};
+  const auto origin = wire::to_planar(map->info().origin());
+  if (!origin) return {};
+  const double resolution = map->info().resolution();
+  const double width = resolution * map->info().width();
+  const double height = resolution * map->info().height();
+  const geometry::Point2 there = geometry::inverse(*origin) * geometry::Point2(pose[0], pose[1]);
+  if (there.x() >= 0.0 && there.y() >= 0.0 && there.x() < width && there.y() < height) return {};
+  return Error{"--pose " + format("(%.2f, ", pose[0]) +
+               format("%.2f) m is outside the map", pose[1]) + format(" of %.2f", width) +
+               format(" x %.2f m", height) + format(" from (%.2f, ", origin->x) +
+               format("%.2f) on", origin->y)};
 }
 
 /// How the robot drives: on a terminal one line that is rewritten, else a line now and then.
@@ -92,9 +113,11 @@ class ProgressLine {
     const auto now = std::chrono::steady_clock::now();
     if (!terminal_ && now - shown_ < kEvery) return;
     shown_ = now;
+    const bool known = std::isfinite(status.eta());  // there is a plan
     std::cout << (terminal_ ? "\r" : "") << format("%3.0f %%", status.progress() * 100.0) << "  "
-              << format("%5.1f m left", status.remaining()) << "  "
-              << (std::isfinite(status.eta()) ? format("%4.0f s", status.eta()) : "   -")
+              << (known ? format("%5.1f m left", status.remaining()) +
+                              format("  %4.0f s", status.eta())
+                        : "    - m left     -")
               << (status.reason().empty() ? "" : "  " + status.reason())
               << (terminal_ ? "\033[K" : "\n") << std::flush;
   }
@@ -313,6 +336,8 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   if (!locations) return fail(locations.error());
   if (arguments.location.empty() && arguments.pose.empty()) return list(*locations);
   if (const auto sound = judge(arguments, *locations); !sound) return fail(sound.error());
+  if (const auto inside = judge_place(**observer, arguments.pose); !inside)
+    return fail(inside.error());
   struct sigaction action {};
   action.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &action, nullptr);

@@ -226,7 +226,9 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
   auto* topics_command = app.add_subcommand(
       "topics", "Topics with type, quality of service, rate, latency, writers and readers");
   add_domain_option(*topics_command, *domain);
-  topics_command->add_option("--seconds", *seconds, "How long to measure")->capture_default_str();
+  topics_command->add_option("--seconds", *seconds, "How long to measure")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   auto* echo_command = topics_command->add_subcommand("echo", "Print the samples of a topic");
   add_domain_option(*echo_command, *domain);
   echo_command->add_option("topic", arguments->topic, "Name, for example scan/filtered")

@@ -41,9 +41,13 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
   const auto patience = is_stop(command) ? stop_patience : kPatience;
   if (!writer->wait_for_readers(1, kPatience)) {
     if (is_stop(command))
-      std::fputs("usher: no supervisor answers in this domain yet; trying on\n", stderr);
+      std::fputs(
+          "usher: no supervisor answers yet; trying on (is it the robot of this domain? usher "
+          "status --domain N)\n",
+          stderr);
     if (!is_stop(command) || !writer->wait_for_readers(1, patience - kPatience))
-      return Error{"no supervisor in this domain"};
+      return Error{
+          "no supervisor in this domain; `usher status --domain N` looks into another one"};
   }
   SupervisorRequest request;
   request.id(fresh_id());

@@ -161,8 +161,10 @@ int main(int argc, char** argv) {
   if (const char* data = std::getenv("USHER_TEST_DATA")) options.data = data;
   app.add_option("name", name, "Which one");
   app.add_flag("--list", list, "Name them all");
-  app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number");
-  app.add_option("--windows", options.windows, "How many fault windows; 0 = the experiment's own");
+  app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--windows", options.windows, "How many fault windows; 0 = the experiment's own")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--out", options.out, "Folder for the results");
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
   app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")

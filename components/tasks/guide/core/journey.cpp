@@ -340,8 +340,10 @@ void Guide::refresh_journey(Time now) {
       std::isfinite(navigation->progress) ? std::clamp(navigation->progress, 0.0, 1.0) : 0.0;
   const auto known = [](double value) { return std::isfinite(value) && value >= 0.0; };
   screen_.eta = known(navigation->eta) ? navigation->eta : kNothing;
-  screen_.remaining = known(navigation->remaining) ? navigation->remaining : kNothing;
-  if (std::isnan(screen_.eta) || std::isnan(screen_.remaining)) return;
+  // Before there is a plan neither is.
+  const bool planned = known(navigation->eta) && known(navigation->remaining);
+  screen_.remaining = planned ? navigation->remaining : kNothing;
+  if (!planned) return;
   if (std::isnan(first_eta_) && screen_.remaining > 0.0) {
     first_eta_ = screen_.eta;
     first_way_ = screen_.remaining;

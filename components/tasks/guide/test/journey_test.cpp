@@ -25,6 +25,15 @@ TEST(Guide, TellsTimeAndWayAtTheStartAndAtTheEnd) {
   EXPECT_NEAR(rig.guide.visit().eta_error, 41.0 / 60.0 - 1.0, 0.05);
 }
 
+TEST(Guide, TellsNoWayBeforeThereIsAPlan) {
+  Rig rig;
+  rig.to_active();
+  rig.around.navigation->remaining = 0.0;
+  rig.around.navigation->eta = std::nan("");
+  rig.wait(2000);
+  EXPECT_TRUE(std::isnan(rig.guide.screen().remaining));
+}
+
 TEST(Guide, CountsMetresAsPeopleDo) {
   Rig rig;
   rig.to_active();
