@@ -9,6 +9,7 @@ namespace usher::tablet {
 namespace {
 
 constexpr double kRobotReach = 0.85;  ///< of the size of text
+constexpr double kEdge = 0.3;         ///< likewise, from names to the map's border
 
 bool crosses(const QRectF& box, const QLineF& line) {
   if (box.contains(line.p1()) || box.contains(line.p2())) return true;
@@ -90,7 +91,8 @@ void FloorPlanItem::paint_route(QPainter* painter, const QPolygonF& route) const
 }
 
 bool FloorPlanItem::free(const QRectF& box, const QPolygonF& route) const {
-  if (!QRectF(0, 0, width(), height()).contains(box)) return false;
+  const double edge = kEdge * text_size_;
+  if (!QRectF(edge, edge, width() - 2 * edge, height() - 2 * edge).contains(box)) return false;
   if (box.intersects(robot_area_) || box.intersects(here_area_)) return false;
   const QRectF wide =
       box.adjusted(-text_size_ * 0.2, -text_size_ * 0.2, text_size_ * 0.2, text_size_ * 0.2);
@@ -117,11 +119,12 @@ std::optional<FloorPlanItem::Name> FloorPlanItem::room_for(const QString& name, 
   for (const bool beside : {false, true}) {
     for (const QString& text : {beside ? parted : name, beside ? name : parted}) {
       QRectF box = metrics.boundingRect(QRectF(), Qt::AlignCenter, text).adjusted(-4, 0, 4, 0);
-      const double most_left = std::max(0.0, width() - box.width());
+      const double edge = kEdge * text_size_ + 1.0;
+      const double most_left = std::max(edge, width() - box.width() - edge);
       for (const double side : {1.0, -1.0}) {
         box.moveCenter(at + side * (beside ? QPointF(radius + box.width() / 2, 0)
                                            : QPointF(0, radius + box.height() / 2)));
-        if (!beside) box.moveLeft(std::clamp(box.left(), 0.0, most_left));
+        if (!beside) box.moveLeft(std::clamp(box.left(), edge, most_left));
         if (free(box, route)) return Name{text, box};
       }
     }
