@@ -79,9 +79,11 @@ std::string Guide::status() const {
     case State::kEnd:
       return say(Text::kWaitingForHuman);
     case State::kGuideActive:
-      return say(stands() ? Text::kStanding : Text::kDriving);
+      return say(blocked_since_ ? Text::kInTheWay : stands() ? Text::kStanding : Text::kDriving);
     case State::kFollowMe:
-      return say(stands() || goal_id_ == 0 ? Text::kStanding : Text::kDriving);
+      return say(blocked_since_              ? Text::kInTheWay
+                 : stands() || goal_id_ == 0 ? Text::kStanding
+                                             : Text::kDriving);
     case State::kGuidePaused:
       return say(Text::kStanding);
     case State::kIntroduction:

@@ -63,6 +63,7 @@ enum class Text : std::size_t {
   kListening,
   kDriving,
   kStanding,
+  kInTheWay,
   kYes,
   kNo,
   kStart,
@@ -94,7 +95,7 @@ enum class Text : std::size_t {
 
 inline constexpr std::size_t kStatements = 13;
 
-inline constexpr std::array<std::string_view, 98> kTextKeys{"hello",
+inline constexpr std::array<std::string_view, 99> kTextKeys{"hello",
                                                             "choose_language",
                                                             "not_ready",
                                                             "no_places",
@@ -149,6 +150,7 @@ inline constexpr std::array<std::string_view, 98> kTextKeys{"hello",
                                                             "listening",
                                                             "driving",
                                                             "standing",
+                                                            "in_the_way",
                                                             "yes",
                                                             "no",
                                                             "start",

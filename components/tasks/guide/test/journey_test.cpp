@@ -74,6 +74,7 @@ TEST(Guide, AsksToBeLetThroughThenTellsOfAnotherWay) {
   rig.to_active();
   rig.around.navigation->blocked = true;
   rig.wait(2900);
+  EXPECT_EQ(rig.guide.screen().status, "Something is in my way");
   EXPECT_NE(rig.said.back(), "Excuse me, may I pass?");
   rig.wait(300);
   EXPECT_EQ(rig.said.back(), "Excuse me, may I pass?");
