@@ -447,12 +447,14 @@ TEST(GuardedStreams, EndAGuardThatHangsWhenTheyReopen) {
   server.accept();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   const pid_t guard = guard_process();
+  ASSERT_GT(guard, 0);
+  const auto opened = log.opened;  // on a busy machine the first guard may have been replaced
   ::kill(guard, SIGSTOP);
   stream.reopen({});
   server.drop();
   server.accept();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 2; }));
-  EXPECT_EQ(::kill(guard, 0), -1);
+  ASSERT_TRUE(log.wait([&] { return log.opened > opened; }));
+  EXPECT_TRUE(log.wait([&] { return ::kill(guard, 0) == -1; })) << "one owner of the port";
 }
 
 TEST(GuardedStreams, KeepAGuardWhenNobodySaysAnythingOrTheDriverDoesNotRead) {
