@@ -231,6 +231,24 @@ void DynamicWindow::load(const Input& input) {
   stand_in_the_way(input);
 }
 
+namespace {
+/// Visits the cells of the window whose centers lie within `radius` of a place.
+template <class Visit>
+void visit_cells(const grid::GridGeometry& g, const geometry::Point2& place, double radius,
+                 Visit visit) {
+  const double far = (g.width + g.height) * g.resolution + radius;
+  if (!((place - geometry::Point2(g.origin_x, g.origin_y)).norm() <= far)) return;
+  const grid::Cell middle = g.cell_at(place);
+  const int reach = static_cast<int>(radius / g.resolution) + 1;
+  for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+    for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
+      if (g.contains({x, y}) && (g.center({x, y}) - place).norm() <= radius)
+        visit(grid::Cell{x, y});
+    }
+  }
+}
+}  // namespace
+
 /// Of somebody who stands at the robot the laser sees only what is beyond its blind range: all of
 /// them is in the way, but for what would be in the robot.
 void DynamicWindow::stand_in_the_way(const Input& input) {
@@ -238,34 +256,19 @@ void DynamicWindow::stand_in_the_way(const Input& input) {
   for (const MovingDisc& person : input.people) {
     if (person.velocity.norm() >= kWalks) continue;
     if ((person.position - input.pose.position()).norm() > kAtTheRobot) continue;
-    const grid::Cell middle = g.cell_at(person.position.x(), person.position.y());
-    const double radius = std::min(person.radius, kAtTheRobot);
-    const int reach = static_cast<int>(radius / g.resolution) + 1;
-    for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
-      for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
-        if (!g.contains({x, y})) continue;
-        const geometry::Point2 cell = g.center({x, y});
-        if ((cell - person.position).norm() > radius) continue;
-        if (config_.footprint.distance(inverse(input.pose) * cell) < g.resolution) continue;
-        bits_.set(x + bits_.rim(), y + bits_.rim());
-      }
-    }
+    visit_cells(g, person.position, std::min(person.radius, kAtTheRobot), [&](grid::Cell cell) {
+      if (config_.footprint.distance(inverse(input.pose) * g.center(cell)) >= g.resolution)
+        bits_.set(cell.x + bits_.rim(), cell.y + bits_.rim());
+    });
   }
 }
 
 /// Frees the cells of everybody; false: there is nobody.
 bool DynamicWindow::leave_out_people(const Input& input) {
-  const grid::GridGeometry& g = input.costs.geometry();
   for (const MovingDisc& person : input.people) {
-    const double radius = person.radius + kUnsure;
-    const grid::Cell middle = g.cell_at(person.position.x(), person.position.y());
-    const int reach = static_cast<int>(radius / g.resolution) + 1;
-    for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
-      for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
-        if (g.contains({x, y}) && (g.center({x, y}) - person.position).norm() <= radius)
-          bits_.clear(x + bits_.rim(), y + bits_.rim());
-      }
-    }
+    visit_cells(input.costs.geometry(), person.position,
+                std::min(person.radius, kAtTheRobot) + kUnsure,
+                [&](grid::Cell cell) { bits_.clear(cell.x + bits_.rim(), cell.y + bits_.rim()); });
   }
   return !input.people.empty();
 }

@@ -402,6 +402,8 @@ TEST(Decide, DodgesAPostAndNobodyWhenItBrakesBetweenWalls) {
   EXPECT_GT(braked({}), 0.05);
   const std::vector<MovingDisc> somebody{{{1.2, -0.4}, {0.0, 0.5}, 0.25}};
   EXPECT_EQ(braked(somebody), 0.0);
+  const std::vector<MovingDisc> nowhere{{{1e300, -1e300}, {0.0, 0.0}, 0.25}};
+  EXPECT_GT(braked(nowhere), 0.05);
 }
 
 TEST(Decide, AskewBeforeADoorTurnsAsFarAsThePostsLetIt) {
