@@ -151,7 +151,7 @@ Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::s
     return Error{"more than 8 manifests extend one another (" + extends->origin + ")"};
   auto base = read_extended(base_path, std::move(open));
   if (!base) return Error{base.error() + ", extended by " + extends->origin};
-  std::erase_if(tree->entries, [](const auto& entry) { return entry.first == "extends"; });
+  std::erase_if(tree->entries, [](const auto& entry) { return entry.key == "extends"; });
   return overlay(std::move(base).value(), *tree);
 }
 

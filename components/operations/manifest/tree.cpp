@@ -93,12 +93,12 @@ class Builder final : public YAML::EventHandler {
     if (parent.key_read) {
       if (kind != Tree::Kind::kScalar) refuse("a key must be a word", mark);
       if (parent.tree->find(scalar) != nullptr) refuse("key '" + scalar + "' is given twice", mark);
-      entries.emplace_back(scalar, std::move(tree));
+      entries.push_back({scalar, std::move(tree)});
       return nullptr;
     }
-    tree.origin = std::move(entries.back().second.origin);  // of the key
-    entries.back().second = std::move(tree);
-    return &entries.back().second;
+    tree.origin = std::move(entries.back().value.origin);  // of the key
+    entries.back().value = std::move(tree);
+    return &entries.back().value;
   }
 
   const std::string& where_;
@@ -189,8 +189,8 @@ Tree Tree::word(std::string text, std::string origin) {
 
 const Tree* Tree::find(const std::string& key) const {
   const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const auto& entry) { return entry.first == key; });
-  return found == entries.end() ? nullptr : &found->second;
+                                  [&](const auto& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &found->value;
 }
 
 Tree* Tree::find(const std::string& key) {
@@ -240,11 +240,11 @@ Tree overlay(Tree base, const Tree& over) {
   for (const auto& [key, value] : over.entries) {
     Tree* existing = base.find(key);
     if (value.kind == Tree::Kind::kNull) {
-      std::erase_if(base.entries, [&key = key](const auto& entry) { return entry.first == key; });
+      std::erase_if(base.entries, [&key = key](const auto& entry) { return entry.key == key; });
     } else if (existing != nullptr) {
       *existing = overlay(std::move(*existing), value);
     } else {
-      base.entries.emplace_back(key, value);
+      base.entries.push_back({key, value});
     }
   }
   return base;

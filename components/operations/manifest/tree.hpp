@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "foundation/result/result.hpp"
@@ -12,18 +11,24 @@ namespace usher::operations {
 /// another and errors still name the line that is wrong.
 struct Tree {
   enum class Kind { kNull, kScalar, kList, kMap };
+  struct Entry;
 
   Kind kind = Kind::kNull;
   std::string scalar;
-  std::vector<Tree> items;                            ///< of a list
-  std::vector<std::pair<std::string, Tree>> entries;  ///< of a map, in the order of the file
-  std::string origin;                                 ///< "deploy/demo.yaml:12"
+  std::vector<Tree> items;     ///< of a list
+  std::vector<Entry> entries;  ///< of a map, in the order of the file
+  std::string origin;          ///< "deploy/demo.yaml:12"
 
   static Tree word(std::string text, std::string origin);
   const Tree* find(const std::string& key) const;
   Tree* find(const std::string& key);
   /// The node as YAML of one line that reads the same in any place: `0.2 m`, `[1, "a: b"]`.
   std::string yaml() const;
+};
+
+struct Tree::Entry {
+  std::string key;
+  Tree value;
 };
 
 /// Fails with file and line on unreadable files, bad YAML, repeated keys, anchors and aliases,

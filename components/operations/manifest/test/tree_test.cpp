@@ -126,7 +126,7 @@ TEST(Tree, ReadsBackWhatItWrites) {
     if (random.below(4) == 0) word += "\xc3\xa4";
     Tree map;
     map.kind = Tree::Kind::kMap;
-    map.entries.emplace_back("k" + word, Tree::word(word, {}));
+    map.entries.push_back({"k" + word, Tree::word(word, {})});
     Tree list;
     list.kind = Tree::Kind::kList;
     list.items = {Tree::word(word, {}), map, Tree::word(word, {})};
@@ -138,7 +138,7 @@ TEST(Tree, ReadsBackWhatItWrites) {
     EXPECT_EQ(again->items[0].scalar, word);
     EXPECT_EQ(again->items[0].kind, Tree::Kind::kScalar) << written;
     ASSERT_EQ(again->items[1].entries.size(), 1U) << written;
-    EXPECT_EQ(again->items[1].entries[0].first, "k" + word);
+    EXPECT_EQ(again->items[1].entries[0].key, "k" + word);
     EXPECT_EQ(again->items[2].scalar, word);
     const auto alone = parse_tree(Tree::word(word, {}).yaml(), "x.yaml");
     ASSERT_TRUE(alone) << written;

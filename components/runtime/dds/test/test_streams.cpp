@@ -228,7 +228,7 @@ TEST(Streams, QueueAtMost64Kilobytes) {
   // Nobody reads: the kernel's buffers fill, then the queue, then write() refuses. Nothing of what
   // it took is lost.
   std::size_t taken = 0;
-  const Bytes block(32 * 1024, 'b');
+  const Bytes block(32768, 'b');
   while (stream.write(block) && taken < (64U << 20)) taken += block.size();
   ASSERT_LT(taken, 64U << 20);
   EXPECT_EQ(server.read(taken).size(), taken);
@@ -317,7 +317,7 @@ TEST(Streams, ListenForOneCallerAfterTheOther) {
 
 /// Fills the line until it takes no more, then 1000 velocities of which the newest is "now.", and
 /// reads what the device gets once the line moves again: how many velocities after the filling.
-std::string after_a_blocked_line(StreamSink sink, Log& log) {
+std::string after_a_blocked_line(const StreamSink& sink, Log& log) {
   int master = -1;
   int slave = -1;
   std::array<char, 128> name{};
