@@ -21,7 +21,9 @@ class RollOut {
   static constexpr double kStanding = 0.08;  ///< [m/s] slower it stands
   static constexpr double kStraight = 0.03;  ///< [rad/s] slower turns are a balancing base's sway
   static constexpr auto kBlind = std::chrono::milliseconds(1000);  ///< turns so long unmeasured
-  static constexpr double kTurnLag = 0.3;     ///< [s] {> 0} no base's turn rate follows later
+  static constexpr auto kPause = std::chrono::milliseconds(200);   ///< a longer one counts as this
+  static constexpr double kTurnLag = 0.3;  ///< [s] {> 0} no base's turn rate follows later
+  static constexpr double kSlows = 0.4;    ///< [m/s2] {> 0} a base that is not measured, at least
   static constexpr double kTurnSlack = 0.05;  ///< [rad/s] {>= 0} beside what it was told
 
   /// [m/s] No stop from this speed takes longer: MARVIN's, the slower of the bases. What hangs or
@@ -31,16 +33,18 @@ class RollOut {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(time);
   }
 
-  /// It must stand, and does so much now; nothing and what is not finite are unmeasured.
+  /// It must stand, and does so much now; nothing and what is not finite are unmeasured. Called
+  /// every cycle: where a clock jumped, the base has not rolled on meanwhile.
   geometry::Twist2 stop(const std::optional<geometry::Twist2>& measured,
-                        std::chrono::nanoseconds now) {
+                        std::chrono::nanoseconds called) {
+    const std::chrono::nanoseconds now = passed(called);
     const bool known = measured && measured->finite();
     if (!stops_) {
       stops_ = true;
       // Who begins while the base rolls, after a restart, knows that from the measurement alone.
       if (!rolled_at_) rolled_at_ = now;
       measured_at_ = known ? now : *rolled_at_;
-      onset_ = known ? *measured : driven_;
+      onset_ = known ? *measured : geometry::Twist2{rolls_, driven_w_};
       onset_.w = std::clamp(onset_.w, least_turn_ - kTurnSlack, most_turn_ + kTurnSlack);
       if (std::abs(onset_.w) < kStraight) onset_.w = 0.0;
       share_ = 1.0;
@@ -57,29 +61,40 @@ class RollOut {
     return tell({0.0, onset_.w * share_}, now);
   }
   /// It may drive, and is told so: the next stop begins anew.
-  void drive(const geometry::Twist2& told, std::chrono::nanoseconds now) {
+  void drive(const geometry::Twist2& told, std::chrono::nanoseconds called) {
+    const std::chrono::nanoseconds now = passed(called);
     stops_ = false;
     tell(told, now);
-    driven_.w = told.w;
-    if (told.v == 0.0) return;  // it rolls out for somebody else, who keeps the arc
-    driven_.v = told.v;
-    rolled_at_ = now;
+    driven_w_ = told.w;
+    // Without a speed it rolls out for somebody else, who keeps the arc.
+    if (told.v != 0.0) rolled_at_ = now;
   }
 
  private:
-  /// What the base may turn like after having been told so.
+  /// The time since the first call, of each pause kPause at most.
+  std::chrono::nanoseconds passed(std::chrono::nanoseconds called) {
+    if (called_at_)
+      passed_ += std::clamp<std::chrono::nanoseconds>(called - *called_at_, {}, kPause);
+    called_at_ = called;
+    return passed_;
+  }
+  /// What the base may roll and turn like after having been told so.
   geometry::Twist2 tell(const geometry::Twist2& twist, std::chrono::nanoseconds now) {
     const double seconds = told_at_ ? std::chrono::duration<double>(now - *told_at_).count() : 0.0;
     const double left = kTurnLag / (kTurnLag + seconds);
     least_turn_ = twist.w + std::min(0.0, (least_turn_ - twist.w) * left);
     most_turn_ = twist.w + std::max(0.0, (most_turn_ - twist.w) * left);
+    const double rolls = std::max(0.0, std::abs(rolls_) - kSlows * seconds);
+    rolls_ = std::abs(twist.v) >= rolls ? twist.v : std::copysign(rolls, rolls_);
     told_at_ = now;
     return twist;
   }
 
   static constexpr double kAnyTurn = 5.0;  // [rad/s] who has just begun does not know what was told
+  std::optional<std::chrono::nanoseconds> called_at_;
+  std::chrono::nanoseconds passed_{};
   bool stops_ = false;
-  geometry::Twist2 driven_;                            ///< what it was last told that made it roll
+  double rolls_ = 0.0, driven_w_ = 0.0;                ///< what it does by what it was told
   std::optional<std::chrono::nanoseconds> rolled_at_;  ///< when
   std::chrono::nanoseconds measured_at_{};
   geometry::Twist2 onset_;

@@ -363,6 +363,10 @@ std::vector<Expectation> expectations(const WindowPlan& plan, const FaultTargets
     if (unfelt) each.forward_barred_within = Expectation::kNever;
     if (deaf) each.zero_within = std::max(each.zero_within, kHeld);
     if (silent == plan.faults.end() || &*silent == &plan.faults[i]) continue;
+    if (plan.faults[i].kind == FaultKind::kRogue && plan.faults[i].duration <= silent->duration) {
+      each = {};  // came and went while nobody watched; the laws hold all the same
+      continue;
+    }
     // Nobody withdraws the right to drive: it runs out. And nobody tells why until it is back.
     each.zero_within = std::max(each.zero_within, kExpires);
     each.read_within += silent->duration;

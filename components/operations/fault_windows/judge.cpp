@@ -286,6 +286,7 @@ void WindowJudge::chosen(double t, const geometry::Twist2& twist) {
 void WindowJudge::told(double t, const std::vector<std::string>& lines) {
   told_at_ = t;
   if (!hit_) before_ = {lines.begin(), lines.end()};
+  if (!lines_.empty()) read_last_ = {t, lines_.front()};
   lines_.clear();
   std::copy_if(lines.begin(), lines.end(), std::back_inserter(lines_),
                [&](const std::string& line) { return !before_.contains(line); });
@@ -330,6 +331,9 @@ Judgement WindowJudge::judgement(double t) const {
   } else if (const auto read = lines(t); !read.empty()) {
     judgement.end = WindowEnd::kStands;
     judgement.reason = read.front();
+  } else if (!read_last_.second.empty() && t - read_last_.first < kUnheard) {  // it ended just now
+    judgement.end = WindowEnd::kStands;
+    judgement.reason = read_last_.second;
   } else if (active && !waited_.second.empty() && t - waited_.first < kLastSeconds) {
     judgement.end = WindowEnd::kWaits;
     judgement.reason = waited_.second;

@@ -159,7 +159,8 @@ class WindowJudge {
   double told_at_ = 0.0;
   std::uint8_t navigation_ = 0;
   std::string navigation_reason_;
-  std::pair<double, std::string> waited_;  ///< when the navigation last told a reason, and which
+  std::pair<double, std::string> waited_;     ///< when the navigation last told a reason, and which
+  std::pair<double, std::string> read_last_;  ///< likewise of the lines that an operator reads
   std::optional<double> hit_;
   std::vector<Expectation> expectations_;
   std::string violation_;

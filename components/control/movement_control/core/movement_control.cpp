@@ -189,7 +189,7 @@ double MovementControl::planned_share(const geometry::Twist2& twist, const Input
 double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs,
                                            Time now) {
   const double v = inputs.measured ? inputs.measured->v : 0.0;
-  const double slower = std::max(0.0, std::abs(v) - parameters_.reflex_drop);
+  const double slower = std::max(0.0, std::abs(v) - parameters_.largest_drop);
   if (std::abs(v) < kinematics::RollOut::kStanding || ramped.v * v > slower * std::abs(v)) {
     kept_arc_.drive(ramped, now);
     return ramped.w;
@@ -198,15 +198,26 @@ double MovementControl::turn_while_rolling(const geometry::Twist2& ramped, const
   return guard_.stops({v, ramped.w}, inputs.view) ? ramped.w : kept;
 }
 
-/// As fast as the base can slow down, never faster than wanted before the touch.
+/// What a base that was told `before` is told when it must be as slow as `cut` [m/s]: as much
+/// slower than it is as it can follow, never faster than before.
+double MovementControl::slowed(double cut, double before, const Inputs& inputs) const {
+  const double measured = inputs.measured ? inputs.measured->v : 0.0;
+  const double slowest = std::min(std::abs(measured) - parameters_.largest_drop, std::abs(before));
+  return measured * before > 0.0 && slowest > std::abs(cut) ? std::copysign(slowest, before) : cut;
+}
+
+/// While it rolls it keeps its arc where straight on it would meet something before it stands.
 geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
                                          const Inputs& inputs) const {
   geometry::Twist2 twist =
       kinematics::whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+  twist.v = slowed(twist.v, ramped.v, inputs);
   const double measured = inputs.measured ? inputs.measured->v : 0.0;
-  const double slowest = std::min(std::abs(measured) - parameters_.reflex_drop, std::abs(ramped.v));
-  if (measured * ramped.v > 0.0 && slowest > std::abs(twist.v))
-    twist.v = std::copysign(slowest, ramped.v);
+  if (std::abs(measured) < kinematics::RollOut::kStanding || twist.w == ramped.w) return twist;
+  const geometry::Twist2 straight{measured, twist.w}, arc{measured, ramped.w};
+  if (!guard_.stops(straight, inputs.view) &&
+      guard_.way(arc, inputs.view) > guard_.way(straight, inputs.view))
+    twist.w = ramped.w;
   return twist;
 }
 
@@ -246,7 +257,8 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     }
     const double planned = planned_share({wanted.v, wish.twist.w * factor}, inputs, wish.source);
     if (planned < 1.0) {
-      wanted = {wanted.v * planned, wanted.w == 0.0 ? 0.0 : turn(factor * planned)};
+      wanted = {slowed(wanted.v * planned, wanted.v, inputs),
+                wanted.w == 0.0 ? 0.0 : turn(factor * planned)};
       decision.limit = Limit::kObstacle;
       (wanted.v != 0.0 ? limits.limit.linear : limits.limit.angular) =
           std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);
@@ -258,7 +270,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
       if (!guards(wish.source)) return;
       const double room = guard_.share(twist, inputs.view, inputs.measured);
       if (room >= 1.0) return;
-      twist = {twist.v * room, twist.w * room};
+      twist = {slowed(twist.v * room, twist.v, inputs), twist.w * room};
       decision.limit = inputs.view.sees ? Limit::kObstacle : Limit::kBlind;
       if (twist.v != 0.0) limits.limit.linear = std::abs(twist.v);
       if (twist.w != 0.0) limits.limit.angular = std::abs(twist.w);
@@ -285,9 +297,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
   } else {
     acceleration_ = {};
     const geometry::Twist2 rolls = roll_out_.stop(inputs.measured, now);
-    decision.twist =
-        kinematics::whisker_reflex(inputs.motors_off ? geometry::Twist2{} : rolls,
-                                   inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+    decision.twist = reflex(inputs.motors_off ? geometry::Twist2{} : rolls, inputs);
   }
 
   last_ = decision.twist;

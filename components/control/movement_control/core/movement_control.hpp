@@ -56,9 +56,9 @@ struct Parameters {
   VelocityLimit low_battery{0.8, 0.6};
   double reverse = 0.4;  ///< [m/s] {>= 0} nothing sees behind
   double touched = 0.1;  ///< [m/s] {>= 0} creeping past what a whisker touches
-  /// [m/s] {> 0} The reflex asks the base for no more than this below its speed: a balancing one
-  /// that is told to drop by more holds its speed first, to lean back.
-  double reflex_drop = 5.0;
+  /// [m/s] {> 0} Guard and reflex tell a base that rolls to be no more than this slower than it is:
+  /// a balancing one that is told to drop by more holds its speed first, to lean back.
+  double largest_drop = 5.0;
 
   /// The Segway's own acceleration; a stop passes at once, as the stopping distances were measured.
   AccelerationLimit linear{0.7, 1.4, 0.0};
@@ -190,6 +190,7 @@ class MovementControl {
   bool guards(Source source) const;
   double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
+  double slowed(double cut, double before, const Inputs& inputs) const;
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 

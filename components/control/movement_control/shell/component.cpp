@@ -24,6 +24,7 @@ constexpr auto kOdomAge = milliseconds(150);
 constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kPersonAge = milliseconds(500);
 constexpr auto kLeaning = milliseconds(2500);  // at a start
+constexpr double kLeans = 0.02;                // [rad]
 constexpr double kStanding = 0.01;             // [m/s]
 constexpr double kReported = 1.4;              // [m/s] the status tells of what would stop this
 
@@ -100,9 +101,10 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
                                 "Greatest speed backwards, where nothing sees.");
   p.touched = parameters.number("touched_v", "m/s", {0, 0.3}, p.touched,
                                 "Greatest speed past what a whisker touches.");
-  p.reflex_drop = parameters.number("reflex_drop", "m/s", {0.1, 5}, p.reflex_drop,
-                                    "So much slower than it drives the reflex tells the base to "
-                                    "be; a balancing one holds its speed when told more.");
+  p.largest_drop = parameters.number("largest_drop", "m/s", {0.1, 5}, p.largest_drop,
+                                     "So much slower than it drives guard and reflex tell the "
+                                     "base to be at most; a balancing one holds its speed when "
+                                     "told more.");
   const auto acceleration = [&](AccelerationLimit& value, const std::string& name,
                                 const std::string& unit) {
     value.speed_up = parameters.number(name + "_speed_up", unit, {0, 10}, value.speed_up,
@@ -207,9 +209,11 @@ std::optional<geometry::Twist2> MovementControlComponent::measured() const {
 }
 
 /// While MARVIN leans forward to speed up, most beams that look ahead may end on the floor; what is
-/// near they still meet.
+/// near they still meet. Whoever does not lean has no excuse.
 bool MovementControlComponent::sees() const {
-  return seen_at_ && host_.now().time_since_epoch() - *seen_at_ < kLeaning;
+  const Time now = host_.now().time_since_epoch();
+  const bool leans = leaned_at_ && now - *leaned_at_ < kSensorAge;
+  return seen_at_ && now - *seen_at_ < (leans ? kLeaning : kSensorAge);
 }
 
 /// Where the costs are lethal. They know the map's walls, which are elsewhere when the pose is
@@ -259,6 +263,7 @@ Inputs MovementControlComponent::gather() {
   if (const auto* base = base_.fresh()) {
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
     inputs.motors_off = base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
+    if (std::abs(base->pitch()) > kLeans) leaned_at_ = host_.now().time_since_epoch();
   }
   inputs.measured = measured();
   double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot

@@ -43,6 +43,7 @@ class Component : public testing::Test {
   double wanted_v = 1.0, wanted_w = 0.0;
   std::optional<geometry::Twist2> wanted_by_hand;
   double measured_v = 0.5;
+  double pitch = 0.0;
   double wall = 100.0;  ///< [m] ahead of the laser
   std::optional<double>
       glass;  ///< [m] ahead of the axle in the local costs; nothing: there are none
@@ -73,6 +74,7 @@ class Component : public testing::Test {
       base.header(header);
       base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
       base.v(measured_v);
+      base.pitch(pitch);
       base.battery_percent(80.0F);
       host.publish(topics::kBaseStatus, base);
     }
@@ -305,6 +307,7 @@ TEST_F(Component, WithoutAScanAnOperatorCreeps) {
 
 TEST_F(Component, AnOperatorCreepsOnceTheScansHaveToldNothingForLongerThanAStartLeans) {
   wanted_by_hand = {0.8, 0.0};
+  pitch = -0.03;
   run(2000);
   floor = true;
   run(2300);
@@ -314,6 +317,13 @@ TEST_F(Component, AnOperatorCreepsOnceTheScansHaveToldNothingForLongerThanAStart
   floor = false;
   run(2000);
   EXPECT_NEAR(commanded(), 0.8, 1e-6);
+  pitch = 0.01;
+  run(400);
+  floor = true;
+  run(200);
+  EXPECT_NEAR(commanded(), 0.8, 1e-6);
+  run(200);
+  EXPECT_NEAR(commanded(), 0.1, 1e-6) << "it does not lean";
 }
 
 TEST_F(Component, TheStatusTellsWhatIsAhead) {

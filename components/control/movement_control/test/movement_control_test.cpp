@@ -317,7 +317,7 @@ TEST(MovementControl, WorksWithoutWhiskersWhereThereAreNone) {
 
 TEST(WhiskerReflex, BrakesABalancingBaseAsFastAsItFollows) {
   Parameters parameters;
-  parameters.reflex_drop = 0.25;
+  parameters.largest_drop = 0.25;
   MovementControl control(parameters);
   Inputs inputs = all_well();
   const auto decide = [&](double wanted, double measured, bool touched, int at) {
@@ -344,7 +344,7 @@ class Guarded : public testing::Test {
  protected:
   Guarded() {
     parameters.guarded = true;
-    parameters.reflex_drop = 0.25;
+    parameters.largest_drop = 0.25;
     inputs = all_well();
     for (int i = -100; i <= 100; ++i) points.emplace_back(0.305 + 0.5, 0.01 * i);
     inputs.view = {.points = points, .sees = true};
@@ -394,10 +394,38 @@ TEST_F(Guarded, AHeldBackPlannersRobotStaysOnItsArcWhileItIsFaster) {
   int ms = 0;
   for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
   inputs.view = {.sees = true, .cells = points};
-  EXPECT_EQ(control.decide(inputs, milliseconds(ms += 20)).twist, (Twist2{0.0, 0.2})) << "at once";
+  const Twist2 held = control.decide(inputs, milliseconds(ms += 20)).twist;
+  EXPECT_NEAR(held.v, 0.55, 1e-12) << "at once, as much slower as it can follow";
+  EXPECT_EQ(held.w, 0.2);
   inputs.measured = Twist2{0.4, 0.1};
   for (int i = 0; i < 5; ++i) control.decide(inputs, milliseconds(ms += 20));
   EXPECT_NEAR(control.status().current.w, 0.1, 1e-9);
+}
+
+/// Bending left past the wall's end: straight on it would meet the wall before it stands.
+TEST_F(Guarded, ATouchKeepsARollingRobotOnItsArcWhereStraightOnIsAWall) {
+  const auto turn_of = [&](double measured, double ahead,
+                           const std::vector<geometry::Point2>& seen) {
+    MovementControl control(parameters);
+    inputs.whiskers = Whiskers{};
+    inputs.navigation = inputs.measured = Twist2{measured, 0.6};
+    inputs.view = {.sees = true};
+    int ms = 0;
+    for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+    points.clear();
+    for (int i = 0; i <= 30; ++i) points.emplace_back(0.305 + ahead, -0.3 + 0.01 * i);
+    points.insert(points.end(), seen.begin(), seen.end());
+    inputs.view = {.points = points, .sees = true};
+    inputs.whiskers = Whiskers{.front_left = true};
+    inputs.navigation = Twist2{0.2, 0.6};
+    return control.decide(inputs, milliseconds(ms += 20)).twist.w;
+  };
+  std::vector<geometry::Point2> beside;
+  EXPECT_EQ(turn_of(0.6, 0.8, beside), 0.6);
+  EXPECT_EQ(turn_of(0.6, 2.0, beside), 0.0) << "it stands before the wall: the corner is spared";
+  EXPECT_EQ(turn_of(0.05, 0.8, beside), 0.0) << "it stands";
+  for (int i = 0; i < 20; ++i) beside.emplace_back(0.5, 0.34 + 0.01 * i);
+  EXPECT_EQ(turn_of(0.6, 0.8, beside), 0.0) << "the arc meets something sooner";
 }
 
 TEST_F(Guarded, ALostPlannerMayTurn) {

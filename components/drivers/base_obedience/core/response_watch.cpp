@@ -8,6 +8,8 @@ namespace usher::drive {
 
 namespace {
 
+constexpr double kLeastLacking = 0.08;  // [m/s] or [rad/s] less may be a balancing base's sway
+
 /// Signed distance of `value` from [low, high]; 0 inside.
 double outside(double value, double low, double high) {
   return value > high ? value - high : value < low ? value - low : 0.0;
@@ -62,8 +64,13 @@ ResponseWatch::Verdict ResponseWatch::judge(AxisState& axis, const Axis& limits,
 
   const bool stands = span.low == 0.0 && span.high == 0.0;
   const double threshold = stands ? std::min(standing, limits.threshold) : limits.threshold;
+  // Half of the slowest command that it was told is missed by no base that follows.
+  const double slowest = std::max({low, -high, 0.0});
+  const bool lacks = slowest > 0.0 && axis.error.error * low > 0.0;
+  const double tolerated =
+      lacks ? std::min(threshold, std::max(kLeastLacking, 0.5 * slowest)) : threshold;
   axis.error.lasting =
-      std::abs(axis.error.error) > threshold ? axis.error.lasting + elapsed : Time::zero();
+      std::abs(axis.error.error) > tolerated ? axis.error.lasting + elapsed : Time::zero();
   axis.excess_lasting = std::abs(excess) > threshold ? axis.excess_lasting + elapsed : Time::zero();
 
   axis.far_lasting =

@@ -17,7 +17,8 @@ namespace usher::drive {
 /// two-phase stop of a balancing base, so none of them raises an alarm; what leaves the span does.
 ///
 /// Leaving it away from zero, or against the commanded direction, is disobedience. Leaving it
-/// toward zero is falling short: a base that stands although it should drive is no hazard.
+/// toward zero is falling short: a base that stands although it should drive is no hazard. So is
+/// driving with less than half of the slowest command in the span, however slow that is.
 ///
 /// No allocation; a call costs a few dozen comparisons. `now` must not go back.
 class ResponseWatch {

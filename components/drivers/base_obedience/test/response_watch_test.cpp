@@ -123,6 +123,22 @@ TEST(ResponseWatch, NoticesDisobedience) {
 TEST(ResponseWatch, StandingInsteadOfDrivingIsFallingShort) {
   EXPECT_EQ(worst([](double) { return 1.0; }, [](double) { return 0.0; }, 20.0),
             Verdict::kFallsShort);
+  for (const double told : {0.2, -0.2}) {
+    for (const bool angular : {false, true}) {
+      const auto of = [&](double share) {
+        return worst([&](double) { return told; }, [&](double) { return share * told; }, 20.0,
+                     angular);
+      };
+      EXPECT_EQ(of(0.0), Verdict::kFallsShort) << "a slow command too";
+      EXPECT_EQ(of(-0.1), Verdict::kFallsShort) << "it sways";
+      EXPECT_EQ(of(0.45), Verdict::kFallsShort);
+      EXPECT_EQ(of(0.6), Verdict::kObeys);
+    }
+  }
+  EXPECT_EQ(worst([](double t) { return std::fmod(t, 2.0) < 1.0 ? 0.2 : 0.0; },
+                  [](double) { return 0.0; }, 20.0),
+            Verdict::kObeys)
+      << "it was told to stand in between";
 }
 
 TEST(ResponseWatch, ReportsSignedErrorAndItsTime) {

@@ -128,6 +128,13 @@ TEST(AccelerationLimiter, BrakesOnNonsense) {
 
 using std::chrono::milliseconds;
 
+/// Every 20 ms until then the same measurement; what it is told at last.
+geometry::Twist2 stop_until(RollOut& roll_out, int from_ms, int to_ms,
+                            const std::optional<geometry::Twist2>& measured) {
+  for (int ms = from_ms; ms < to_ms; ms += 20) roll_out.stop(measured, milliseconds(ms));
+  return roll_out.stop(measured, milliseconds(to_ms));
+}
+
 TEST(RollOut, KeepsTheArcWhileTheSpeedFalls) {
   RollOut roll_out;
   EXPECT_EQ(roll_out.stop(geometry::Twist2{0.8, 0.4}, milliseconds(0)), (geometry::Twist2{0, 0.4}));
@@ -141,7 +148,7 @@ TEST(RollOut, IsZeroForARobotThatStandsTurnsBackOrIsUnknown) {
   const auto stop = [](geometry::Twist2 onset, std::optional<geometry::Twist2> now, int ms) {
     RollOut roll_out;
     roll_out.stop(onset, milliseconds(0));
-    return roll_out.stop(now, milliseconds(ms));
+    return stop_until(roll_out, 20, ms, now);
   };
   const geometry::Twist2 arc{0.8, 0.4}, zero;
   EXPECT_NE(stop(arc, arc, 100), zero);
@@ -158,7 +165,7 @@ TEST(RollOut, BelievesNoMeasurementOfARobotThatMustStandByNow) {
   const geometry::Twist2 arc{0.8, 0.4}, zero;
   RollOut roll_out;
   roll_out.drive(arc, milliseconds(0));
-  roll_out.drive({0.0, 0.4}, milliseconds(20));
+  for (int ms = 20; ms < 1600; ms += 20) roll_out.drive({0.0, 0.4}, milliseconds(ms));
   EXPECT_EQ(roll_out.stop(arc, milliseconds(1600)).w, 0.4);
   roll_out.drive({0.0, 0.0}, milliseconds(1620));
   EXPECT_EQ(roll_out.stop(arc, milliseconds(1700)), zero) << "it hangs";
@@ -168,32 +175,46 @@ TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
   const geometry::Twist2 arc{0.8, 0.4}, slower{0.4, 0.1}, zero;
   RollOut lost;
   lost.stop(arc, milliseconds(0));
-  lost.stop(slower, milliseconds(500));
+  stop_until(lost, 20, 500, slower);
   EXPECT_NEAR(lost.stop(std::nullopt, milliseconds(600)).w, 0.2, 1e-12) << "as it was last";
-  EXPECT_NEAR(lost.stop(geometry::Twist2{kNaN, 0.1}, milliseconds(1400)).w, 0.2, 1e-12);
+  EXPECT_NEAR(stop_until(lost, 620, 1400, geometry::Twist2{kNaN, 0.1}).w, 0.2, 1e-12);
   EXPECT_EQ(lost.stop(std::nullopt, milliseconds(1500)), zero);
   RollOut blind;
   blind.drive(arc, milliseconds(4990));
   EXPECT_EQ(blind.stop(std::nullopt, milliseconds(5000)).w, 0.4) << "as it was told";
-  EXPECT_EQ(blind.stop(std::nullopt, milliseconds(5980)).w, 0.4);
+  EXPECT_EQ(stop_until(blind, 5020, 5980, std::nullopt).w, 0.4);
   EXPECT_NEAR(blind.stop(slower, milliseconds(5995)).w, 0.2, 1e-12) << "measured again";
   EXPECT_EQ(blind.stop(geometry::Twist2{0.0, 0.4}, milliseconds(6000)), zero);
   EXPECT_EQ(blind.stop(std::nullopt, milliseconds(6010)), zero) << "it stood";
   RollOut slow;
   slow.drive({0.2, 0.4}, milliseconds(0));
-  EXPECT_EQ(slow.stop(std::nullopt, milliseconds(730)), zero) << "a slow one stands sooner";
+  EXPECT_EQ(stop_until(slow, 20, 730, std::nullopt), zero) << "a slow one stands sooner";
   slow.drive({0.2, 0.4}, milliseconds(1000));
-  EXPECT_EQ(slow.stop(std::nullopt, milliseconds(1700)).w, 0.4);
+  EXPECT_EQ(stop_until(slow, 1020, 1700, std::nullopt).w, 0.4);
   EXPECT_EQ(slow.stop(std::nullopt, milliseconds(1800)), zero);
+  RollOut creeping;  // it rolls on after a faster command
+  creeping.drive(arc, milliseconds(0));
+  for (int ms = 20; ms <= 400; ms += 20) creeping.drive({0.05, 0.4}, milliseconds(ms));
+  EXPECT_EQ(creeping.stop(std::nullopt, milliseconds(420)).w, 0.4);
+  for (int ms = 440; ms <= 2400; ms += 20) creeping.drive({0.05, 0.4}, milliseconds(ms));
+  EXPECT_EQ(creeping.stop(std::nullopt, milliseconds(2420)), zero);
   RollOut turning;
   turning.drive({0.0, 0.8}, milliseconds(0));
   EXPECT_EQ(turning.stop(std::nullopt, milliseconds(20)), zero) << "on the spot";
   RollOut led;  // by somebody who already keeps the arc
   led.drive(arc, milliseconds(3000));
-  led.drive({0.0, 0.3}, milliseconds(3500));
+  for (int ms = 3020; ms <= 3500; ms += 20) led.drive({0.0, 0.3}, milliseconds(ms));
   EXPECT_EQ(led.stop(std::nullopt, milliseconds(3600)), (geometry::Twist2{0.0, 0.3}));
-  EXPECT_EQ(led.stop(std::nullopt, milliseconds(4000)), zero);
+  EXPECT_EQ(stop_until(led, 3620, 4000, std::nullopt), zero);
   EXPECT_EQ(RollOut().stop(std::nullopt, milliseconds(0)), zero);
+}
+
+TEST(RollOut, KeepsTheArcWhereTheClockJumps) {
+  RollOut roll_out;
+  roll_out.drive({0.8, 0.4}, milliseconds(0));
+  EXPECT_EQ(roll_out.stop(std::nullopt, milliseconds(4000)).w, 0.4);
+  EXPECT_NEAR(roll_out.stop(geometry::Twist2{0.4, 0.2}, milliseconds(4020)).w, 0.2, 1e-12);
+  EXPECT_NEAR(roll_out.stop(geometry::Twist2{0.4, 0.2}, milliseconds(0)).w, 0.2, 1e-12);
 }
 
 TEST(RollOut, TakesSwayForStraightOn) {

@@ -38,6 +38,7 @@ constexpr double kToward = 0.7;      // cosine: who is ahead
 constexpr double kPolite = 6.0;      // [s] that it gives way
 constexpr double kMetAnew = 3.0;     // [s] without anybody, until it does so again
 constexpr double kSamePlace = 0.3;   // [m]
+constexpr double kSparing = 0.12;    // [m] it backs off at most from a touch that it waits at
 constexpr int kMostToAndFro = 3;     // moves that free one corner and touch with the other
 constexpr double kWayOut = 1.0;      // [m] that arcs may take to turn it by kGain
 constexpr double kGain = 0.3;        // [rad]
@@ -363,8 +364,24 @@ Decision DynamicWindow::decide(const grid::Grid<std::uint8_t>& costs, const Pose
     position_reached_ = false;
   }
   Decision decision = position_reached_ ? at_goal(input) : follow(input);
+  if (decision.blocked) spare_front(input, decision);
   note_turn(input, decision.command);
   return decision;
+}
+
+/// Who has to wait with something at a front whisker backs off from it: a balancing base sways by
+/// more than a whisker's length.
+void DynamicWindow::spare_front(const Input& input, Decision& decision) {
+  const kinematics::Whiskers& t = touches_;
+  const bool front = t.front_left || t.front_right;
+  const bool stands = std::abs(input.measured.v) < kSlowEnoughToTurn;
+  if (!front || t.back_left || t.back_right || !stands) return;
+  if (!touched_at_ || distance(*touched_at_, input.pose) > kSamePlace) touched_at_ = input.pose;
+  if (distance(*touched_at_, input.pose) > kSparing) return;
+  const Decision back = recover(input, {-config_.slowest, 0.0});
+  if (back.blocked || back.reason != Reason::kRecovering) return;
+  decision.command = back.command;
+  decision.target = back.target;
 }
 
 Decision DynamicWindow::at_goal(const Input& input) {

@@ -168,6 +168,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Decision halt(const Input& input, Reason reason, double deceleration) const;
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);
+  void spare_front(const Input& input, Decision& decision);
   Decision recover(const Input& input, const geometry::Twist2& wanted);
   int turn_of_tail() const;
   bool must_turn_first(const Input& input, double& heading);
@@ -229,8 +230,9 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   geometry::Pose2 oscillation_pose_;
   Trail trail_;
   kinematics::Whiskers touches_;
-  double careful_turn_ = 0.0;  // [rad/s] the fastest without the whole clearance
-  bool tight_ = false;         // only its own outline fits: the path's line counts for more
+  std::optional<geometry::Pose2> touched_at_;  // in front, where it waits
+  double careful_turn_ = 0.0;                  // [rad/s] the fastest without the whole clearance
+  bool tight_ = false;  // only its own outline fits: the path's line counts for more
 
   double local_goal_arc_ = 0.0;
   bool goal_in_window_ = false;

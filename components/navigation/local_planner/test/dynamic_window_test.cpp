@@ -599,6 +599,31 @@ TEST(BackingOff, LeavesWhatTouchesInFront) {
   EXPECT_FALSE(planner.back_off(wall_at(0.25), {}, {}, {}, 0.05, 0.15).blocked);
 }
 
+// A balancing base sways by more than a whisker's length.
+TEST(BackingOff, WhoHasToWaitSparesWhatTouchesInFront) {
+  const Costs wall = wall_at(0.305 + 0.06);
+  const auto command = [&](DynamicWindow& planner, const Pose2& pose, const Whiskers& touches) {
+    planner.set_touches(touches);
+    const Decision decision = planner.decide(wall, pose, {}, {}, 0.1);
+    EXPECT_TRUE(decision.blocked);
+    EXPECT_EQ(decision.command.w, 0.0);
+    return decision.command.v;
+  };
+  const Whiskers front{.front_left = true}, both{.front_left = true, .back_right = true};
+  DynamicWindow planner = planner_to(2.0);
+  EXPECT_EQ(command(planner, {}, {}), 0.0);
+  EXPECT_EQ(command(planner, {}, both), 0.0) << "something behind, too";
+  EXPECT_LT(command(planner, {}, front), 0.0);
+  EXPECT_LT(command(planner, {-0.1, 0, 0}, front), 0.0);
+  EXPECT_EQ(command(planner, {-0.13, 0, 0}, front), 0.0) << "far enough: it is no wall";
+  Costs narrow = wall;
+  const grid::GridGeometry& g = narrow.geometry();
+  for (int y = 0; y < g.height; ++y) narrow.at({g.cell_at({-0.4, 0.0}).x, y}) = 254;
+  DynamicWindow between = planner_to(2.0);
+  between.set_touches(front);
+  EXPECT_EQ(between.decide(narrow, {}, {}, {}, 0.1).command.v, 0.0) << "a wall behind";
+}
+
 TEST(Rotating, RunsWhileTheOutlineSweepsNothing) {
   DynamicWindow planner = DynamicWindow::make({}).value();
   EXPECT_GT(planner.rotate(empty_window(), {}, {}, {}, 0.05, 0.4).command.w, 0.0);
