@@ -133,10 +133,16 @@ TEST_F(UsherCheck, RefusesWhatIsNoManifest) {
   const test::Folder folder;
   for (const auto& path :
        {folder.path() + "/none.yaml", folder.path(), folder.file("empty.yaml", ""),
-        folder.file("list.yaml", "- a\n"), folder.file("noise.yaml", "\x01\x02\xff\xfe")}) {
+        folder.file("list.yaml", "- a\n"), folder.file("noise.yaml", "\x01\x02\xff\xfe"),
+        folder.file("bad.yaml", "[\n"), folder.file("other.yaml", "version: 3\npresets: []\n")}) {
     test::Process check({kPrograms + "/usher", "check", path});
     EXPECT_EQ(check.wait(), 1) << path;
-    EXPECT_TRUE(check.output().starts_with(path + ": unreadable: ")) << check.output();
+    const std::string text = check.output();
+    EXPECT_TRUE(text.starts_with(path + ": unreadable: ") ||
+                text.starts_with(path + ":1: unreadable: "))
+        << text;
+    EXPECT_EQ(text.find(path, 1), std::string::npos) << "its name once: " << text;
+    EXPECT_EQ(text.find('\n'), text.size() - 1) << "one line: " << text;
   }
 }
 

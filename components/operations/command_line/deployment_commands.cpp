@@ -24,7 +24,7 @@ int check(const std::vector<std::string>& manifests) {
     const auto deployment = load_deployment(path, installation, {}, keys_folder());
     if (!deployment) {
       ++bad;
-      std::cout << path << ": unreadable: " << deployment.error() << "\n";
+      std::cout << to_string(finding_of(Verdict::kUnreadable, deployment.error(), path)) << "\n";
       continue;
     }
     for (const auto& finding : deployment->findings) {

@@ -49,8 +49,35 @@ struct Speaker {
   const ManifestComponent* component;
   bool leads;
   std::vector<std::string> tags;
-  std::string origin;  ///< of the list of languages
+  std::string origin;  ///< of the list of languages; empty = the contract's default
+
+  const std::string& asked_at() const { return origin.empty() ? component->origin : origin; }
 };
+
+/// Once: several components read the same texts.
+void add(std::vector<Finding>& findings, Finding finding) {
+  const bool known = std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
+    return other.origin == finding.origin && other.text == finding.text;
+  });
+  if (!known) findings.push_back(std::move(finding));
+}
+
+/// Reports the languages without a file in the folder of texts, of which nothing else is said then.
+/// Whether there were any.
+bool drop_unknown(Speaker& speaker, const std::filesystem::path& folder,
+                  std::vector<Finding>& findings) {
+  const auto dropped = std::erase_if(speaker.tags, [&](const std::string& tag) {
+    const auto file = folder / (tag + ".yaml");
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored)) return false;
+    add(findings, {Verdict::kWrongValue,
+                   "'" + speaker.component->name + "' speaks the unknown language '" + brief(tag) +
+                       "': there is no " + file.string() + suggestion_beside(folder / tag),
+                   speaker.asked_at()});
+    return true;
+  });
+  return dropped > 0;
+}
 
 }  // namespace
 
@@ -75,14 +102,14 @@ void judge_dialogue(const Contracts& contracts, Deployment& deployment) {
       speaker.tags = {"en"};  // the keys themselves
     } else {
       if (section->name == "meeting") speaker.tags = {file.stem().string()};
+      if (drop_unknown(speaker, file.parent_path(), deployment.findings) && speaker.tags.empty())
+        continue;
       for (const auto& misprint : phrases::PhraseBook::misprints(
                file.parent_path(), speaker.tags, std::string(section->name), section->keys)) {
-        const bool known = std::any_of(
-            deployment.findings.begin(), deployment.findings.end(), [&](const Finding& finding) {
-              return finding.origin == misprint.origin && finding.text == misprint.text;
-            });
-        if (!known)
-          deployment.findings.push_back({Verdict::kWrongValue, misprint.text, misprint.origin});
+        // What is wrong with the folder is wrong with the list of languages.
+        add(deployment.findings,
+            {Verdict::kWrongValue, misprint.text,
+             misprint.origin == file.parent_path() ? speaker.asked_at() : misprint.origin});
       }
     }
     speakers.push_back(std::move(speaker));
@@ -92,13 +119,11 @@ void judge_dialogue(const Contracts& contracts, Deployment& deployment) {
       if (!leader.leads || other.leads) continue;
       for (const auto& tag : leader.tags) {
         if (std::find(other.tags.begin(), other.tags.end(), tag) != other.tags.end()) continue;
-        deployment.findings.push_back({Verdict::kWrongValue,
-                                       "'" + leader.component->name + "' leads the dialogue in '" +
-                                           tag + "', which '" + other.component->name +
-                                           "' does not know",
-                                       !other.origin.empty()    ? other.origin
-                                       : !leader.origin.empty() ? leader.origin
-                                                                : other.component->origin});
+        deployment.findings.push_back(
+            {Verdict::kWrongValue,
+             "'" + leader.component->name + "' leads the dialogue in '" + tag + "', which '" +
+                 other.component->name + "' does not know",
+             !other.origin.empty() || leader.origin.empty() ? other.asked_at() : leader.origin});
       }
     }
   }

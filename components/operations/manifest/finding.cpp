@@ -46,6 +46,17 @@ std::string to_string(Verdict verdict) {
   return "?";
 }
 
+Finding finding_of(Verdict verdict, const std::string& error, const std::string& origin) {
+  if (!error.ends_with(')')) return {verdict, error, origin};
+  std::size_t open = error.size() - 1;  // a path may have parentheses of its own
+  for (int depth = 1; depth > 0 && open > 0;) {
+    --open;
+    depth += error[open] == ')' ? 1 : error[open] == '(' ? -1 : 0;
+  }
+  if (open == 0 || error[open - 1] != ' ') return {verdict, error, origin};
+  return {verdict, error.substr(0, open - 1), error.substr(open + 1, error.size() - open - 2)};
+}
+
 std::string to_string(const Finding& finding) {
   return finding.origin + ": " + to_string(finding.verdict) + ": " + finding.text;
 }

@@ -33,6 +33,9 @@ struct Finding {
   std::string text;
   std::string origin;  ///< file:line
 };
+/// What an error says; the place at its end, "... (deploy/demo.yaml:7)", counts instead of
+/// `origin`.
+Finding finding_of(Verdict verdict, const std::string& error, const std::string& origin);
 /// "deploy/demo.yaml:7: two writers: scan is written by 'a' and by 'b'"
 std::string to_string(const Finding& finding);
 

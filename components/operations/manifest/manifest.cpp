@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "foundation/text/suggestion.hpp"
 #include "runtime/parameters/units.hpp"
 
 namespace usher::operations {
@@ -24,7 +25,7 @@ class Fields {
   Fields(const Tree& tree, std::string what, std::vector<Finding>& findings)
       : tree_(tree), what_(std::move(what)), findings_(findings) {
     if (tree.kind != Tree::Kind::kMap && tree.kind != Tree::Kind::kNull)
-      wrong("must be a map, got " + tree.yaml(), tree);
+      wrong("must be a map, got " + brief(tree.yaml()), tree);
   }
 
   const Tree* take(const std::string& key) {
@@ -36,7 +37,7 @@ class Fields {
     const Tree* node = take(key);
     if (node == nullptr) return;
     if (node->kind != Tree::Kind::kScalar || node->scalar.empty()) {
-      wrong("'" + key + "' must be a word, got " + node->yaml(), *node);
+      wrong("'" + key + "' must be a word, got " + brief(node->yaml()), *node);
     } else {
       value = node->scalar;
     }
@@ -53,7 +54,7 @@ class Fields {
         !(read >= low && read <= high)) {
       wrong("'" + key + "' must be a " + (std::is_integral_v<Number> ? "whole number" : "number") +
                 " in [" + runtime::shortest(static_cast<double>(low)) + ", " +
-                runtime::shortest(static_cast<double>(high)) + "], got " + node->yaml(),
+                runtime::shortest(static_cast<double>(high)) + "], got " + brief(node->yaml()),
             *node);
     } else {
       value = read;
@@ -73,19 +74,19 @@ class Fields {
       }
       names += (names.empty() ? "" : ", ") + std::string(name);
     }
-    wrong("'" + key + "' must be one of " + names + ", got " + node->yaml(), *node);
+    wrong("'" + key + "' must be one of " + names + ", got " + brief(node->yaml()), *node);
   }
 
   void texts(const std::string& key, std::vector<std::string>& values) {
     const Tree* node = take(key);
     if (node == nullptr) return;
     if (node->kind != Tree::Kind::kList)
-      wrong("'" + key + "' must be a list, got " + node->yaml(), *node);
+      wrong("'" + key + "' must be a list, got " + brief(node->yaml()), *node);
     for (const auto& item : node->items) {
       if (item.kind == Tree::Kind::kScalar && !item.scalar.empty()) {
         values.push_back(item.scalar);
       } else {
-        wrong("'" + key + "' must hold words, got " + item.yaml(), item);
+        wrong("'" + key + "' must hold words, got " + brief(item.yaml()), item);
       }
     }
   }
@@ -94,7 +95,7 @@ class Fields {
   const Tree* map(const std::string& key, bool required = false) {
     const Tree* node = take(key);
     if (node != nullptr && node->kind != Tree::Kind::kMap && node->kind != Tree::Kind::kNull) {
-      wrong("'" + key + "' must be a map, got " + node->yaml(), *node);
+      wrong("'" + key + "' must be a map, got " + brief(node->yaml()), *node);
       return nullptr;
     }
     if (required && (node == nullptr || node->entries.empty())) missing(key);
@@ -110,14 +111,27 @@ class Fields {
     findings_.push_back({Verdict::kWrongValue, what_ + ": " + text, node.origin});
   }
 
+  /// The keys that were asked for: "name, robot, site".
+  std::string known() const {
+    std::string names;
+    for (const auto& name : taken_) names += (names.empty() ? "" : ", ") + name;
+    return names;
+  }
+
+  /// Whether any of them is there.
+  bool any() const {
+    return std::any_of(taken_.begin(), taken_.end(),
+                       [&](const auto& key) { return tree_.find(key) != nullptr; });
+  }
+
   /// Reports the keys that nobody took.
   void finish() {
     for (const auto& [key, value] : tree_.entries) {
       if (std::find(taken_.begin(), taken_.end(), key) != taken_.end()) continue;
-      std::string known;
-      for (const auto& name : taken_) known += (known.empty() ? "" : ", ") + name;
+      const std::string meant = suggestion(key, taken_);
       findings_.push_back({Verdict::kUnknownKey,
-                           what_ + ": unknown key '" + key + "', expected one of " + known,
+                           what_ + ": unknown key '" + brief(key) + "'" +
+                               (meant.empty() ? ", expected one of " + known() : meant),
                            value.origin});
     }
   }
@@ -139,8 +153,8 @@ Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::s
   const Tree* extends = tree->find("extends");
   if (extends == nullptr) return tree;
   if (extends->kind != Tree::Kind::kScalar || extends->scalar.empty())
-    return Error{"'extends' must name a file, got " + extends->yaml() + " (" + extends->origin +
-                 ")"};
+    return Error{"'extends' must name a file, got " + brief(extends->yaml()) + " (" +
+                 extends->origin + ")"};
   std::error_code ignored;
   open.push_back(std::filesystem::weakly_canonical(path, ignored).string());
   const auto base_path = (path.parent_path() / extends->scalar).lexically_normal();
@@ -149,8 +163,11 @@ Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::s
     return Error{"manifests extend one another in a circle (" + extends->origin + ")"};
   if (open.size() > kMaxExtends)
     return Error{"more than 8 manifests extend one another (" + extends->origin + ")"};
+  if (!std::filesystem::is_regular_file(base_path, ignored))
+    return Error{"'extends' names " + base_path.string() + ", which is no file" +
+                 suggestion_beside(base_path) + " (" + extends->origin + ")"};
   auto base = read_extended(base_path, std::move(open));
-  if (!base) return Error{base.error() + ", extended by " + extends->origin};
+  if (!base) return base;
   std::erase_if(tree->entries, [](const auto& entry) { return entry.key == "extends"; });
   return overlay(std::move(base).value(), *tree);
 }
@@ -166,7 +183,7 @@ void judge_name(const std::string& name, const std::string& what, const std::str
   if (good) return;
   findings.push_back({Verdict::kWrongValue,
                       what + " name must be 1 to 64 letters, digits, '_' or '-', got " +
-                          Tree::word(name, {}).yaml(),
+                          brief(Tree::word(name, {}).yaml()),
                       origin});
 }
 
@@ -213,10 +230,10 @@ bool is_address(const std::string& text) {
 void judge_address(const std::string& what, const std::string& address, const std::string& origin,
                    std::vector<Finding>& findings) {
   if (is_address(address)) return;
-  findings.push_back(
-      {Verdict::kWrongValue,
-       what + " must be an IPv4 address like 10.0.0.2, got " + Tree::word(address, {}).yaml(),
-       origin});
+  findings.push_back({Verdict::kWrongValue,
+                      what + " must be an IPv4 address like 10.0.0.2, got " +
+                          brief(Tree::word(address, {}).yaml()),
+                      origin});
 }
 
 ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Finding>& findings) {
@@ -332,8 +349,26 @@ std::string to_string(Criticality criticality) {
   return "stop";
 }
 
+std::string suggestion_beside(const std::filesystem::path& path) {
+  if (path.filename().empty()) return {};
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!path.has_extension() || entry.path().extension() == path.extension())
+      known.push_back(entry.path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  std::string meant = suggestion(path.stem().string(), known);
+  if (!meant.empty()) meant.insert(meant.size() - 1, path.extension().string());  // before the '?'
+  return meant;
+}
+
 Result<Manifest> read_manifest(const std::string& path,
                                const std::vector<std::string>& config_directories) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    return Error{"there is no such file" + suggestion_beside(path) + " (" + path + ")"};
   const auto tree = read_extended(path, {});
   if (!tree) return Error{tree.error()};
 
@@ -357,6 +392,9 @@ Result<Manifest> read_manifest(const std::string& path,
   const Tree* fleet = fields.map("fleet");
   const Tree* hosts = fields.map("hosts", true);
   const Tree* components = fields.map("components", true);
+  if (!fields.any())
+    return Error{"no manifest: expected some of the keys " + fields.known() + " (" + tree->origin +
+                 ")"};
   fields.finish();
   if (!robot.empty())
     manifest.robot_file = find_config(config_directories, "robots/" + robot + ".yaml");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -88,6 +89,10 @@ struct Manifest {
 /// a file that cannot be read, bad YAML, a circle.
 Result<Manifest> read_manifest(const std::string& path,
                                const std::vector<std::string>& config_directories);
+
+/// "; did you mean marvin.yaml?" where a name in the folder of `path` is near to its own, with the
+/// same extension unless it has none; else empty.
+std::string suggestion_beside(const std::filesystem::path& path);
 
 std::string to_string(Criticality criticality);
 

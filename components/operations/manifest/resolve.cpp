@@ -62,15 +62,8 @@ void flatten(const Tree& node, const std::string& name, Layer& layer,
 /// What the manifest could have named instead of the file, which is not there: of robots the files
 /// beside it, of sites the folders beside its own.
 std::string others_than(const std::filesystem::path& file, const std::string& prefix) {
-  const bool robots = prefix == "robot";
-  const auto named = robots ? file.stem() : file.parent_path().filename();
-  const auto folder = robots ? file.parent_path() : file.parent_path().parent_path();
-  std::vector<std::string> known;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    known.push_back(robots ? entry.path().stem().string() : entry.path().filename().string());
-  std::sort(known.begin(), known.end());
-  return suggestion(named.string(), known);
+  return suggestion_beside(prefix == "robot" ? file.parent_path() / file.stem()
+                                             : file.parent_path());
 }
 
 /// Reads the robot's or site's file, which the manifest names at `origin`: `components:` holds
@@ -89,14 +82,14 @@ Layer read_layer(const std::string& path, const std::string& prefix, const std::
   }
   const auto tree = read_tree(path);
   if (!tree) {
-    findings.push_back({Verdict::kUnreadable, tree.error(), path + ":1"});
+    findings.push_back(finding_of(Verdict::kUnreadable, tree.error(), path));
     return layer;
   }
   const auto is_map = [&](const Tree& node, const std::string& what) {
     if (node.kind == Tree::Kind::kMap) return true;
     if (node.kind != Tree::Kind::kNull)
       findings.push_back(
-          {Verdict::kWrongValue, what + " must be a map, got " + node.yaml(), node.origin});
+          {Verdict::kWrongValue, what + " must be a map, got " + brief(node.yaml()), node.origin});
     return false;
   };
   layer.read = true;
@@ -153,7 +146,9 @@ class Resolver {
     report_unknown_components(site_);
     for (const auto& o : overrides) {
       if (manifest_.component(o.component) == nullptr) {
-        found(Verdict::kUnknownKey, "no component '" + o.component + "' in the manifest",
+        found(Verdict::kUnknownKey,
+              "no component '" + o.component + "' in the manifest" +
+                  suggestion(o.component, component_names()),
               kCommandLine);
       }
     }
@@ -227,6 +222,12 @@ class Resolver {
     return types;
   }
 
+  std::vector<std::string> component_names() const {
+    std::vector<std::string> names;
+    for (const auto& component : manifest_.components) names.push_back(component.name);
+    return names;
+  }
+
   /// That the robot's or the site's file is missing is a finding already, and one is enough.
   bool lies_in_a_missing_file(const std::string& parameter) const {
     return (parameter.starts_with("robot.") && !robot_.read) ||
@@ -256,8 +257,8 @@ class Resolver {
       if (value) {
         own[o.parameter] = {o.parameter, value->yaml(), kCommandLine};
       } else {
-        found(Verdict::kWrongValue, o.component + "." + o.parameter + ": " + value.error(),
-              kCommandLine);
+        const auto finding = finding_of(Verdict::kWrongValue, value.error(), kCommandLine);
+        found(finding.verdict, o.component + "." + o.parameter + ": " + finding.text, kCommandLine);
       }
     }
     return own;
@@ -283,7 +284,7 @@ class Resolver {
              runtime::ParameterFile& file) {
     const auto given = runtime::interpret(parameter, value);
     if (!given) {
-      found(Verdict::kWrongValue, given.error(), value.origin);
+      out_.findings.push_back(finding_of(Verdict::kWrongValue, given.error(), value.origin));
       return;
     }
     if (parameter.kind == ParameterKind::kFile && !given->text.empty()) {
@@ -306,10 +307,15 @@ class Resolver {
       for (const auto& parameter : contract.parameters) known.insert(parameter.name);
     }
     for (const auto& [name, value] : layer.shared) {
-      if (!known.contains(name)) {
-        found(Verdict::kUnknownKey,
-              "no component asks for '" + name.substr(name.find('.') + 1) + "'", value.origin);
+      if (known.contains(name)) continue;
+      const auto prefix = name.find('.') + 1;  // "robot.", "site."
+      std::vector<std::string> facts;
+      for (const auto& fact : known) {
+        if (fact.starts_with(name.substr(0, prefix))) facts.push_back(fact.substr(prefix));
       }
+      const std::string fact = name.substr(prefix);
+      found(Verdict::kUnknownKey, "no component asks for '" + fact + "'" + suggestion(fact, facts),
+            value.origin);
     }
   }
 
@@ -319,7 +325,9 @@ class Resolver {
       // not exist are not.
       if (manifest_.component(component) == nullptr && !contracts_.contains(component) &&
           !settings.empty()) {
-        found(Verdict::kUnknownKey, "settings for the unknown component '" + component + "'",
+        found(Verdict::kUnknownKey,
+              "settings for the unknown component '" + component + "'" +
+                  suggestion(component, known_types()),
               settings.begin()->second.origin);
       }
     }

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxDepth = 32;
+constexpr std::size_t kBrief = 80;
 
 std::string place(const std::string& where, const YAML::Mark& mark) {
   return where + ":" + std::to_string(std::max(mark.line, 0) + 1);
@@ -92,7 +93,8 @@ class Builder final : public YAML::EventHandler {
     parent.key_read = !parent.key_read;
     if (parent.key_read) {
       if (kind != Tree::Kind::kScalar) refuse("a key must be a word", mark);
-      if (parent.tree->find(scalar) != nullptr) refuse("key '" + scalar + "' is given twice", mark);
+      if (parent.tree->find(scalar) != nullptr)
+        refuse("key '" + brief(scalar) + "' is given twice", mark);
       entries.push_back({scalar, std::move(tree)});
       return nullptr;
     }
@@ -204,8 +206,17 @@ std::string Tree::yaml() const {
   return out.str();
 }
 
+std::string brief(const std::string& text) {
+  std::size_t end = std::min(text.size(), kBrief);
+  while (end > 0 && end < text.size() && (text[end] & 0xC0) == 0x80) --end;  // no half of a letter
+  std::string line = text.substr(0, end);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  return end < text.size() ? line + "..." : line;
+}
+
 Result<Tree> parse_tree(const std::string& text, const std::string& where) {
-  if (text.size() > kMaxBytes) return Error{where + " must be at most 1 MB"};
+  if (text.size() > kMaxBytes) return Error{"it must be at most 1 MB (" + where + ")"};
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -218,19 +229,20 @@ Result<Tree> parse_tree(const std::string& text, const std::string& where) {
   } catch (const Refused& refused) {
     return Error{refused.what()};
   } catch (const YAML::Exception& exception) {
-    return Error{"not valid YAML: " + exception.msg + " (" + place(where, exception.mark) + ")"};
+    return Error{"not valid YAML: " + brief(exception.msg) + " (" + place(where, exception.mark) +
+                 ")"};
   }
 }
 
 Result<Tree> read_tree(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
-    return Error{"cannot read " + path + ": it is a directory"};
+    return Error{"it is a directory (" + path + ")"};
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{"cannot read " + path};
+  if (!file) return Error{"it cannot be read (" + path + ")"};
   std::string text(kMaxBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) return Error{"cannot read " + path};
+  if (file.bad()) return Error{"it cannot be read (" + path + ")"};
   text.resize(static_cast<std::size_t>(file.gcount()));
   return parse_tree(text, path);
 }

@@ -31,8 +31,11 @@ struct Tree::Entry {
   Tree value;
 };
 
-/// Fails with file and line on unreadable files, bad YAML, repeated keys, anchors and aliases,
-/// second documents, more than 32 levels, more than 1 MB.
+/// What was found, as an error shows it: one line of at most 80 characters.
+std::string brief(const std::string& text);
+
+/// Fails, with the place at the error's end as "(FILE:LINE)" or "(FILE)", on unreadable files, bad
+/// YAML, repeated keys, anchors and aliases, second documents, more than 32 levels, more than 1 MB.
 Result<Tree> read_tree(const std::string& path);
 Result<Tree> parse_tree(const std::string& text, const std::string& where);
 

@@ -90,18 +90,29 @@ TEST(Tree, IsAtMostOneMegabyte) {
   const auto path = folder.file("large.yaml", sized((1 << 20) + 1));
   const auto large = read_tree(path);
   ASSERT_FALSE(large);
-  EXPECT_EQ(large.error(), path + " must be at most 1 MB");
+  EXPECT_EQ(large.error(), "it must be at most 1 MB (" + path + ")");
   const auto endless = read_tree("/dev/zero");
   ASSERT_FALSE(endless);
-  EXPECT_EQ(endless.error(), "/dev/zero must be at most 1 MB");
+  EXPECT_EQ(endless.error(), "it must be at most 1 MB (/dev/zero)");
 }
 
 TEST(Tree, SaysWhichFileCannotBeRead) {
   const test::Folder folder;
   EXPECT_EQ(read_tree(folder.path() + "/none.yaml").error(),
-            "cannot read " + folder.path() + "/none.yaml");
-  EXPECT_EQ(read_tree(folder.path()).error(),
-            "cannot read " + folder.path() + ": it is a directory");
+            "it cannot be read (" + folder.path() + "/none.yaml)");
+  EXPECT_EQ(read_tree(folder.path()).error(), "it is a directory (" + folder.path() + ")");
+}
+
+TEST(Tree, ShowsOneShortLineOfWhatItFound) {
+  EXPECT_EQ(brief("lms100"), "lms100");
+  EXPECT_EQ(brief("a\nb\x1b[2Jc"), "a?b?[2Jc");
+  EXPECT_EQ(brief(std::string(80, 'x')), std::string(80, 'x'));
+  EXPECT_EQ(brief(std::string(81, 'x')), std::string(80, 'x') + "...");
+  EXPECT_EQ(brief(std::string(79, 'x') + "\xc3\xa4."), std::string(79, 'x') + "...")
+      << "no half of a letter";
+  const std::string long_key(300, 'k');
+  EXPECT_EQ(refused(long_key + ": 1\n" + long_key + ": 2\n"),
+            "key '" + std::string(80, 'k') + "...' is given twice (x.yaml:2)");
 }
 
 TEST(Tree, WritesOneLineThatReadsTheSameInAnyPlace) {
