@@ -46,13 +46,13 @@ constexpr std::array kSilentTopics = {
     SilentTopic{"drive/command", 0.2, "command"},
     SilentTopic{"drive/grant", 0.2, "grant"},
     SilentTopic{"movement/enable", 0.2, "movement_control"},
-    SilentTopic{"cmd_vel/navigation", 0.35, "movement_control"},
-    SilentTopic{"base/status", 0.25, "base/status"},
+    SilentTopic{"cmd_vel/navigation", 0.3, "movement_control"},
+    SilentTopic{"base/status", 0.2, "base/status"},
     SilentTopic{"heartbeat", 0.2, "silent"},
-    SilentTopic{"whiskers", 0.4, "whiskers"},
-    SilentTopic{"scan/filtered", 0.8, "scan"},
-    SilentTopic{"odom", 0.8, "odom"},
-    SilentTopic{"tf", 1.2, ""},
+    SilentTopic{"whiskers", 0.35, "whiskers"},
+    SilentTopic{"scan/filtered", 0.5, "scan"},
+    SilentTopic{"odom", 0.25, "odom"},
+    SilentTopic{"tf", 0.5, ""},
 };
 
 constexpr std::array kFloods = {"heartbeat"sv, "supervisor/request"sv, "tf"sv, "joy"sv, "people"sv};

@@ -17,7 +17,8 @@ using std::chrono::milliseconds;
 
 constexpr auto kEnableAge = milliseconds(120);
 constexpr auto kCommandAge = milliseconds(250);
-constexpr auto kSensorAge = milliseconds(300);
+constexpr auto kWhiskerAge = milliseconds(300);
+constexpr auto kLeanedAge = milliseconds(300);
 constexpr auto kBaseAge = milliseconds(150);
 constexpr auto kCostsAge = milliseconds(250);
 constexpr auto kOdomAge = milliseconds(150);
@@ -143,6 +144,9 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
   low_battery_ = parameters.number("low_battery_percent", "%", {0, 100}, 15.0,
                                    "Below this the battery is low.");
 
+  scan_silence_ = runtime::from_seconds(parameters.number(
+      "robot.laser.silence", "s", {0.05, 1}, 0.3, "A laser without a scan for so long is lost."));
+
   const auto wake = [this](const auto&, const auto&) { decide(); };
   enable_ = host.input(topics::kMovementEnable,
                        {.max_age = kEnableAge, .on_loss = "commands zero", .one_writer = true});
@@ -161,12 +165,12 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
   navigation_ =
       host.input(topics::kCmdVelNavigation,
                  {.max_age = kCommandAge, .on_loss = "commands zero", .one_writer = true}, wake);
-  whiskers_ = host.input(topics::kWhiskers, {.max_age = kSensorAge,
+  whiskers_ = host.input(topics::kWhiskers, {.max_age = kWhiskerAge,
                                              .on_loss = "commands zero where whiskers are required",
                                              .optional = true});
   base_ = host.input(topics::kBaseStatus, {.max_age = kBaseAge, .on_loss = "commands zero"});
   scan_ = host.input(
-      topics::kScanFiltered, {.max_age = kSensorAge, .on_loss = "creeps"},
+      topics::kScanFiltered, {.max_age = scan_silence_, .on_loss = "creeps"},
       [this](const auto& scan, const auto&) { take_scan(scan); },
       [this] {
         seen_at_.reset();
@@ -212,8 +216,8 @@ std::optional<geometry::Twist2> MovementControlComponent::measured() const {
 /// near they still meet. Whoever does not lean has no excuse.
 bool MovementControlComponent::sees() const {
   const Time now = host_.now().time_since_epoch();
-  const bool leans = leaned_at_ && now - *leaned_at_ < kSensorAge;
-  return seen_at_ && now - *seen_at_ < (leans ? kLeaning : kSensorAge);
+  const bool leans = leaned_at_ && now - *leaned_at_ < kLeanedAge;
+  return seen_at_ && now - *seen_at_ < (leans ? kLeaning : scan_silence_);
 }
 
 /// Where the costs are lethal. They know the map's walls, which are elsewhere when the pose is

@@ -40,6 +40,7 @@ class MovementControlComponent final : public runtime::Component {
   MovementControl core_;
   Surroundings surroundings_;
   LethalCells lethal_;
+  runtime::Duration scan_silence_{};
   std::optional<Time> leaned_at_;
   std::optional<Time> seen_at_;  ///< when a scan last told what is ahead; none: no scan comes
   SituationFilter situation_;
