@@ -51,6 +51,10 @@ std::string role(const std::string& type) {
   return type.ends_with(kSimulated) ? type.substr(0, type.size() - kSimulated.size()) : type;
 }
 
+/// Of a component that must stop the robot [s]: its loss is seen, and the first zero reaches the
+/// base, within 0.2 s. Heartbeats come every 0.02 s.
+constexpr double kLongestCriticalTimeout = 0.15;
+
 struct Writer {
   const ManifestComponent* component;
   const Contract::OutputPort* port;
@@ -185,9 +189,11 @@ class Judge {
             who + "criticality must be stop, not " + to_string(component.criticality), component,
             "criticality");
     }
-    if (component.heartbeat_timeout > 0.5) {
-      found(Verdict::kUnsafePolicy, who + "heartbeat_timeout must be at most 0.5 s", component,
-            "heartbeat_timeout");
+    if (component.heartbeat_timeout > kLongestCriticalTimeout) {
+      char text[96];
+      std::snprintf(text, sizeof(text), "heartbeat_timeout must be at most %.3g s, not %.3g s",
+                    kLongestCriticalTimeout, component.heartbeat_timeout);
+      found(Verdict::kUnsafePolicy, who + text, component, "heartbeat_timeout");
     }
   }
 

@@ -184,9 +184,9 @@ TEST_F(Wiring, FindsDriveChainsWithUnsafePolicies) {
     EXPECT_THAT(with("restart: on_failure"), ElementsAre(HasSubstr("its restart must be always")));
     EXPECT_THAT(with("restart_budget: 0"),
                 ElementsAre(HasSubstr("its restart_budget must be at least 1")));
-    EXPECT_THAT(with("heartbeat_timeout: 0.51"),
-                ElementsAre(HasSubstr("its heartbeat_timeout must be at most 0.5 s")));
-    EXPECT_THAT(with("heartbeat_timeout: 0.5"), IsEmpty());
+    EXPECT_THAT(with("heartbeat_timeout: 0.16"),
+                ElementsAre(HasSubstr("its heartbeat_timeout must be at most 0.15 s, not 0.16 s")));
+    EXPECT_THAT(with("heartbeat_timeout: 0.15"), IsEmpty());
   }
   add(writer("guide", "navigate/goal", 0));
   EXPECT_THAT(findings("  guide: {host: nuc, criticality: notify, restart: never}\n"), IsEmpty())
@@ -220,8 +220,8 @@ TEST_F(Wiring, FindsGuidesWhoseLossWouldNotStopTheRobot) {
                             "' tells where the robot may drive: its criticality must be stop, not "
                             "notify"));
     EXPECT_THAT(with("criticality: degrade"), ElementsAre(HasSubstr("stop, not degrade")));
-    EXPECT_THAT(with("heartbeat_timeout: 0.51"),
-                ElementsAre(HasSubstr("its heartbeat_timeout must be at most 0.5 s")));
+    EXPECT_THAT(with("heartbeat_timeout: 0.16"),
+                ElementsAre(HasSubstr("its heartbeat_timeout must be at most 0.15 s, not 0.16 s")));
     EXPECT_THAT(with("restart: never"), IsEmpty()) << "it stands, and stays standing";
   }
 }

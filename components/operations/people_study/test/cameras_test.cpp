@@ -6,6 +6,7 @@
 #include "operations/people_study/scene.hpp"
 #include "perception/people_detector/shell/component.hpp"
 #include "runtime/testing/test_host.hpp"
+#include "sensing/depth_pipeline/shell/component.hpp"
 #include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -219,6 +220,34 @@ TEST_F(Cameras, OneThatFallsSilentIsSaidAndTheOthersGoOn) {
   EXPECT_TRUE(people().empty());
   look(1000);
   EXPECT_EQ(reason(), "");
+}
+
+/// Through the depth pipeline, which passes no image of a camera that measures nothing: to the
+/// detector an image without obstacles is a free floor.
+TEST_F(Cameras, ABlindOneDoesNotLook) {
+  ASSERT_TRUE(host.world().add(
+      runtime::component_factory<depth_pipeline::DepthPipelineComponent>("depth_pipeline"),
+      runtime::test_parameters(
+          "depth_pipeline",
+          "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: 0.2 m}")
+          .value()));
+  tell_cameras();
+  const auto stream = [&](int ms, const std::vector<std::uint16_t>& depth) {
+    pixels = depth;
+    run(ms, [&] {
+      if (pixels.back() != 0) ++pixels.back();  // noise
+      usher_msgs::msg::BaseStatus status;
+      status.header(wire::header(host.now(), frames::kBaseLink));
+      status.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+      host.publish(topics::kBaseStatus, status);
+      host.publish(topics::kRearDepth, image(kRearFrame));
+    });
+  };
+  const auto count = studio.intrinsics().width * studio.intrinsics().height;
+  stream(1000, std::vector<std::uint16_t>(static_cast<std::size_t>(count), 6000));
+  EXPECT_TRUE(host.last(topics::kPeople)->rear_looks()) << "and sees nobody";
+  stream(1000, std::vector<std::uint16_t>(static_cast<std::size_t>(count), 0));
+  EXPECT_FALSE(host.last(topics::kPeople)->rear_looks());
 }
 
 TEST_F(Cameras, GoOnWithoutTheLaser) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "foundation/result/bounds.hpp"
@@ -59,7 +60,8 @@ Status check(const PipelineConfig& config) {
                   {"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
                    Confidence::kMostFrames},
                   {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
-                  {"least_confidence", config.least_confidence, 0.0, 1.0}});
+                  {"least_confidence", config.least_confidence, 0.0, 1.0},
+                  {"least_measured", config.least_measured, 0.0, 1.0}});
       !status)
     return status;
   if (const auto status = check(config.floor); !status) return status;
@@ -124,6 +126,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   FloorPrediction& floor = view.refitted ? refitted_ : predicted_;
   floor.predict(view.pose);
   sort_pixels(image, floor);
+  view.measured = measured_share();
 
   shift_ = view.pose.forward - config_.origin;
   clear_bearings();
@@ -177,6 +180,12 @@ void DepthPipeline::sort_pixels(const DepthImage& image, const FloorPrediction& 
     default:
       return kernels::process_portable(frame);
   }
+}
+
+double DepthPipeline::measured_share() const {
+  const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
+  const auto sum = std::accumulate(valid, valid + intrinsics_.width, std::uint64_t{0});
+  return static_cast<double>(sum) / static_cast<double>(processed_.size());
 }
 
 void DepthPipeline::clear_bearings() {

@@ -39,6 +39,7 @@ struct PipelineConfig {
   int confidence_frames = 3;          ///< {1..8} of the rolling mean
   double confidence_threshold = 0.5;  ///< [m] {0.01..10} deviation with confidence 0
   double least_confidence = 0.2;      ///< {0..1} ranges with less become NaN
+  double least_measured = 0.02;       ///< {0..1} a smaller share of pixels is a blind camera's
   bool refit = false;  ///< fit the floor in each frame; then floor_margin may be small
   FloorFitConfig fit;
   FloorModel refitted{.floor_margin = 0.003, .angle_margin = 0.0006, .noise_grazing = 1e-4};
@@ -68,7 +69,8 @@ struct DepthView {
   const DepthScan* low = nullptr;            ///< only what is lower than low_height, and drops
   CameraPose pose;                           ///< as used: refitted when `refitted`
   bool refitted = false;
-  int drops = 0;  ///< columns that end at missing floor
+  int drops = 0;          ///< columns that end at missing floor
+  double measured = 0.0;  ///< {0..1} share of the pixels that measured something
 };
 
 /// From depth images to scans and images of obstacles (thesis 4.4.1, equations 4.8 to 4.23).
@@ -94,6 +96,7 @@ class DepthPipeline {
   DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig& config);
 
   void sort_pixels(const DepthImage& image, const FloorPrediction& floor);
+  double measured_share() const;
   void clear_bearings();
   void forget_blind_falls(const FloorPrediction& floor);
   int mark_drops(double grazing_from);

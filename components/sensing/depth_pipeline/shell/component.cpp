@@ -41,6 +41,8 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       without_pitch_(host.health().counter("images: without pitch")),
       without_tilt_(host.health().counter("images: without tilt")),
       while_turning_(host.health().counter("images: camera turning")),
+      blind_(host.health().counter("images: blind")),
+      frozen_(host.health().counter("images: frozen")),
       refitted_(host.health().counter("images: floor fitted")),
       drops_(host.health().counter("images: with missing floor")) {
   auto& p = host.parameters();
@@ -141,6 +143,9 @@ void DepthPipelineComponent::take_image(Camera& camera) {
   }
   camera.waiting.reset();
   auto image = camera.images.share();
+  // Noise changes some pixel of every image; the first that differs ends the comparison.
+  camera.repeated = camera.newest && camera.newest->data() == image->data();
+  camera.newest = image;
   if (!process(camera, *image)) camera.waiting = std::move(image);
 }
 
@@ -207,9 +212,17 @@ bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
     refuse(camera, view.error());
     return true;
   }
-  publish(camera, *view, stamp);
   camera.refused.clear();
-  camera.due = host_.now();
+  if (view->measured < config_.least_measured) {
+    withhold(camera, blind_, "it measures nothing");
+    return true;
+  }
+  if (camera.repeated && host_.now() - *camera.due > kImageAge) {
+    withhold(camera, frozen_, "its image is frozen");
+    return true;
+  }
+  publish(camera, *view, stamp);
+  if (!camera.repeated) camera.due = host_.now();
   camera.delivered = true;
   report();
   return true;

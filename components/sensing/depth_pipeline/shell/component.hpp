@@ -29,12 +29,15 @@ class DepthPipelineComponent final : public runtime::Component {
     bool structured_light = false;  ///< else time of flight
     std::optional<DepthPipeline> pipeline;
     std::shared_ptr<const Image> waiting;  ///< for the pitch of its time
+    std::shared_ptr<const Image> newest;
+    bool repeated = false;  ///< the newest shows, byte for byte, what the one before did
     std::vector<std::uint16_t> depth;
     Image processed;
-    std::string refused;               ///< why the newest image was; empty: it was not
-    std::string withheld;              ///< why the newest image that gave no scan gave none
-    std::optional<runtime::Time> due;  ///< since then a scan is: the last one, or the first image
-    bool delivered = false;            ///< a scan, ever
+    std::string refused;   ///< why the newest image was; empty: it was not
+    std::string withheld;  ///< why the newest image that gave no scan gave none
+    /// Since then a scan is: the last one of an image that shows anything new, or the first image.
+    std::optional<runtime::Time> due;
+    bool delivered = false;  ///< a scan, ever
     runtime::Input<Image> images;
     runtime::Input<sensor_msgs::msg::CameraInfo> info;
     runtime::Output<Image> output;
@@ -67,6 +70,8 @@ class DepthPipelineComponent final : public runtime::Component {
   std::uint64_t& without_pitch_;
   std::uint64_t& without_tilt_;
   std::uint64_t& while_turning_;
+  std::uint64_t& blind_;
+  std::uint64_t& frozen_;
   std::uint64_t& refitted_;
   std::uint64_t& drops_;
   Camera kinect_, rear_;

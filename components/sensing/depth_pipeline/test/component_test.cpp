@@ -71,11 +71,14 @@ class DepthPipelineComponentTest : public testing::Test {
     wire::to_message(host_.now(), "kinect_depth_optical", view_of(scene_.camera, depth), image);
     host_.publish(topics::kKinectDepth, image);
   }
-  /// Both cameras at their rates, each with one image again and again.
+  /// Both cameras at their rates, each with one image again and again, but for the noise of a pixel
+  /// while they are not frozen; all of it 0 where they are blind.
   void stream(int milliseconds_count, bool rear = false) {
     sensor_msgs::msg::Image image;
-    const auto depth = scene_.draw(camera_pose({}, -0.0873, 0.0));
+    auto depth = scene_.draw(camera_pose({}, -0.0873, 0.0));
+    if (blind_) std::fill(depth.begin(), depth.end(), std::uint16_t{0});
     for (int i = 0; i < milliseconds_count; i += 30) {
+      if (!frozen_ && !blind_) ++depth.back();
       wire::to_message(host_.now() + images_ahead_, "kinect_depth_optical",
                        view_of(scene_.camera, depth), image);
       host_.publish(topics::kKinectDepth, image);
@@ -92,7 +95,7 @@ class DepthPipelineComponentTest : public testing::Test {
   TestHost host_;
   SyntheticScene scene_;
   double servo_ = -0.0873;
-  bool with_pitch_ = true, with_tilt_ = true, swinging_ = false;
+  bool with_pitch_ = true, with_tilt_ = true, swinging_ = false, blind_ = false, frozen_ = false;
   milliseconds images_ahead_{};
   std::string rear_encoding_ = "16UC1";
   int elapsed_ = 0;  // [ms]
@@ -250,6 +253,51 @@ TEST_F(DepthPipelineComponentTest, SaysThatImagesAndPitchDoNotMeet) {
   EXPECT_THAT(reason(), HasSubstr("Kinect: image without pitch: the "));
   images_ahead_ = {};
   stream(300);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatACameraMeasuresNothing) {
+  tell_camera();
+  host_.publish(topics::kRearInfo,
+                wire::to_message(host_.now(), "rear_camera_depth_optical", scene_.camera));
+  live(100);
+  stream(300, true);
+  EXPECT_EQ(reason(), "");
+  blind_ = true;
+  host_.clear();
+  stream(600, true);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_TRUE(host_.written(topics::kRearScan).empty());
+  EXPECT_EQ(reason(), "Kinect: it measures nothing");
+  EXPECT_GE(host_.counter("images: blind"), 25U);
+  blind_ = false;
+  stream(300, true);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatACameraIsBlindFromItsFirstImageOn) {
+  tell_camera();
+  live(100);
+  blind_ = true;
+  stream(600);
+  EXPECT_EQ(reason(), "Kinect: it measures nothing");
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatACameraIsFrozen) {
+  tell_camera();
+  live(100);
+  stream(300);
+  frozen_ = true;
+  stream(300);
+  EXPECT_EQ(reason(), "") << "a driver may repeat an image";
+  host_.clear();
+  stream(600);
+  EXPECT_LE(left(), 1U);
+  EXPECT_EQ(reason(), "Kinect: its image is frozen");
+  EXPECT_GE(host_.counter("images: frozen"), 15U);
+  frozen_ = false;
+  stream(300);
+  EXPECT_GE(left(), 8U);
   EXPECT_EQ(reason(), "");
 }
 
