@@ -12,6 +12,8 @@
 #include <cassert>
 #include <cerrno>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -77,5 +79,19 @@ class Process {
   Folder folder_;
   pid_t pid_ = -1;
 };
+
+/// The guard of a port that a driver's process has started and that lives; 0 when there is none.
+inline pid_t guard_of(pid_t driver) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+    std::ifstream file(entry.path() / "stat");
+    pid_t pid = 0, parent = 0;
+    std::string name, state;
+    if (file >> pid >> name >> state >> parent && parent == driver && name == "(usher-guard)" &&
+        state != "Z")
+      return pid;
+  }
+  return 0;
+}
 
 }  // namespace usher::test

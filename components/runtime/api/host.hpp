@@ -60,8 +60,9 @@ class Stream {
 };
 /// A guard process beside the driver: it owns the port, so that the device hears something safe
 /// though the driver dies or hangs. It sends `safe` at once when the driver ends, and thrice in a
-/// `silence` while the driver has written nothing for that long; never before its first write.
-/// A guard that ends or hangs is replaced within a second; the stream is closed meanwhile.
+/// `silence` while the driver has written nothing for that long; before the driver's first write
+/// only twice, as its first words to the port. A guard that ends is replaced at once, one that
+/// shows no life for 0.15 s is killed first; the stream is closed meanwhile.
 struct StreamGuard {
   Bytes safe;  ///< one whole message to the device, for example "velocity zero"; empty = no guard
   Duration silence{};  ///< {>= 1 ms}

@@ -32,12 +32,17 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kReopenAfter = std::chrono::seconds(1);
 /// After a guard or the one who called has gone: the next one is there at once.
 constexpr auto kReopenSoon = std::chrono::milliseconds(50);
+/// After a guard that served for kServed: the base drives on until the next one's first word.
+constexpr auto kReplaceGuard = std::chrono::milliseconds(5);
+constexpr auto kServed = std::chrono::seconds(1);
 constexpr auto kConnectTimeout = std::chrono::seconds(3);
 constexpr auto kGuardStart = std::chrono::seconds(1);
 /// A guard shows life five times in this; a longer silence, or a longer farewell, is a hang.
-constexpr auto kGuardSilence = std::chrono::milliseconds(500);
-/// Who looks so late was held up as well, and what the guard sent may not be there yet.
-constexpr auto kLate = std::chrono::milliseconds(250);
+constexpr auto kGuardSilence = std::chrono::milliseconds(150);
+/// Who looks so late was held up as well, and what the guard sent may not be there yet: it gets
+/// kGrace more.
+constexpr auto kLate = std::chrono::milliseconds(30);
+constexpr auto kGrace = kGuardSilence / 2;
 constexpr auto kOfferAgain = std::chrono::milliseconds(10);
 constexpr auto kLineAgain = std::chrono::milliseconds(2);
 
@@ -177,7 +182,7 @@ class Connection final : public Stream {
       } else if (state_ == State::kOpen && guard_hangs(events, now)) {
         outcome.closed = uri_ + ": its guard hung and was killed";
         ::kill(guard_pid_, SIGKILL);
-        close_until(now + kReopenSoon);
+        close_until(now + replacement_delay(now));
       } else if (state_ == State::kOpen && ((events & POLLOUT) != 0 || line_full_)) {
         drain(now, outcome);
       }
@@ -239,10 +244,15 @@ class Connection final : public Stream {
   /// Nothing came from it for too long.
   bool guard_hangs(short events, Clock::time_point now) {
     if (!guarded() || now < guard_silent_at_) return false;
-    if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) return false;
+    // What it sends is not read while the component refuses what came before.
+    if ((events & (POLLIN | POLLHUP | POLLERR)) != 0 || !held_.empty()) return false;
     if (now < guard_silent_at_ + kLate) return true;
-    guard_silent_at_ = now + kGuardSilence;
+    guard_silent_at_ = now + kGrace;
     return false;
+  }
+  /// One that never serves for long is not started hundreds of times a second.
+  Clock::duration replacement_delay(Clock::time_point now) const {
+    return guarded() && now - opened_at_ >= kServed ? kReplaceGuard : kReopenSoon;
   }
   /// The former guard has ended, and with it its hold of the port; one that does not end is killed.
   bool former_guard_gone(Clock::time_point now) {
@@ -270,7 +280,7 @@ class Connection final : public Stream {
     const bool listens = address_->kind == StreamAddress::Kind::kListen;
     int& descriptor = listens && !guarded() ? listener_ : descriptor_;
     if (guarded() && !former_guard_gone(now)) {
-      due_ = now + kReopenSoon;
+      due_ = now + kReplaceGuard;
       return;
     }
     if (descriptor < 0)
@@ -311,6 +321,7 @@ class Connection final : public Stream {
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (count > 0 && answer[0] == '\0') {
       state_ = State::kOpen;
+      opened_at_ = now;
       guard_silent_at_ = now + kGuardSilence;
       outcome.opened = true;
       return;
@@ -352,7 +363,7 @@ class Connection final : public Stream {
         {
           const std::scoped_lock lock(mutex_);
           const bool at_once = guarded() || address_->kind == StreamAddress::Kind::kListen;
-          close_until(now + (at_once ? kReopenSoon : kReopenAfter));
+          close_until(now + (at_once ? replacement_delay(now) : kReopenAfter));
         }
         sink_.closed(text);
         return;
@@ -380,6 +391,7 @@ class Connection final : public Stream {
   int listener_ = -1;                    // I/O thread only
   pid_t guard_pid_ = 0;                  // I/O thread only
   Clock::time_point guard_silent_at_{};  // I/O thread only: from then on it hangs
+  Clock::time_point opened_at_{};        // I/O thread only: by the present guard
   Outbox outbox_;
   Bytes message_;  // of the guard, reused
   bool line_full_ = false;

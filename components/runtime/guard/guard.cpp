@@ -10,6 +10,16 @@ Guard::Guard(std::vector<std::uint8_t> safe, Time silence)
   assert(!safe_.empty() && silence > Time::zero());
 }
 
+void Guard::greet() {
+  assert(!heard_at_ && outbox_.empty());
+  // No driver's velocity takes their place.
+  for (int i = 0; i < kGreetings; ++i) {
+    const bool taken = outbox_.push(Outbox::Kind::kEach, safe_);
+    assert(taken);
+    static_cast<void>(taken);
+  }
+}
+
 bool Guard::heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now) {
   heard_at_ = now;
   overruling_ = false;

@@ -14,9 +14,10 @@ namespace usher::runtime {
 /// safe bytes instead as soon as the driver is gone or has written nothing for `silence`.
 ///
 /// A driver that was silent is passed on again from its next write on: what it writes then was
-/// decided then. Nothing is sent before the driver's first write: the device may not be ready for
-/// it. Bytes that wait because the port is slow are dropped for the safe ones, but never a part of
-/// what is already on its way.
+/// decided then. The first words to a port that was just opened are safe ones, since this guard may
+/// take the place of one that ended while the device moved; after them nothing is sent before the
+/// driver's first write: the device may not be ready for it. Bytes that wait because the port is
+/// slow are dropped for the safe ones, but never a part of what is already on its way.
 ///
 /// Fixed memory, no allocation after the constructor, no clock of its own.
 class Guard {
@@ -26,8 +27,14 @@ class Guard {
   static constexpr auto kFarewellEvery = std::chrono::milliseconds(10);
   static constexpr int kFarewells = 3;  ///< safe messages to the port after the driver's end
 
+  /// Safe messages to a port that was just opened: the device may take the first one for the rest
+  /// of what an earlier guard left half sent.
+  static constexpr int kGreetings = 2;
+
   Guard(std::vector<std::uint8_t> safe, Time silence);
 
+  /// The port was opened, and nothing was heard yet.
+  void greet();
   /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
   /// messages, wait for it.
   bool heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now);

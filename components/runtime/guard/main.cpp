@@ -1,11 +1,11 @@
 // The guard process: usher-guard DESCRIPTOR SAFE_HEX SILENCE_MS ADDRESS
 //
-// Started by a driver's host with one end of a socket pair of whole messages. It opens the port and
-// answers with one message: a zero octet, or a one octet and why it could not. From then on it
-// passes messages both ways (guard.hpp). Each begins with one octet, the driver's with its kind
-// (outbox.hpp), its own with zero; nothing but that is a sign of life, and its own comes ten times
-// a second. It ends when the driver's end of the pair is closed, when the port fails, and by no
-// signal that can be ignored; a driver that sees no life kills it.
+// Started by a driver's host with one end of a socket pair of whole messages. It opens the port,
+// writes the safe bytes and answers with one message: a zero octet, or a one octet and why it could
+// not. From then on it passes messages both ways (guard.hpp). Each begins with one octet, the
+// driver's with its kind (outbox.hpp), its own with zero; nothing but that is a sign of life, and
+// its own comes every 30 ms. It ends when the driver's end of the pair is closed, when the port
+// fails, and by no signal that can be ignored; a driver that sees no life kills it.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -33,9 +33,11 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = Guard::Time;
 constexpr int kConnectMs = 3000;
 constexpr auto kLineAgain = std::chrono::milliseconds(2);
-constexpr auto kLifeEvery = std::chrono::milliseconds(100);
-/// A port that takes nothing must not hold the guard, and with it the port, for ever.
-constexpr auto kLongestFarewell = std::chrono::milliseconds(200);
+/// Five in the silence after which the driver takes its guard for hung (dds/streams.cpp).
+constexpr auto kLifeEvery = std::chrono::milliseconds(30);
+/// A port that takes nothing must not hold the guard, and with it the port, for ever; shorter than
+/// that silence too.
+constexpr auto kLongestFarewell = std::chrono::milliseconds(100);
 
 Time now() {
   timespec time{};
@@ -78,6 +80,12 @@ class Process {
  public:
   Process(int driver, int port, Guard guard)
       : driver_(driver), port_(port), guard_(std::move(guard)) {}
+
+  /// The safe bytes are on their way before the driver knows of the port. False when it failed.
+  bool greet() {
+    guard_.greet();
+    return to_port();
+  }
 
   /// Exit code.
   int run() {
@@ -169,7 +177,9 @@ class Process {
   }
 
   static bool complain(const char* why) {
+    const int error = errno;
     std::fprintf(stderr, "guard: the port failed: %s\n", why);
+    errno = error;
     return false;
   }
 
@@ -182,6 +192,13 @@ class Process {
   std::array<pollfd, 2> entries_{};
   std::array<std::uint8_t, Outbox::kMostBytes + 1> buffer_{};
 };
+
+/// Tells the driver that it has the port, or why not; the exit code.
+int answer(int driver, const std::string& failure) {
+  const std::string message = (failure.empty() ? '\0' : '\1') + failure;
+  const bool heard = ::send(driver, message.data(), message.size(), MSG_NOSIGNAL) > 0;
+  return heard && failure.empty() ? 0 : 1;
+}
 
 int guard_main(int argc, char** argv) {
   int driver = -1;
@@ -196,13 +213,13 @@ int guard_main(int argc, char** argv) {
     ::signal(number, SIG_IGN);
   ::prctl(PR_SET_TIMERSLACK, 1000UL);
   const auto port = open_for_good(argv[4]);
-  std::string answer(1, port ? '\0' : '\1');
-  if (!port) answer += port.error();
-  if (::send(driver, answer.data(), answer.size(), MSG_NOSIGNAL) < 0 || !port) return 1;
+  if (!port) return answer(driver, port.error());
   ::fcntl(*port, F_SETFL, O_NONBLOCK);
   static Process process(driver, *port,
                          Guard(std::move(safe), std::chrono::milliseconds(silence_ms)));
-  return process.run();
+  if (!process.greet())
+    return answer(driver, std::string("writing to ") + argv[4] + ": " + std::strerror(errno));
+  return answer(driver, "") == 0 ? process.run() : 1;
 }
 
 }  // namespace

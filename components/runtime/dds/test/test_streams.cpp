@@ -9,12 +9,11 @@
 #include <unistd.h>
 
 #include <condition_variable>
-#include <filesystem>
-#include <fstream>
 #include <mutex>
 
 #include "runtime/dds/streams.hpp"
 #include "runtime/guard/port.hpp"
+#include "support/process.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -89,6 +88,12 @@ class Server {
   void drop() {
     if (connection_ >= 0) ::close(connection_);
     connection_ = -1;
+  }
+  /// Takes the next one who calls, and a new guard's first words.
+  void accept_guard() {
+    drop();
+    accept();
+    EXPECT_EQ(read(12), "[stop][stop]");
   }
   /// It says nothing and stays.
   bool stays(std::chrono::milliseconds so_long) const {
@@ -360,7 +365,7 @@ TEST(GuardedStreams, PassBytesBothWays) {
   Log log;
   Streams streams;
   Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(5), "drive");
@@ -381,7 +386,7 @@ TEST(GuardedStreams, AreSafeWhenTheDriverIsGone) {
   {
     Streams streams;
     Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-    server.accept();
+    server.accept_guard();
     ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
     EXPECT_TRUE(stream.write(bytes("drive")));
     EXPECT_EQ(server.read(5), "drive");
@@ -394,7 +399,7 @@ TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
   Log log;
   Streams streams;
   Stream& stream = streams.open(server.uri(), guarded(log, 50ms));
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(29), "drive[stop][stop][stop][stop]");
@@ -404,37 +409,38 @@ TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
   EXPECT_EQ(heard.find_first_not_of("[stop]drive"), std::string::npos) << heard;
 }
 
-/// The guard that this process started and that lives; 0 when there is none.
-pid_t guard_process() {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
-    std::ifstream file(entry.path() / "stat");
-    pid_t pid = 0, parent = 0;
-    std::string name, state;
-    if (file >> pid >> name >> state >> parent && parent == ::getpid() && name == "(usher-guard)" &&
-        state != "Z")
-      return pid;
-  }
-  return 0;
-}
-
 TEST(GuardedStreams, ReplaceAGuardThatHangs) {
   Server server;
   Log log;
   Streams streams;
   Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
-  const pid_t guard = guard_process();
+  const pid_t guard = test::guard_of(::getpid());
   ASSERT_GT(guard, 0);
   ::kill(guard, SIGSTOP);
   ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
   EXPECT_THAT(log.closed[0], HasSubstr("its guard hung and was killed"));
-  EXPECT_FALSE(stream.write(bytes("x")));
-  server.drop();
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 2; }));
   EXPECT_EQ(::kill(guard, 0), -1) << "one owner of the port";
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  EXPECT_EQ(server.read(5), "drive");
+}
+
+TEST(GuardedStreams, ReplaceAGuardThatIsKilled) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
+  server.accept_guard();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  const pid_t guard = test::guard_of(::getpid());
+  ASSERT_GT(guard, 0);
+  const auto opened = log.opened;  // on a busy machine the first guard may have been replaced
+  ::kill(guard, SIGKILL);
+  server.accept_guard();
+  ASSERT_TRUE(log.wait([&] { return log.opened > opened; }));
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(5), "drive");
 }
@@ -444,15 +450,14 @@ TEST(GuardedStreams, EndAGuardThatHangsWhenTheyReopen) {
   Log log;
   Streams streams;
   Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
-  const pid_t guard = guard_process();
+  const pid_t guard = test::guard_of(::getpid());
   ASSERT_GT(guard, 0);
   const auto opened = log.opened;  // on a busy machine the first guard may have been replaced
   ::kill(guard, SIGSTOP);
   stream.reopen({});
-  server.drop();
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened > opened; }));
   EXPECT_TRUE(log.wait([&] { return ::kill(guard, 0) == -1; })) << "one owner of the port";
 }
@@ -463,7 +468,7 @@ TEST(GuardedStreams, KeepAGuardWhenNobodySaysAnythingOrTheDriverDoesNotRead) {
   log.refusals = 100;
   Streams streams;
   Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept();
+  server.accept_guard();
   EXPECT_TRUE(server.stays(1200ms));
   server.send("moving");
   ASSERT_TRUE(log.wait([&] { return log.received == "moving"; }));
@@ -488,11 +493,11 @@ TEST(GuardedStreams, OpenAnewAfterThePortHasFailed) {
   Log log;
   Streams streams;
   streams.open(server.uri(), guarded(log, 50ms));
-  server.accept();
+  server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   server.drop();
   ASSERT_TRUE(log.wait([&] { return log.closed.size() == 1; }));
-  server.accept();
+  server.accept_guard();
   EXPECT_TRUE(log.wait([&] { return log.opened == 2; }));
 }
 

@@ -44,13 +44,28 @@ TEST(Guard, PassesWhatTheDriverWrites) {
   EXPECT_FALSE(bench.guard.overruling());
 }
 
-TEST(Guard, SaysNothingBeforeTheDriverDoes) {
+TEST(Guard, SaysNothingMoreBeforeTheDriverDoes) {
   Bench bench;
   EXPECT_FALSE(bench.guard.due());
   EXPECT_EQ(bench.tick(100000), "");
   bench.guard.gone(at(100001));
   EXPECT_TRUE(bench.guard.finished());
   EXPECT_EQ(bench.take(), "");
+}
+
+TEST(Guard, GreetsThePortWithWhatIsSafe) {
+  Bench bench;
+  bench.guard.greet();
+  EXPECT_FALSE(bench.guard.due());
+  EXPECT_EQ(bench.take(3), "0.0") << "twice";
+  bench.guard.heard(Outbox::Kind::kLatest, std::vector<std::uint8_t>{'g', 'o'}, at(0));
+  EXPECT_EQ(bench.take(), ".go") << "no velocity takes their place";
+  Bench brief;
+  brief.guard.greet();
+  brief.guard.gone(at(0));
+  EXPECT_FALSE(brief.guard.finished());
+  EXPECT_EQ(brief.take(), "0.0.");
+  EXPECT_TRUE(brief.guard.finished());
 }
 
 TEST(Guard, OverrulesASilentDriverUntilItWrites) {
