@@ -57,12 +57,61 @@ TEST(Joystick, ForgetsAPadThatIsGone) {
   EXPECT_TRUE(pad.received(Bytes{0, 0, 0, 0, 1, 0, 0x01, 0})) << "the half record is gone too";
 }
 
+Bytes axis(std::uint8_t number, std::int16_t value) {
+  const auto raw = static_cast<std::uint16_t>(value);
+  return {
+      0, 0,     0, 0, static_cast<std::uint8_t>(raw & 0xFF), static_cast<std::uint8_t>(raw >> 8),
+      2, number};
+}
+Bytes button(std::uint8_t number, bool down) {
+  return {0, 0, 0, 0, static_cast<std::uint8_t>(down), 0, 1, number};
+}
+
+TEST(Joystick, AHeldButtonThatIsLetGoCountsAgainWhenItIsPressedAnew) {
+  Joystick pad;
+  pad.received(axis(1, 0));
+  pad.received(axis(1, -16000));
+  pad.received(button(0, true));
+  EXPECT_TRUE(pad.let_go());
+  EXPECT_THAT(pad.buttons(), ElementsAre(0));
+  EXPECT_FALSE(pad.let_go()) << "none is held";
+  EXPECT_TRUE(pad.received(axis(1, -20000)));
+  EXPECT_FALSE(pad.received(button(0, true))) << "described again, not pressed anew";
+  EXPECT_THAT(pad.buttons(), ElementsAre(0));
+  EXPECT_FALSE(pad.received(button(0, false)));
+  EXPECT_TRUE(pad.received(button(0, true)));
+  EXPECT_THAT(pad.buttons(), ElementsAre(1));
+  EXPECT_EQ(pad.records(), 7U);
+}
+
+TEST(Joystick, LetsGoOnlyWhileAStickIsOutOfItsMiddle) {
+  Joystick pad;
+  pad.received(axis(1, 0));
+  pad.received(axis(2, -32767));  // a trigger that rests at its end
+  pad.received(button(4, true));
+  EXPECT_FALSE(pad.let_go());
+  pad.received(axis(1, 3000));
+  EXPECT_FALSE(pad.let_go()) << "hardly moved";
+  pad.received(axis(1, 32767));
+  EXPECT_TRUE(pad.let_go());
+  pad.received(button(4, false));
+  pad.received(button(4, true));
+  pad.received(axis(1, 0));
+  EXPECT_FALSE(pad.let_go());
+  pad.received(axis(2, 0));
+  pad.received(axis(2, -32767));
+  EXPECT_TRUE(pad.let_go()) << "a trigger that moves may be a stick that drives";
+  pad.reset();
+  EXPECT_FALSE(pad.let_go());
+}
+
 TEST(Joystick, StaysWithinItsBoundsOnNoise) {
   Random random(1);
   Joystick pad;
   for (int i = 0; i < 100000; ++i) {
     const auto byte = static_cast<std::uint8_t>(random.below(256));
     pad.received({&byte, 1});
+    if (i % 1000 == 0) pad.let_go();
   }
   EXPECT_LE(pad.axes().size(), Joystick::kMostAxes);
   EXPECT_LE(pad.buttons().size(), Joystick::kMostButtons);
