@@ -24,7 +24,7 @@ P3dxComponent::P3dxComponent(runtime::Host& host)
                      .emergency_stop = [this] { line_.link().emergency_stop(); },
                      .reset = [this] { line_.link().reset(); }}) {
   const double silence =
-      host.parameters().number("guard_silence", "s", {0.1, 0.5}, 0.15,
+      host.parameters().number("guard_silence", "s", {0.1, 0.15}, 0.15,
                                "The guard commands zero when the driver is silent for so long.");
   line_.open({.address = "serial:///dev/ttyUSB0?baud=9600",
               .text = "The base's line.",
