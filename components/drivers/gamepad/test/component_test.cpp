@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "drivers/gamepad/shell/component.hpp"
 #include "runtime/testing/test_host.hpp"
 
