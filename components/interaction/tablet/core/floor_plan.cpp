@@ -26,6 +26,13 @@ double distance_to(const geometry::Point2& p, const geometry::Point2& a,
 
 }  // namespace
 
+Ground FloorPlan::ground(int x, int y) const {
+  const std::uint32_t shown = pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                     static_cast<std::size_t>(x)];
+  if (shown == pixel(kPalette.floor)) return Ground::kFloor;
+  return shown == pixel(kPalette.wall) ? Ground::kWall : Ground::kUnknown;
+}
+
 FloorPlan draw_floor_plan(const grid::OccupancyGrid& map, int margin) {
   int left = map.width(), right = -1, bottom = map.height(), top = -1;
   for (int y = 0; y < map.height(); ++y) {

@@ -8,6 +8,8 @@
 
 namespace usher::tablet {
 
+enum class Ground : std::uint8_t { kUnknown, kFloor, kWall };
+
 /// The building as a picture, north up, cut to what is known of it.
 struct FloorPlan {
   int width = 0, height = 0;          ///< [px]; one pixel is one cell
@@ -16,6 +18,8 @@ struct FloorPlan {
   geometry::Point2 upper_left{0, 0};  ///< [m] in map
 
   bool empty() const { return pixels.empty(); }
+  /// What a pixel of the picture shows.
+  Ground ground(int x, int y) const;
   /// From map to pixels of the picture, which may be scaled: `scale` is its pixels for one of ours.
   geometry::Point2 to_pixels(const geometry::Point2& point_in_map, double scale) const {
     return {(point_in_map.x() - upper_left.x()) / resolution * scale,

@@ -112,7 +112,7 @@ void ScreenModel::show_places(const std::vector<Place>& places) {
 
 void ScreenModel::show_route(const std::vector<geometry::Point2>& route) {
   route_ = route;
-  emit mapChanged();
+  emit routeChanged();
 }
 
 }  // namespace usher::tablet

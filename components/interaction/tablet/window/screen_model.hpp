@@ -168,6 +168,8 @@ class ScreenModel : public QObject {
   const QImage& building() const { return building_; }
   const std::vector<Place>& places() const { return places_; }
   const std::vector<geometry::Point2>& route() const { return route_; }
+  /// Whether this is the place that the screen is about.
+  bool marks(const Place& place) const { return place.name == view_.place; }
 
   std::function<void(const std::string&)> on_press;
   std::function<void(const std::string&)> on_typed;
@@ -176,7 +178,8 @@ class ScreenModel : public QObject {
   void changed();
   void typedChanged();
   void buildingChanged();
-  void mapChanged();  ///< building, places, route or the marked place
+  void mapChanged();  ///< building, places or the marked place
+  void routeChanged();
 
  private:
   static QString text(const std::string& utf8) { return QString::fromStdString(utf8); }

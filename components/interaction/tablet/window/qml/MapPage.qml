@@ -43,6 +43,8 @@ Item {
                 visible: page.journey && text !== ""
                 color: Theme.title
                 font.pixelSize: Theme.buttonTextSize * page.u
+                fontSizeMode: Text.HorizontalFit
+                minimumPixelSize: Theme.statusSize * page.u
                 font.weight: Font.DemiBold
                 horizontalAlignment: Text.AlignHCenter
             }

@@ -28,8 +28,6 @@ Item {
         height: view.model.planHeight * view.fit
         screen: view.model
         textSize: Theme.mapNameSize * view.u
-        robotArea: here.visible ? robot.area : Qt.rect(0, 0, 0, 0)
-        hereArea: here.visible ? Qt.rect(here.x, here.y, here.width, here.height) : Qt.rect(0, 0, 0, 0)
 
         Item {
             id: robot
@@ -40,7 +38,6 @@ Item {
             property double planY: view.model.robotY
             x: planX * view.fit
             y: planY * view.fit
-            readonly property rect area: Qt.rect(x - halo.width / 2, y - halo.width / 2, halo.width, halo.width)
             Behavior on planX {
                 enabled: view.animate && robot.visible
                 NumberAnimation { duration: 200 }
@@ -51,7 +48,6 @@ Item {
             }
 
             Rectangle {
-                id: halo
                 anchors.centerIn: parent
                 width: 92 * view.u
                 height: width
@@ -80,12 +76,22 @@ Item {
                 border.color: Theme.ink
             }
         }
+        PlaceNamesItem {
+            id: names
+            objectName: "placeNames"
+            anchors.fill: parent
+            screen: view.model
+            textSize: Theme.mapNameSize * view.u
+            robot: Qt.point(robot.x, robot.y)
+            robotReach: 56 * view.u
+            signSize: Qt.size(here.width, here.height)
+        }
         Rectangle {
             id: here
             objectName: "here"
             visible: view.model.located && view.model.page === ScreenModel.Map
-            x: Math.max(0, Math.min(plan.width - width, robot.x - width / 2))
-            y: robot.y > height + 60 * view.u ? robot.y - height - 56 * view.u : robot.y + 56 * view.u
+            x: names.signPosition.x
+            y: names.signPosition.y
             width: hereText.implicitWidth + 36 * view.u
             height: hereText.implicitHeight + 16 * view.u
             radius: 16 * view.u
