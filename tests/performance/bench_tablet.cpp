@@ -113,8 +113,8 @@ class Screen {
   std::vector<double> frames() {
     tablet::View view;
     view.page = tablet::Page::kJourney;
-    view.title = "I am taking you to Reception.";
-    view.way_text = "34 m, 1 min";
+    view.title = "On our way: Reception.";
+    view.way_text = "35 m · 1 min";
     view.primary = {{"stop", "Stop", tablet::Kind::kNo}};
     view.secondary = {{"cancel", "Cancel", tablet::Kind::kNo}};
     view.located = true;

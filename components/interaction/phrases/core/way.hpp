@@ -12,7 +12,12 @@ inline long rounded_way(double meters) {
   return static_cast<long>(std::round(std::min(meters, 1e6) / step) * step);
 }
 
-/// [s] A time from here on is said and shown in minutes.
-inline constexpr double kInMinutesFrom = 45.0;
+/// A time [s], not negative, as it is said and shown, in half minutes: 0 below a minute, each half
+/// minute up to five, whole minutes from there on. "1 min" for 87 s would be half a minute wrong.
+inline long rounded_half_minutes(double seconds) {
+  if (seconds < 60.0) return 0;
+  const double step = seconds < 300.0 ? 30.0 : 60.0;
+  return static_cast<long>(std::round(std::min(seconds, 1e6) / step) * step / 30.0);
+}
 
 }  // namespace usher::phrases

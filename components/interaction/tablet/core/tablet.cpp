@@ -28,11 +28,10 @@ std::string way_text(double remaining, double eta) {
     text = std::to_string(phrases::rounded_way(remaining)) + " m";
   }
   if (std::isfinite(eta) && eta >= 0.0) {
-    const auto seconds = std::min(eta, 1e6);
+    const long halves = phrases::rounded_half_minutes(eta);
     if (!text.empty()) text += " · ";
-    text += seconds < phrases::kInMinutesFrom
-                ? std::to_string(5 * std::lround(std::ceil(seconds / 5.0))) + " s"
-                : std::to_string(std::lround(seconds / 60.0)) + " min";
+    text +=
+        halves == 0 ? "< 1 min" : std::to_string(halves / 2) + (halves % 2 == 1 ? "½ min" : " min");
   }
   return text;
 }

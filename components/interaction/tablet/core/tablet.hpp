@@ -155,7 +155,7 @@ class Tablet {
   Time calm_at_{};                    ///< when the robot may be let move again
 };
 
-/// "35 m · 2 min", rounded as the dialogue says it, of what is known; empty when nothing is.
+/// "35 m · 1½ min", rounded as the dialogue says it, of what is known; empty when nothing is.
 std::string way_text(double remaining, double eta);
 
 }  // namespace usher::tablet

@@ -44,7 +44,7 @@ struct View {
   std::string stop_label, start_label;
   double time_left = -1.0;  ///< [s] until the question is given up; negative: not soon
   double progress = -1.0;   ///< {0..1}; negative: none
-  std::string way_text;     ///< "34 m · 1 min"
+  std::string way_text;     ///< "35 m · 1½ min"
   std::string place;        ///< name of the location that is marked on the map
   std::string here_label;   ///< "You are here"
   bool located = false;

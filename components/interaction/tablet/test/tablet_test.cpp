@@ -343,10 +343,9 @@ TEST(Tablet, SendsWhatIsTypedAndCutsItAtALetter) {
 TEST(WayText, SaysWhatIsKnown) {
   const double nan = std::nan("");
   EXPECT_EQ(way_text(34.4, 62.0), "35 m · 1 min");
-  EXPECT_EQ(way_text(21.4, 50.0), "20 m · 1 min") << "as the guide says it at the same moment";
-  EXPECT_EQ(way_text(19.6, 41.0), "20 m · 45 s");
-  EXPECT_EQ(way_text(8.0, 11.0), "8 m · 15 s");
-  EXPECT_EQ(way_text(nan, 11.0), "15 s");
+  EXPECT_EQ(way_text(40.2, 87.0), "40 m · 1½ min");
+  EXPECT_EQ(way_text(21.4, 50.0), "20 m · < 1 min") << "as the guide says it at the same moment";
+  EXPECT_EQ(way_text(nan, 11.0), "< 1 min");
   EXPECT_EQ(way_text(3.0, nan), "3 m");
   EXPECT_EQ(way_text(nan, nan), "");
   EXPECT_EQ(way_text(-1.0, INFINITY), "");

@@ -29,10 +29,14 @@ std::string Guide::way_words(double meters) const {
 }
 
 std::string Guide::time_words(double seconds) const {
-  if (seconds < phrases::kInMinutesFrom) return say(Text::kLessThanAMinute);
-  if (seconds < 90.0) return say(Text::kOneMinute);
-  const auto minutes = static_cast<long>(std::round(std::min(seconds, 1e6) / 60.0));
-  return phrases::filled(say(Text::kMinutes), {{"n", std::to_string(minutes)}});
+  const long halves = phrases::rounded_half_minutes(seconds);
+  if (halves == 0) return say(Text::kLessThanAMinute);
+  if (halves == 2) return say(Text::kOneMinute);
+  if (halves % 2 == 1) {
+    return phrases_.phrase(language_, static_cast<std::size_t>(Text::kAndAHalf) +
+                                          static_cast<std::size_t>(halves / 2) - 1);
+  }
+  return phrases::filled(say(Text::kMinutes), {{"n", std::to_string(halves / 2)}});
 }
 
 void Guide::speak(const std::string& sentence, Tone tone) {
@@ -140,7 +144,10 @@ void Guide::build_places(Screen& screen) const {
     const std::size_t count = std::max<std::size_t>(1, (list.size() + a_page - 1) / a_page);
     const std::size_t first = (page_ % count) * a_page;
     for (std::size_t i = first; i < std::min(first + a_page, list.size()); ++i) offer(*list[i]);
-    if (pages) add(screen, button::kMore, Text::kMore, OptionKind::kOption, Panel::kPrimary);
+    const bool last = first + a_page >= list.size();  // from there back to the first page
+    if (pages)
+      add(screen, button::kMore, last ? Text::kFirstPage : Text::kMore, OptionKind::kOption,
+          Panel::kPrimary);
     add(screen, button::kSearch, Text::kSearch, OptionKind::kOption, Panel::kSecondary);
   }
   add(screen, button::kCancel, Text::kCancel, OptionKind::kNo, Panel::kSecondary);

@@ -38,16 +38,16 @@ TEST(Guide, SpeaksTheSentencesOfTheThesis) {
   EXPECT_EQ(rig.guide.screen().title, "Would you like to see our location?");
   rig.press("yes");
   EXPECT_EQ(rig.guide.screen().title, "Here is our location, choose Done when you have seen it.");
-  EXPECT_EQ(rig.guide.screen().text, "We are at CO239.") << "the nearest place";
+  EXPECT_EQ(rig.guide.screen().text, "We are here – CO239.") << "the nearest place";
   rig.around.pose->y = 3.0, rig.wait(100);
-  EXPECT_EQ(rig.guide.screen().text, "We are near CO239.");
+  EXPECT_EQ(rig.guide.screen().text, "Close to us – CO239.");
   rig.press("done");
   EXPECT_EQ(rig.guide.screen().title, "Would you like me to guide you somewhere?");
   rig.press("yes");
   EXPECT_EQ(rig.guide.screen().title, "Where would you like to go?");
   EXPECT_EQ(rig.guide.screen().options[0], (Option{"am218", "AM218"}));
   rig.press("am218");
-  EXPECT_EQ(rig.guide.screen().title, "I will take you to AM218.");
+  EXPECT_EQ(rig.guide.screen().title, "Your destination: AM218.");
   EXPECT_EQ(rig.guide.screen().text, "Choose Start when you are ready to go.");
   rig.press("start");
   EXPECT_EQ(rig.guide.screen().text, "All right, let's go. Choose Stop if we need to stop.");
@@ -360,6 +360,10 @@ TEST(Guide, PutsManyPlacesOnPages) {
       if (option.id.starts_with("room")) seen.insert(option.id);
     }
     EXPECT_LE(primary, 8U);
+    const auto more =
+        std::find_if(rig.guide.screen().options.begin(), rig.guide.screen().options.end(),
+                     [](const Option& option) { return option.id == "more"; });
+    EXPECT_EQ(more->label, page < 2 ? "More" : "First page") << page;
     rig.press("more");
   }
   EXPECT_EQ(seen.size(), 20U);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "visit_rig.hpp"
@@ -12,7 +13,7 @@ TEST(Guide, TellsTimeAndWayAtTheStartAndAtTheEnd) {
   rig.to_active();
   for (int i = 0; i <= 40; ++i) {
     rig.around.navigation->remaining = 40.0 - i;
-    rig.around.navigation->eta = (40.0 - i) * 1.5;
+    rig.around.navigation->eta = (40.0 - i) * 1.75;
     rig.around.navigation->progress = i / 40.0;
     rig.wait(1000);
   }
@@ -22,7 +23,7 @@ TEST(Guide, TellsTimeAndWayAtTheStartAndAtTheEnd) {
   EXPECT_NE(all.find("We are almost there."), std::string::npos) << all;
   EXPECT_EQ(all.find("It is"), all.rfind("It is")) << "said once: " << all;
   rig.navigate(GoalState::kSucceeded);
-  EXPECT_NEAR(rig.guide.visit().eta_error, 41.0 / 60.0 - 1.0, 0.05);
+  EXPECT_NEAR(rig.guide.visit().eta_error, 41.0 / 70.0 - 1.0, 0.05);
 }
 
 TEST(Guide, TellsNoWayBeforeThereIsAPlan) {
@@ -32,6 +33,40 @@ TEST(Guide, TellsNoWayBeforeThereIsAPlan) {
   rig.around.navigation->eta = std::nan("");
   rig.wait(2000);
   EXPECT_TRUE(std::isnan(rig.guide.screen().remaining));
+}
+
+TEST(Guide, TellsHalfMinutesInEveryLanguage) {
+  constexpr std::array kOneAndAHalf{"about one and a half minutes.", "kotahi meneti me te haurua.",
+                                    "etwa eineinhalb Minuten.", "environ une minute et demie."};
+  constexpr std::array kFourAndAHalf{"about four and a half minutes.", "whā meneti me te haurua.",
+                                     "etwa viereinhalb Minuten.",
+                                     "environ quatre minutes et demie."};
+  const std::array kTags{"en", "mi", "de", "fr"};
+  for (std::size_t language = 0; language < kTags.size(); ++language) {
+    Rig rig;
+    rig.press(std::string("language:") + kTags[language]), rig.wait(3000);
+    for (const char* button : {"guide_me", "am218", "start"}) rig.press(button);
+    rig.around.supervisor = Supervisor::kNavigation;
+    rig.wait(1000);
+    rig.navigate(GoalState::kActive);
+    rig.around.navigation->remaining = 60.0;
+    for (const auto& [eta, words] :
+         {std::pair{87.0, kOneAndAHalf[language]}, std::pair{266.0, kFourAndAHalf[language]}}) {
+      rig.around.navigation->eta = eta;
+      rig.wait(5000);
+      EXPECT_TRUE(rig.guide.screen().text.ends_with(words)) << rig.guide.screen().text;
+    }
+  }
+  Rig rig;
+  rig.to_active();
+  rig.around.navigation->remaining = 60.0;
+  for (const auto& [eta, words] :
+       {std::pair{59.0, "less than a minute."}, std::pair{118.0, "about 2 minutes."},
+        std::pair{400.0, "about 7 minutes."}}) {
+    rig.around.navigation->eta = eta;
+    rig.wait(5000);
+    EXPECT_TRUE(rig.guide.screen().text.ends_with(words)) << rig.guide.screen().text;
+  }
 }
 
 TEST(Guide, CountsMetresAsPeopleDo) {
@@ -351,7 +386,7 @@ TEST(Guide, TurnsToTheVisitorOnArrival) {
   EXPECT_FALSE(rig.guide.turns_to());
   rig.navigate(GoalState::kSucceeded);
   EXPECT_EQ(rig.toned_ms, rig.now_ms);
-  EXPECT_EQ(rig.guide.screen().spoken, "We have arrived. This is AM218.") << "with the tone";
+  EXPECT_EQ(rig.guide.screen().spoken, "We have arrived. Here it is – AM218.") << "with the tone";
   rig.see_at(-1.0, 1.0, 0.0), rig.wait(900);
   EXPECT_FALSE(rig.guide.turns_to());
   rig.wait(100);

@@ -68,7 +68,7 @@ TEST(Guide, GoesOnAfterItsOwnRestart) {
   before.navigate(GoalState::kActive);
   Rig after(quick(), before.guide.memory(), 1000000);
   EXPECT_EQ(after.state(), "guide_active");
-  EXPECT_EQ(after.guide.screen().title, "Wir sind unterwegs. Ziel: AM218.");
+  EXPECT_EQ(after.guide.screen().title, "Unterwegs: AM218.");
   after.goal = before.goal;
   after.around.supervisor = Supervisor::kNavigation;
   after.navigate(GoalState::kSucceeded);

@@ -189,7 +189,7 @@ TEST(Meeting, InvitesWithASoundAndFifteenSeconds) {
   EXPECT_EQ(screen.time_left, 15.0);
   EXPECT_EQ(screen.place, "west");
   ASSERT_FALSE(rig.said.empty());
-  EXPECT_EQ(rig.said.back(), "There is a meeting in West room. Would you like to come with me?");
+  EXPECT_EQ(rig.said.back(), "There is a meeting: West room. Would you like to come with me?");
   rig.wait(5000);
   EXPECT_EQ(rig.meeting.screen().time_left, 10.0);
 }
