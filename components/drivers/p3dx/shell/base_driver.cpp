@@ -61,7 +61,7 @@ void BaseDriver::predict() {
   if (age > kLongestPrediction) return;  // the frames grow old, and whoever needs them stops
   base_.publish_odometry(now, geometry::integrate(feedback_.pose, feedback_.twist, age),
                          feedback_.twist);
-  base_.report({.stamp = now,
+  base_.report({.stamp = feedback_.stamp,
                 .state = static_cast<std::uint8_t>(feedback_.mode),
                 .twist = feedback_.twist,
                 .battery_percent = feedback_.battery_percent});

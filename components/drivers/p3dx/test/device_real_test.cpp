@@ -91,6 +91,23 @@ TEST_F(DeviceReal, WakesTheBaseAndDrivesWhatIsGranted) {
       << "ten reports a second are predicted to 100";
 }
 
+TEST_F(DeviceReal, ItsStatusIsAsOldAsTheReportThatItTells) {
+  right.v = 0.3;
+  right.run(4000);
+  device->silent = true;
+  right.run(20);
+  const auto stamp = [this] {
+    return wire::from_message(host.last(topics::kBaseStatus)->header().stamp());
+  };
+  const auto heard = stamp();
+  host.clear();
+  right.run(80);
+  EXPECT_GT(host.written(topics::kBaseStatus).size(), 5U) << "it still tells what it obeys";
+  EXPECT_EQ(stamp(), heard);
+  EXPECT_GT(wire::from_message(host.last(topics::kOdom)->header().stamp()), heard)
+      << "the pose is predicted";
+}
+
 TEST_F(DeviceReal, StandsWhenCommandOrGrantFallSilent) {
   right.v = 0.3;
   right.run(4000);
