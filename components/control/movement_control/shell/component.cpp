@@ -261,8 +261,8 @@ Inputs MovementControlComponent::gather() {
   inputs.person_ahead = person_ahead();
   inputs.situation = situation_.situation();
   if (const auto* localization = localization_.fresh()) {
-    inputs.localization =
-        static_cast<Localization>(std::min<std::uint8_t>(localization->state(), 2));
+    const auto state = static_cast<Localization>(localization->state());
+    inputs.localization = state > Localization::kGood ? Localization::kLost : state;
   }
   if (const auto* base = base_.fresh()) {
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low

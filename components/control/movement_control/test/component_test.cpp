@@ -193,6 +193,14 @@ TEST_F(Component, WhatFallsSilentStopsIt) {
   }
 }
 
+TEST_F(Component, AStateOfTheLocalizationThatIsNoneCountsAsLost) {
+  run(3000);
+  ASSERT_GT(commanded(), 0.9);
+  localization = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD + 1;
+  run(1000);
+  EXPECT_EQ(commanded(), 0.0);
+}
+
 TEST_F(Component, WithoutAScanTheNavigationCreeps) {
   run(3000);
   silent.insert("scan/filtered");

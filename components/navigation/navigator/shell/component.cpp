@@ -272,8 +272,10 @@ Situation NavigatorComponent::situation() {
   } else {
     s.stale = "the local planner";
   }
-  if (const auto* status = localization_.fresh())
-    s.localization = static_cast<Localization>(std::min<std::uint8_t>(status->state(), 2));
+  if (const auto* status = localization_.fresh()) {
+    const auto state = static_cast<Localization>(status->state());
+    s.localization = state > Localization::kGood ? Localization::kLost : state;
+  }
   if (const auto* odom = odom_.fresh()) {
     if (const auto velocity = wire::from_message(odom->twist().twist())) {
       s.velocity = *velocity;

@@ -40,7 +40,7 @@ class Component : public testing::Test {
     if (says("tf")) host.publish(topics::kTf, moving);
     usher_msgs::msg::LocalizationStatus localization;
     localization.header(wire::header(host.now(), frames::kMap));
-    localization.state(usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD);
+    localization.state(localization_state);
     if (says("localization")) host.publish(topics::kLocalizationStatus, localization);
     nav_msgs::msg::Odometry odom;
     odom.header(wire::header(host.now(), frames::kOdom));
@@ -148,6 +148,7 @@ class Component : public testing::Test {
 
   runtime::TestHost host;
   std::set<std::string> silent;
+  std::uint8_t localization_state = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD;
   std::vector<geometry::Point2> persons;
   bool granted = true, blocked = false, answers = true;
   std::vector<std::string> stopped_by;  ///< whose stops hold
@@ -208,6 +209,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Loss{"LocalPlanner", "follow/status", "no word from the local planner"},
                     Loss{"Supervisor", "supervisor", "no supervisor"}),
     [](const auto& loss) { return std::string(loss.param.name); });
+
+TEST_F(Component, AStateOfTheLocalizationThatIsNoneCountsAsLost) {
+  drive();
+  localization_state = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD + 1;
+  run(300);
+  EXPECT_EQ(motion(), follow::MODE_STOP);
+  EXPECT_EQ(status().reason(), "robot not localized");
+}
 
 TEST_F(Component, StandsWhileItMayNotDriveAndSaysWhoHoldsIt) {
   drive();
