@@ -36,10 +36,11 @@ TEST(ServiceUnit, RestartsAndIsWatched) {
               HasSubstr("ExecStart=\"/usr/bin/usher\" launch \"/etc/usher/my robot 100%%.yaml\" "
                         "--host \"nuc\" --run-directory \"/var/lib/usher/nuc\" "
                         "--keys \"/etc/usher/keys\"\n"));
-  for (const auto* line :
-       {"Type=notify\n", "StateDirectory=usher\n", "Restart=always\n", "WatchdogSec=5\n",
-        "KillMode=control-group\n", "User=usher\n", "WantedBy=multi-user.target\n"})
+  for (const auto* line : {"Type=notify\n", "StateDirectory=usher\n", "Restart=always\n",
+                           "WatchdogSec=5\n", "KillMode=control-group\n", "User=usher\n",
+                           "WantedBy=multi-user.target\n", "LimitNICE=31\n"})
     EXPECT_THAT(unit.text, HasSubstr(line));
+  EXPECT_THAT(unit.text, Not(HasSubstr("RTPRIO"))) << "nothing runs in real time";
 }
 
 TEST(ServiceUnit, IsAcceptedBySystemd) {
