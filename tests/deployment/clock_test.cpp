@@ -47,7 +47,7 @@ class WallClock {
 TEST(WallClockJumps, ChangeNothing) {
   const std::string library = faketime();
   if (library.empty()) {
-    std::printf("NO FAKETIME: apt install libfaketime\n");
+    std::printf("NO FAKETIME: apt install faketime\n");
     GTEST_SKIP() << "libfaketime is not installed";
   }
   DrivenRobot robot;
