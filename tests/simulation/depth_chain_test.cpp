@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "operations/experiments/scan_judgement.hpp"
 #include "sensing/depth_pipeline/core/calibration.hpp"
 #include "sensing/depth_pipeline/core/depth_pipeline.hpp"
 #include "simulation/world/core/depth_scan_model.hpp"
@@ -66,6 +68,7 @@ TEST(DepthScanModel, AgreesWithTheRenderedChain) {
                                        {.name = "b", .start = {6.5, 6.2}, .yaw = 1.0}};
   Random random(2);
   int same = 0, both = 0, model_only = 0, pixels_only = 0, bearings = 0;
+  int all = 0, model_unknown = 0, pixels_unknown = 0;
   double worst_bias = 0.0;
   const std::vector<Pose2> places{{3.0, 5.0, 0.2},   {12.0, 10.0, 0.0}, {26.0, 4.5, 0.5},
                                   {27.9, 14.0, 1.6}, {14.0, 14.0, 2.0}, {20.0, 7.0, -0.7}};
@@ -86,6 +89,9 @@ TEST(DepthScanModel, AgreesWithTheRenderedChain) {
       EXPECT_NEAR(result.angle_min, chain.pipeline().geometry().angle_min, 1e-9);
       for (std::size_t b = 30; b + 30 < result.ranges.size(); ++b) {
         const float modelled = result.ranges[b], rendered = view.scan->ranges[b];
+        ++all;
+        model_unknown += std::isnan(modelled);
+        pixels_unknown += std::isnan(rendered);
         if (std::isnan(modelled) || std::isnan(rendered)) continue;
         ++bearings;
         const bool a = std::isfinite(modelled), c = std::isfinite(rendered);
@@ -105,6 +111,18 @@ TEST(DepthScanModel, AgreesWithTheRenderedChain) {
   EXPECT_GT(same, 93 * bearings / 100) << "of " << bearings << ", only in the model " << model_only
                                        << ", only in the pixels " << pixels_only;
   EXPECT_LT(worst_bias, 0.03);
+  EXPECT_NEAR(model_unknown, pixels_unknown, all / 200) << "of " << all << " bearings not known";
+}
+
+TEST(ScanJudgement, CountsWhatIsNotKnownWhereSomethingIs) {
+  constexpr float kFree = std::numeric_limits<float>::infinity();
+  const std::vector<float> truth{2, 2, 2, 2, 2, 2, kFree, kFree, kFree, kFree};
+  operations::ScanJudgement blind, sighted;
+  blind.take(truth, std::vector<float>(truth.size(), std::nanf("")));
+  sighted.take(truth, truth);
+  EXPECT_EQ(blind.unknown_share(), 1.0);
+  EXPECT_EQ(blind.missed_share(), 0.0);
+  EXPECT_EQ(sighted.unknown_share() + sighted.missed_share() + sighted.false_share(), 0.0);
 }
 
 TEST(DepthScanModel, SeesDropsAndLowThingsLikeThePixels) {

@@ -12,6 +12,7 @@
 #include "operations/experiments/depth_pictures.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/scan_judgement.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "runtime/dds/observer.hpp"
 #include "simulation/world/core/depth_cameras.hpp"
@@ -26,8 +27,6 @@ using geometry::radians;
 using std::chrono::steady_clock;
 
 constexpr double kFar = 12.0;            // [m] of the thesis' images
-constexpr double kReach = 4.0;           // [m] within which scans are judged
-constexpr double kWrong = 0.25;          // [m] of range
 constexpr double kTilt = -0.0872664626;  // [rad] 5 deg below the horizon
 constexpr std::uint32_t kDomain = 44;
 constexpr auto kMeasured = std::chrono::seconds(20);
@@ -101,50 +100,6 @@ class Stage {
   rendering::DepthSensor sensor_;
   std::vector<std::uint16_t> millimeters_;
   depth_pipeline::CameraPose pose_;
-};
-
-/// How a scan compares with what is really there.
-struct Judgement {
-  int obstacles = 0;           // bearings with something within reach
-  int missed = 0;              // of them, seen farther or not at all
-  int free = 0;                // bearings without
-  int false_ones = 0;          // seen nearer than anything is
-  std::vector<double> errors;  // [m] of the others
-
-  void take(const std::vector<float>& truth, const std::vector<float>& seen) {
-    for (std::size_t i = 2; i + 2 < truth.size(); ++i) {
-      if (std::isnan(seen[i])) continue;
-      // A neighbour's edge is no error.
-      float near = truth[i], far = truth[i];
-      for (std::size_t k = i - 2; k <= i + 2; ++k)
-        near = std::min(near, truth[k]), far = std::max(far, truth[k]);
-      const auto range = static_cast<double>(seen[i]);
-      const bool there = static_cast<double>(truth[i]) < kReach;
-      there ? ++obstacles : ++free;
-      if (range < static_cast<double>(near) - kWrong) {
-        ++false_ones;
-      } else if (there && range > static_cast<double>(far) + kWrong) {
-        ++missed;
-      } else if (there) {
-        errors.push_back(std::abs(
-            range - std::clamp(range, static_cast<double>(near), static_cast<double>(far))));
-      }
-    }
-  }
-  double missed_share() const {
-    return obstacles > 0 ? static_cast<double>(missed) / obstacles : 0;
-  }
-  double false_share() const {
-    const int all = obstacles + free;
-    return all > 0 ? static_cast<double>(false_ones) / all : 0;
-  }
-  double error(double quantile) {
-    if (errors.empty()) return 0.0;
-    const auto at =
-        static_cast<std::ptrdiff_t>(quantile * (static_cast<double>(errors.size()) - 1));
-    std::nth_element(errors.begin(), errors.begin() + at, errors.end());
-    return errors[static_cast<std::size_t>(at)];
-  }
 };
 
 /// The thesis' scan in the bearings of ours.
@@ -233,7 +188,7 @@ Status draw_figures(Stage& stage, const std::string& out) {
 void judge_methods(Stage& stage, ResultSheet& sheet) {
   DepthPipeline ours = pipeline_for(stage, 1);
   ThesisMethod thesis({});
-  Judgement usher, published, blind;
+  ScanJudgement usher, published, blind;
   double processor = 0.0;
   int frames = 0;
   const std::vector<geometry::Pose2> places{{24.9, 1.6, 0.55}, {3.0, 5.0, 0.3},  {12.0, 10.0, 0.0},
@@ -262,15 +217,19 @@ void judge_methods(Stage& stage, ResultSheet& sheet) {
   sheet.metrics["frames"] = frames;
   sheet.metrics["processor_ms_per_frame"] = 1e3 * processor / frames;
   sheet.metrics["missed_percent"] = 100.0 * usher.missed_share();
+  sheet.metrics["unknown_percent"] = 100.0 * usher.unknown_share();
   sheet.metrics["false_percent"] = 100.0 * usher.false_share();
   sheet.metrics["range_error_m_median"] = usher.error(0.5);
   sheet.metrics["range_error_m_p95"] = usher.error(0.95);
   sheet.metrics["thesis_method_missed_percent"] = 100.0 * published.missed_share();
+  sheet.metrics["thesis_method_unknown_percent"] = 100.0 * published.unknown_share();
   sheet.metrics["thesis_method_false_percent"] = 100.0 * published.false_share();
   sheet.metrics["thesis_method_range_error_m_p95"] = published.error(0.95);
   sheet.metrics["without_pitch_false_percent"] = 100.0 * blind.false_share();
   sheet.metrics["without_pitch_missed_percent"] = 100.0 * blind.missed_share();
+  sheet.metrics["without_pitch_unknown_percent"] = 100.0 * blind.unknown_share();
   sheet.targets["missed_percent"] = {Bound::kAtMost, 2.0};
+  sheet.targets["unknown_percent"] = {Bound::kAtMost, 1.0};
   sheet.targets["false_percent"] = {Bound::kAtMost, 0.5};
   sheet.targets["range_error_m_p95"] = {Bound::kAtMost, 0.06};
 }
