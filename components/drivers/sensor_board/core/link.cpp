@@ -67,6 +67,7 @@ Whiskers Link::corners(std::uint8_t mask) const {
 
 void Link::take(const Sensors& sensors, Time now) {
   reading_.stamp = now;
+  reading_.measured = true;
   for (std::size_t i = 0; i < kSonars; ++i) {
     reading_.ranges[i] = filters_[i].update(range_of(sensors.ranges_mm[i]));
   }
@@ -89,6 +90,7 @@ bool Link::take(std::span<const std::uint8_t> content, Time now) {
   if (const auto* change = std::get_if<WhiskerChange>(&message->content)) {
     if (!dialogue_.greeted() || !dialogue_.heard()) return false;  // the ranges are not known yet
     reading_.stamp = now;
+    reading_.measured = false;
     reading_.whiskers = corners(change->mask);
     return true;
   }

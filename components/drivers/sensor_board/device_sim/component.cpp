@@ -8,7 +8,8 @@ namespace usher::sensor_board {
 
 namespace {
 constexpr auto kSilence = std::chrono::milliseconds(200);
-}
+constexpr auto kPeriod = std::chrono::milliseconds(50);  // of SENSORS
+}  // namespace
 
 SensorBoardSimComponent::SensorBoardSimComponent(runtime::Host& host)
     : host_(host),
@@ -39,6 +40,11 @@ void SensorBoardSimComponent::take(const usher_sim_msgs::msg::SensorBoardReading
   reading.whiskers = {message.front_left(), message.front_right(), message.back_left(),
                       message.back_right()};
   reading.tilt = message.tilt();
+  reading.measured = reading.stamp >= measure_at_;
+  if (reading.measured) {
+    const bool steady = reading.stamp < measure_at_ + kPeriod;
+    measure_at_ = (steady ? measure_at_ : reading.stamp) + kPeriod;
+  }
   publisher_.publish(reading);
   host_.health().set(runtime::HealthState::kOk);
 }

@@ -4,7 +4,8 @@
 
 namespace usher::sensor_board {
 
-/// The driver over a simulated board.
+/// The driver over a simulated board. That speaks at 50 Hz; ranges and tilt of it are taken at the
+/// 20 Hz of a real one.
 class SensorBoardSimComponent final : public runtime::Component {
  public:
   explicit SensorBoardSimComponent(runtime::Host& host);
@@ -16,6 +17,7 @@ class SensorBoardSimComponent final : public runtime::Component {
   runtime::Host& host_;
   runtime::Output<usher_sim_msgs::msg::SensorBoardCommand> command_;
   BoardPublisher publisher_;
+  Time measure_at_{};  ///< ranges and tilt are taken from then on
   std::uint64_t& rejected_;
   runtime::Input<usher_sim_msgs::msg::SensorBoardReading> input_;
 };

@@ -10,9 +10,6 @@ namespace usher::sensor_board {
 
 namespace {
 constexpr const char* kFrame = "ultrasonic";
-constexpr std::uint64_t kScanShare =
-    2;  // the sensors fire in turn: every second reading has new ranges
-constexpr float kReadingPeriod = 0.02F;  // [s]
 }  // namespace
 
 BoardPublisher::BoardPublisher(runtime::Host& host, std::function<void(double)> set_tilt)
@@ -58,7 +55,7 @@ void BoardPublisher::publish(const Reading& reading) {
   whiskers.back_left(reading.whiskers.back_left);
   whiskers.back_right(reading.whiskers.back_right);
   whiskers_.publish(whiskers);
-  if (++readings_ % kScanShare != 0) return;
+  if (!reading.measured) return;
 
   usher_msgs::msg::CameraTilt tilt;
   tilt.header(wire::header(stamp, frames::kBaseLink));
@@ -71,7 +68,7 @@ void BoardPublisher::publish(const Reading& reading) {
   scan.angle_min(-outermost);
   scan.angle_max(outermost);
   scan.angle_increment(spacing_);
-  scan.scan_time(kReadingPeriod * static_cast<float>(kScanShare));
+  scan.scan_time(static_cast<float>(1.0 / topics::kUltrasonic.rate_hz));
   scan.range_min(range_min_ + ring_radius_);
   scan.range_max(range_max_ + ring_radius_);
   scan.ranges().resize(kSonars);

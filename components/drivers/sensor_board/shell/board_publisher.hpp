@@ -16,11 +16,11 @@ class BoardPublisher {
   /// `set_tilt` is called with each command for the servo that is finite, [rad] up is positive; the
   /// board holds the last one.
   BoardPublisher(runtime::Host& host, std::function<void(double)> set_tilt);
+  /// Whiskers of every reading; ranges and tilt of those that measured them.
   void publish(const Reading& reading);
 
  private:
   float ring_radius_, spacing_, range_min_, range_max_;
-  std::uint64_t readings_ = 0;
   std::uint64_t& rejected_tilts_;
   runtime::Output<sensor_msgs::msg::LaserScan> ultrasonic_;
   runtime::Output<usher_msgs::msg::Whiskers> whiskers_;

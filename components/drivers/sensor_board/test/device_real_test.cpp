@@ -33,11 +33,16 @@ class Device final : public runtime::LockstepDevice {
     runtime::Bytes said;
     if (board_.hello_requests > 0 && !silent && ++asked_ % 5 == 0)
       board_.append(said, to_frame({board_.sequence++, sensors}));
+    if (pressed != 0) {
+      board_.append(said, to_frame({board_.sequence++, WhiskerChange{1, pressed, pressed}}));
+      pressed = 0;
+    }
     return said;
   }
 
   Sensors sensors;
   bool silent = false;
+  std::uint8_t pressed = 0;  ///< switches that change with the next word
 
  private:
   serial_frame::EmulatedBoard board_{{1, {1, 0, 0}, 42, {5, 8}}};
@@ -70,6 +75,27 @@ TEST_F(DeviceReal, PublishesRangesAndWhiskers) {
   device->sensors.whisker_mask = 0x01;
   host.run_for(milliseconds(100));
   EXPECT_TRUE(host.last(topics::kWhiskers)->front_left());
+}
+
+TEST_F(DeviceReal, PublishesRangesAndTiltOfEveryMeasurement) {
+  host.run_for(milliseconds(4000));
+  host.clear();
+  host.run_for(milliseconds(2000));
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kUltrasonic).size()), 40.0, 1.0);
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kKinectTilt).size()), 40.0, 1.0);
+  EXPECT_FLOAT_EQ(host.last(topics::kUltrasonic)->scan_time(), 0.05F);
+}
+
+TEST_F(DeviceReal, PublishesNoRangesOfAWhisker) {
+  host.run_for(milliseconds(4000));
+  host.clear();
+  device->silent = true;
+  device->pressed = 0x04;
+  host.run_for(milliseconds(100));
+  ASSERT_EQ(host.written(topics::kWhiskers).size(), 1U);
+  EXPECT_TRUE(host.last(topics::kWhiskers)->front_right());
+  EXPECT_TRUE(host.written(topics::kUltrasonic).empty());
+  EXPECT_TRUE(host.written(topics::kKinectTilt).empty());
 }
 
 TEST_F(DeviceReal, TurnsTheCameraWhereItIsTold) {

@@ -85,7 +85,9 @@ TEST(Link, AWhiskerIsKnownAtOnce) {
   ASSERT_EQ(bench.readings.size(), before + 1);
   EXPECT_TRUE(bench.readings.back().whiskers.front_right);
   EXPECT_EQ(bench.readings.back().stamp, bench.now());
-  EXPECT_EQ(bench.readings.back().ranges[0], 2.0F);
+  EXPECT_FALSE(bench.readings.back().measured) << "the ranges are of before";
+  bench.run(50);
+  EXPECT_TRUE(bench.readings.back().measured);
 }
 
 TEST(Link, AWhiskerOfABoardThatNobodyKnowsIsNone) {

@@ -1,0 +1,32 @@
+#include <gtest/gtest.h>
+
+#include "drivers/sensor_board/device_sim/component.hpp"
+#include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
+
+namespace usher::sensor_board {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr const char* kRing =
+    "robot.ultrasonic.mount_x: 0.2 m\nrobot.ultrasonic.mount_z: 0.1 m\n"
+    "robot.ultrasonic.spacing: 22.5 deg";
+
+TEST(DeviceSim, MeasuresAtTheRateOfARealBoardAndTellsItsWhiskersAtOnce) {
+  runtime::TestHost host{runtime::component_factory<SensorBoardSimComponent>("sensor_board_sim"),
+                         kRing};
+  for (int i = 0; i < 100; ++i) {
+    usher_sim_msgs::msg::SensorBoardReading reading;
+    reading.header(wire::header(host.now(), "base_link"));
+    reading.ranges({1.0F, 1.0F, 1.0F, 1.0F, 1.0F});
+    host.publish(topics::kSimSensorBoard, reading);
+    host.run_for(milliseconds(20));
+  }
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kUltrasonic).size()), 40.0, 1.0);
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kKinectTilt).size()), 40.0, 1.0);
+  EXPECT_NEAR(static_cast<double>(host.written(topics::kWhiskers).size()), 100.0, 1.0);
+  EXPECT_FLOAT_EQ(host.last(topics::kUltrasonic)->scan_time(), 0.05F);
+}
+
+}  // namespace
+}  // namespace usher::sensor_board
