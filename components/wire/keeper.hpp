@@ -16,7 +16,9 @@ namespace usher::wire {
 /// meanwhile loses are the last milliseconds.
 class Keeper {
  public:
-  /// `told` hears what became of each write, as a handler. Failures are counted under the key.
+  /// `told` hears what became of each write, as a handler. Failures are counted under the key. What
+  /// was kept and cannot be read ends the component: taken for none, an emergency stop would be
+  /// forgotten.
   Keeper(runtime::Host& host, std::string key, std::function<void(const Status&)> told = {})
       : host_(host),
         key_(std::move(key)),
@@ -27,14 +29,16 @@ class Keeper {
           waits_ = false;
           write();
         })) {
-    if (const auto kept = host.kept(key_)) found_.assign(kept->begin(), kept->end());
+    const auto kept = host.kept(key_);
+    if (!kept) host.fault("what was kept over the restart cannot be read: " + kept.error());
+    if (*kept) found_.assign((*kept)->begin(), (*kept)->end());
     wanted_ = found_;
     kept_ = found_;
   }
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
 
-  /// What an earlier life kept; empty: nothing, or nothing that can be read.
+  /// What an earlier life kept; empty: nothing.
   const std::string& found() const { return found_; }
 
   /// At most 1 MB. No write when it is what was kept last.

@@ -104,7 +104,7 @@ TEST_F(HostLaw, MemoryOutlivesTheComponent) {
   auto& found = make<Log<std::string>>();
   const auto script = scripted<Nothing>([&](Host& host, Nothing&) {
     const auto kept = host.kept("pose");
-    found.add(kept.ok() ? std::string(kept->begin(), kept->end()) : "nothing");
+    found.add(*kept ? std::string((*kept)->begin(), (*kept)->end()) : "nothing");
     const Bytes bytes{'h', 'e', 'r', 'e'};
     EXPECT_TRUE(host.keep("pose", bytes).ok());
     EXPECT_FALSE(host.keep("map", Bytes(2 << 20)).ok()) << "more than 1 MB";

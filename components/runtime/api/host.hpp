@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -154,9 +155,10 @@ class Host {
   /// a close with that reason.
   virtual Stream& open_stream(const std::string& uri, StreamHandlers handlers) = 0;
 
-  /// Memory over restarts, at most 1 MB a value; a boot ends that of "session.*". See wire::Keeper.
+  /// Memory over restarts, at most 1 MB a value; a boot ends that of "session.*". Nothing: nothing
+  /// was kept; an error: there may be something, and it cannot be read. See wire::Keeper.
   virtual Status keep(const std::string& key, std::span<const std::uint8_t> bytes) = 0;
-  virtual Result<Bytes> kept(const std::string& key) = 0;
+  virtual Result<std::optional<Bytes>> kept(const std::string& key) = 0;
 
   /// Every writer of the topic that discovery sees, of whatever type and quality, before its first
   /// sample; also its end. Topics of the own robot only.

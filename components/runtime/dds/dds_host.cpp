@@ -98,7 +98,7 @@ class DdsPlatform final : public Platform {
   Status keep(const std::string& key, std::span<const std::uint8_t> bytes) override {
     return store_.keep(key, bytes);
   }
-  Result<Bytes> kept(const std::string& key) override { return store_.kept(key); }
+  Result<std::optional<Bytes>> kept(const std::string& key) override { return store_.kept(key); }
 
   int wake_descriptor() const { return wake_; }
   void stop_jobs() { worker_.stop(); }

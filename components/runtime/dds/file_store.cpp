@@ -78,24 +78,28 @@ Status FileStore::keep(const std::string& key, std::span<const std::uint8_t> byt
   return {};
 }
 
-Result<Bytes> FileStore::kept(const std::string& key) const {
+Result<std::optional<Bytes>> FileStore::kept(const std::string& key) const {
   if (const Status status = check_key(key); !status) return Error{status.error()};
-  if (folder_.empty()) return Error{"nothing is kept without a run directory"};
+  if (folder_.empty()) return std::optional<Bytes>();
   const std::string path = folder_ + '/' + key;
   const File file(path, O_RDONLY);
+  if (!file.open() && errno == ENOENT) return std::optional<Bytes>();
   struct stat state {};
   if (!file.open() || ::fstat(file.descriptor(), &state) != 0) return failure("read", path);
   if (static_cast<std::size_t>(state.st_size) > kMaxBytes)
-    return Error{path + " has more than 1 MB"};
+    return Error{"cannot read " + path + ": it has more than 1 MB"};
   Bytes bytes(static_cast<std::size_t>(state.st_size));
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t count = ::read(file.descriptor(), bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return failure("read", path);
+    if (count < 0) return failure("read", path);
+    if (count == 0)
+      return Error{"cannot read " + path + ": it ends after " + std::to_string(done) + " of " +
+                   std::to_string(bytes.size()) + " bytes"};
     done += static_cast<std::size_t>(count);
   }
-  return bytes;
+  return std::optional(std::move(bytes));
 }
 
 }  // namespace usher::runtime

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,7 +21,8 @@ class FileStore {
 
   /// Keys consist of a-z, 0-9, '_', '-' and '.', at most 64, and do not start with '.'.
   Status keep(const std::string& key, std::span<const std::uint8_t> bytes) const;
-  Result<Bytes> kept(const std::string& key) const;
+  /// Nothing where no file is; an error where one is that cannot be read.
+  Result<std::optional<Bytes>> kept(const std::string& key) const;
 
  private:
   std::string folder_;

@@ -564,7 +564,9 @@ Status Engine::keep(const std::string& key, std::span<const std::uint8_t> bytes)
   return state_->platform.keep(key, bytes);
 }
 
-Result<Bytes> Engine::kept(const std::string& key) { return state_->platform.kept(key); }
+Result<std::optional<Bytes>> Engine::kept(const std::string& key) {
+  return state_->platform.kept(key);
+}
 
 void Engine::watch_writers(const std::string& topic,
                            std::function<void(const WriterInfo&)> handler) {

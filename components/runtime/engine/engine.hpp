@@ -99,7 +99,7 @@ class Engine final : public Host {
   void offload(Duration declared, std::function<void()> job, std::function<void()> done) override;
   Stream& open_stream(const std::string& uri, StreamHandlers handlers) override;
   Status keep(const std::string& key, std::span<const std::uint8_t> bytes) override;
-  Result<Bytes> kept(const std::string& key) override;
+  Result<std::optional<Bytes>> kept(const std::string& key) override;
   void watch_writers(const std::string& topic,
                      std::function<void(const WriterInfo&)> handler) override;
   [[noreturn]] void fault(const std::string& reason) override;

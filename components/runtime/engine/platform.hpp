@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -51,7 +52,7 @@ class Platform {
   virtual Stream& open_stream(const std::string& uri, StreamSink sink) = 0;
 
   virtual Status keep(const std::string& key, std::span<const std::uint8_t> bytes) = 0;
-  virtual Result<Bytes> kept(const std::string& key) = 0;
+  virtual Result<std::optional<Bytes>> kept(const std::string& key) = 0;
 };
 
 }  // namespace usher::runtime

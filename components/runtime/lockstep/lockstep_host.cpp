@@ -128,10 +128,11 @@ class LockstepHost::Life final : public Platform, public Transport {
     host_.kept_[key].assign(bytes.begin(), bytes.end());
     return {};
   }
-  Result<Bytes> kept(const std::string& key) override {
+  Result<std::optional<Bytes>> kept(const std::string& key) override {
+    if (host_.unreadable_.contains(key))
+      return Error{"cannot read " + key + ": Input/output error"};
     const auto found = host_.kept_.find(key);
-    if (found == host_.kept_.end()) return Error{"nothing is kept under " + key};
-    return found->second;
+    return found == host_.kept_.end() ? std::nullopt : std::optional(found->second);
   }
 
   // --- Transport

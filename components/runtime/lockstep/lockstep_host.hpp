@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "runtime/engine/engine.hpp"
@@ -52,6 +53,8 @@ class LockstepHost {
   const std::string& fault_reason() const { return fault_reason_; }
   std::uint64_t lives() const { return lives_; }
   std::map<std::string, Bytes>& kept() { return kept_; }
+  /// Keys that the disk does not give back.
+  std::set<std::string>& unreadable() { return unreadable_; }
   /// Where it runs: "laptop", or "iris/laptop".
   std::string host_name() const {
     return file_.robot.empty() ? file_.host : file_.robot + "/" + file_.host;
@@ -79,6 +82,7 @@ class LockstepHost {
   const ParameterFile file_;
   const Options options_;
   std::map<std::string, Bytes> kept_;
+  std::set<std::string> unreadable_;
   std::string fault_reason_;
   std::uint64_t lives_ = 0;
   bool in_turn_ = false;

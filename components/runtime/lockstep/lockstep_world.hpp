@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -169,6 +170,8 @@ class LockstepWorld {
   std::uint64_t lives(const std::string& name) const { return host(name).lives(); }
   /// What the component keeps over its lives.
   std::map<std::string, Bytes>& kept(const std::string& name) { return host(name).kept(); }
+  /// Of that, what the disk does not give back.
+  std::set<std::string>& unreadable(const std::string& name) { return host(name).unreadable(); }
   /// In the order in which they were added.
   std::vector<std::string> components() const;
 

@@ -74,6 +74,21 @@ TEST_F(KeeperTest, FindsWhatAnEarlierLifeKept) {
   EXPECT_TRUE(told().empty()) << "it lies there";
 }
 
+TEST_F(KeeperTest, WhatCannotBeReadEndsTheComponentAndIsNotTakenForNone) {
+  keep("a");
+  host.world().kill(host.name());
+  host.world().unreadable(host.name()).insert("latch");
+  host.world().start(host.name());
+  host.run_for(milliseconds(10));
+  EXPECT_FALSE(host.running());
+  EXPECT_EQ(host.fault_reason(),
+            "what was kept over the restart cannot be read: cannot read latch: Input/output error");
+  host.world().unreadable(host.name()).clear();
+  host.world().start(host.name());
+  host.run_for(milliseconds(10));
+  EXPECT_EQ(Rememberer::newest->memory.found(), "a") << "and is not overwritten meanwhile";
+}
+
 TEST_F(KeeperTest, TriesAgainEachSecondAndSaysSo) {
   keep("a");
   keep("");

@@ -207,6 +207,21 @@ TEST_F(DeviceReal, ABaseThatWentOffWhileNoDriverRanStaysOff) {
   EXPECT_NEAR(device->twist.v, 0.5, 0.01);
 }
 
+TEST_F(DeviceReal, ADriverWhoseMemoryCannotBeReadTouchesNoBase) {
+  right.run(2000);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  right.run(200);
+  ASSERT_EQ(state(), STATE_EMERGENCY);
+  host.world().kill(host.name());
+  const int balances = device->balances;
+  for (const auto& [key, bytes] : host.world().kept(host.name()))
+    host.world().unreadable(host.name()).insert(key);
+  host.world().start(host.name());
+  right.run(2000);
+  EXPECT_FALSE(host.running());
+  EXPECT_EQ(device->balances, balances);
+}
+
 TEST_F(DeviceReal, ADriverThatRestartsDrivesOnABaseThatStillBalances) {
   right.v = 0.5;
   right.run(2000);

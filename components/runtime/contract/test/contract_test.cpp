@@ -40,7 +40,7 @@ class Sample final : public Component {
     host.timer("step", std::chrono::milliseconds(20), [](auto) {});
     host.timer("stopped", Duration::zero(), [](auto) {});
     host.watch_writers("drive/command", [](const auto&) {});
-    EXPECT_FALSE(host.kept("pose").ok());
+    EXPECT_FALSE(host.kept("pose").value());
     EXPECT_FALSE(host.open_stream("tcp://nowhere:1", {}).open());
     host.offload(
         Duration(1), [] { ADD_FAILURE() << "describing runs no job"; }, [] {});

@@ -27,7 +27,7 @@ TEST(FileStore, ReplacesAndKeepsEmptyValues) {
   ASSERT_TRUE(store.keep("latch", Bytes{}).ok());
   const auto kept = store.kept("latch");
   ASSERT_TRUE(kept.ok());
-  EXPECT_TRUE(kept->empty());
+  EXPECT_EQ(*kept, Bytes{});
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path()))
     ++files;
@@ -36,9 +36,28 @@ TEST(FileStore, ReplacesAndKeepsEmptyValues) {
 
 TEST(FileStore, HasNothingBeforeTheFirstTime) {
   const usher::test::Folder folder;
-  const auto kept = FileStore(folder.path()).kept("epoch");
-  ASSERT_FALSE(kept.ok());
-  EXPECT_THAT(kept.error(), HasSubstr("epoch"));
+  for (const auto& path : {folder.path(), folder.path() + "/none/yet"}) {
+    const auto kept = FileStore(path).kept("epoch");
+    ASSERT_TRUE(kept.ok()) << kept.error();
+    EXPECT_FALSE(*kept);
+  }
+}
+
+TEST(FileStore, WhatCannotBeReadIsNotNothing) {
+  const usher::test::Folder folder;
+  const FileStore store(folder.path());
+  const auto error = [&](const char* key) {
+    const auto kept = store.kept(key);
+    return kept.ok() ? std::string("no error") : kept.error();
+  };
+  std::filesystem::create_directory(folder.path() + "/latch");
+  EXPECT_EQ(error("latch"), "cannot read " + folder.path() + "/latch: Is a directory");
+  std::filesystem::create_symlink("loop", folder.path() + "/loop");
+  EXPECT_THAT(error("loop"), HasSubstr("/loop: Too many levels of symbolic links"));
+  folder.file("large", std::string(FileStore::kMaxBytes + 1, 'x'));
+  EXPECT_THAT(error("large"), HasSubstr("/large: it has more than 1 MB"));
+  const FileStore beside(folder.file("plain", "x"));
+  EXPECT_THAT(beside.kept("latch").error(), HasSubstr("Not a directory"));
 }
 
 TEST(FileStore, RefusesKeysThatLeaveTheFolderAndValuesThatAreTooLarge) {
@@ -65,7 +84,7 @@ TEST(FileStore, SaysWhenTheFolderCannotBeUsed) {
 
 TEST(FileStore, StoresNothingWithoutAFolder) {
   EXPECT_TRUE(FileStore("").keep("pose", Bytes{1}).ok());
-  EXPECT_FALSE(FileStore("").kept("pose").ok());
+  EXPECT_FALSE(FileStore("").kept("pose").value());
 }
 
 }  // namespace

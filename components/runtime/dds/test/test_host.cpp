@@ -273,7 +273,7 @@ TEST(DdsHost, KeepsValuesOverItsLife) {
   std::vector<std::string> found;
   const auto factory = Scripted::factory([&](Host& host) {
     const auto kept = host.kept("epoch");
-    found.push_back(kept.ok() ? std::string(kept->begin(), kept->end()) : "nothing");
+    found.push_back(*kept ? std::string((*kept)->begin(), (*kept)->end()) : "nothing");
     EXPECT_TRUE(host.keep("epoch", Bytes{'4', '2'}).ok());
   });
   Running(parameters, factory).end();
@@ -304,7 +304,8 @@ TEST(DdsHost, AJobUnderWayKeepsThoughTheHostEnds) {
                    }));
     while (!started) std::this_thread::yield();
   }
-  Running(parameters, Scripted::factory([](Host& host) { EXPECT_TRUE(host.kept("late").ok()); }));
+  Running(parameters,
+          Scripted::factory([](Host& host) { EXPECT_TRUE(host.kept("late").value()); }));
 }
 
 TEST(DdsHost, ReportsWritersOfAWatchedTopicInHandlers) {

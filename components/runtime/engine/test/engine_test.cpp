@@ -52,7 +52,7 @@ class FakePlatform final : public Platform {
     return stream;
   }
   Status keep(const std::string&, std::span<const std::uint8_t>) override { return {}; }
-  Result<Bytes> kept(const std::string&) override { return Error{"nothing"}; }
+  Result<std::optional<Bytes>> kept(const std::string&) override { return std::optional<Bytes>(); }
 
   /// Called by the next look at the clock: what happens in that very moment.
   mutable std::function<void()> at_next_look;

@@ -382,7 +382,7 @@ TEST(LockstepWorld, AFaultyComponentIsRestartedAndKeepsItsMemory) {
   struct Fragile final : Component {
     explicit Fragile(Host& host) {
       const auto lives = host.kept("lives");
-      const Bytes next{static_cast<std::uint8_t>(lives.ok() ? lives->at(0) + 1 : 1)};
+      const Bytes next{static_cast<std::uint8_t>(*lives ? (*lives)->at(0) + 1 : 1)};
       EXPECT_TRUE(host.keep("lives", next).ok());
       timer = host.timer("end", milliseconds(100), [&host](auto) { host.fault("as always"); });
     }
