@@ -36,7 +36,7 @@ struct Names {
   std::string power = "power_board";
   std::string gui = "tablet";
   std::string navigation = "navigator";
-  std::string base = "segway_rmp";
+  std::string base = "segway_rmp";  ///< the driver, blamed for what the base does
 };
 
 struct Parameters {

@@ -126,7 +126,8 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
       parameters.text("gui_name", p.names.gui, "The component with the visitor's screen.");
   p.names.navigation =
       parameters.text("navigation_name", p.names.navigation, "The component that takes goals.");
-  p.names.base = parameters.text("base_name", p.names.base, "The base driver.");
+  const auto bases = drive::allowed_writers(topics::kBaseStatus.writers, manifest);
+  if (!bases.empty()) p.names.base = bases.front();
   p.dwell = time_from(parameters.number("dwell", "s", {0.05, 5}, 0.25,
                                         "Least time in Inactive between two behaviors."));
   p.degraded_speed_factor =

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::supervisor {
 namespace {
@@ -55,6 +56,20 @@ TEST_F(Component, AStopAndAnEmergencyStopHoldOverACrash) {
   const auto faults = after_a_crash().faults();
   ASSERT_FALSE(faults.empty());
   EXPECT_EQ(host.last(topics::kDriveGrant)->granted(), false);
+}
+
+TEST_F(Component, WhoseMemoryCannotBeReadGrantsNothing) {
+  ask("operator", COMMAND_EMERGENCY_STOP);
+  host.world().kill(host.name());
+  const auto& memory = host.world().kept(host.name());
+  ASSERT_EQ(memory.size(), 1U);
+  host.world().unreadable(host.name()).insert(memory.begin()->first);
+  host.clear();
+  host.world().start(host.name());
+  host.run_for(milliseconds(120));
+  EXPECT_FALSE(host.running());
+  EXPECT_NE(host.fault_reason().find("cannot be read"), std::string::npos) << host.fault_reason();
+  EXPECT_TRUE(host.written(topics::kDriveGrant).empty());
 }
 
 TEST_F(Component, InAnothersNameOneMayStopTheRobotAndNothingElse) {
@@ -111,6 +126,27 @@ TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
   EXPECT_FALSE(host.last(topics::kDriveGrant)->granted());
   EXPECT_FALSE(status.reason().empty());
   EXPECT_GE(host.written(topics::kDriveGrant).size(), 20U) << "silence is no answer";
+}
+
+TEST(BaseDriver, IsWhoeverWritesItsStatusInTheManifest) {
+  for (const auto& [name, type] :
+       {std::pair{"p3dx", "p3dx"}, {"segway_rmp", "segway_rmp_sim"}, {"wheels", "p3dx_sim"}}) {
+    runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"),
+                           std::string(kManifest) + "  - {name: " + name + ", type: " + type +
+                               ", host: nuc, criticality: notify, timeout: 0.12 s}\n"};
+    usher_msgs::msg::Heartbeat alive;
+    alive.component_name("movement_control");
+    alive.state(usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+    alive.idl_digest(host.heartbeat().idl_digest());
+    for (int i = 0; i < 10; ++i) {
+      alive.header(wire::header(host.now(), ""));
+      host.publish(topics::kDriveCommand, {}, "movement_control");
+      host.publish(topics::kHeartbeat, alive, "movement_control");
+      host.run_for(milliseconds(20));
+    }
+    EXPECT_EQ(host.last(topics::kSupervisorStatus)->reason(),
+              std::string(name) + ": no base/status yet");
+  }
 }
 
 /// With a writer of every topic in it.
