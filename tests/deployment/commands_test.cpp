@@ -98,7 +98,8 @@ TEST_F(Commands, EchoPrintsSamples) {
 
 TEST_F(Commands, EchoSaysThatNobodyWrites) {
   EXPECT_EQ(errors({"topics", "echo", "scans", "--count", "1", "--patience", "1"}),
-            "usher: nobody writes scans in domain " + std::to_string(robot_->domain()) + "\n");
+            "usher: nobody writes scans in domain " + std::to_string(robot_->domain()) +
+                "; did you mean scan?\n");
 }
 
 TEST_F(Commands, GotoListsTheLocations) {
@@ -114,10 +115,12 @@ TEST_F(Commands, AGotoThatCannotBeAsksNobodyAnything) {
   EXPECT_TRUE(contains(text, "unknown location \"kichen\", did you mean kitchen?")) << text;
   EXPECT_TRUE(contains(text, "\nlocations: ")) << text;
   EXPECT_TRUE(contains(text, " meeting_room")) << text;
-  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--max-speed=-1"}), "--max-speed"));
-  EXPECT_TRUE(contains(errors({"goto", "--pose", "nan", "0", "0"}), "--pose"));
+  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--max-speed=2"}),
+                       "--max-speed must be at most this robot's "));
+  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--max-speed=-1"}, 2), "--max-speed"));
+  EXPECT_TRUE(contains(errors({"goto", "--pose", "nan", "0", "0"}, 2), "--pose"));
   EXPECT_TRUE(contains(errors({"goto", "--pose", "1e9", "2", "0"}), "is outside the map of "));
-  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--pose", "1", "2", "3"}), "not both"));
+  EXPECT_TRUE(contains(errors({"goto", "kitchen", "--pose", "1", "2", "3"}, 2), "not both"));
   EXPECT_EQ(robot_->status()->last_request(), asked) << "a visit that runs goes on";
 }
 

@@ -41,7 +41,7 @@ class Launch : public testing::Test {
 
 TEST_F(Launch, RefusesAMissingFile) {
   const auto path = folder_.path() + "/none.yaml";
-  EXPECT_EQ(refused({path}), "usher: cannot read " + path + "\n");
+  EXPECT_EQ(refused({path}), "usher: there is no such file (" + path + ")\n");
   EXPECT_TRUE(contains(refused({folder_.path()}), "it is a directory"));
 }
 

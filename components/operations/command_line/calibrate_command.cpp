@@ -9,6 +9,7 @@
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/manifest/robot_file.hpp"
 #include "runtime/dds/observer.hpp"
@@ -40,11 +41,6 @@ struct Settings {
   bool write = false;
   std::string plot = "kinect_calibration.png";
 };
-
-int fail(const std::string& message) {
-  std::cerr << "usher calibrate: " << message << "\n";
-  return 1;
-}
 
 /// Where the robot's file has the camera and the axle; equations 4.26 and 4.27 need both.
 Result<depth_pipeline::Mount> read_mount(const std::string& path) {

@@ -5,6 +5,7 @@
 
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/face_study/calibration.hpp"
 #include "operations/results/result_sheet.hpp"
@@ -25,11 +26,6 @@ struct Settings {
   bool raw = false;
   std::string out = "face_models.yaml";
 };
-
-int fail(const std::string& message) {
-  std::cerr << "usher calibrate: " << message << "\n";
-  return 1;
-}
 
 /// Crosses where faces were seen: left-out ones apart.
 void add_crosses(const std::vector<FaceSample>& samples, const FittedModel& fit, Curve& used,

@@ -11,6 +11,7 @@
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/demo.hpp"
 #include "operations/command_line/installation.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/experiments/run_record.hpp"
 #include "operations/host/machine_load.hpp"
 #include "operations/launcher/launcher.hpp"
@@ -30,11 +31,6 @@ constexpr const char* kMeeting = "meeting";
 constexpr double kPaceTolerance = 0.5;  // [s] that the simulation may fall behind
 
 std::atomic<bool> stop_asked{false};
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 /// The record of the run, fed by the middleware's threads.
 struct Watch {
@@ -195,7 +191,7 @@ int conclude(const Demo& demo, Watch& watch, std::uint64_t seed, const std::stri
 int demo(const DemoArguments& arguments) {
   const bool meets = arguments.what == kMeeting;
   if (meets && !arguments.destination.empty())
-    return fail("--to is the guide's: the meeting assistant looks for the room itself");
+    return misused("--to is the guide's: the meeting assistant looks for the room itself");
   const std::string out =
       !arguments.out.empty() ? arguments.out : (meets ? "build/demo-meeting" : "build/demo");
   auto made = meets ? meeting_demo() : guide_demo(arguments.destination);

@@ -7,15 +7,11 @@
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/robot.hpp"
+#include "operations/command_line/usage.hpp"
 
 namespace usher::operations {
 
 namespace {
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 int check(const std::vector<std::string>& manifests) {
   const auto installation = Installation::of_this_program();

@@ -16,6 +16,7 @@
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "runtime/dds/observer.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
@@ -31,14 +32,10 @@ using namespace usher_msgs::msg;
 constexpr auto kRepeat = milliseconds(200);
 constexpr auto kPatience = std::chrono::seconds(3);
 constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
+constexpr double kFastest = 3.0;                 // [m/s] that a robot's file may allow
 constexpr const char* kClient = kOperatorName;
 
 std::atomic<bool> stop_asked{false};
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 struct GoalArguments {
   std::string location;
@@ -71,14 +68,18 @@ int list(const navigator::Locations& locations) {
   return 0;
 }
 
-/// What the navigator would refuse, before anybody is asked for anything: what runs goes on.
-Status judge(const GoalArguments& arguments, const navigator::Locations& locations) {
-  if (!std::isfinite(arguments.max_speed) || arguments.max_speed < 0.0)
-    return Error{"--max-speed must be 0 or more, got " + format("%g m/s", arguments.max_speed)};
+/// What no robot can be asked for.
+Status judge(const GoalArguments& arguments) {
   if (!std::ranges::all_of(arguments.pose, [](double value) { return std::isfinite(value); }))
     return Error{"--pose must be finite"};
+  if (!arguments.location.empty() && !arguments.pose.empty())
+    return Error{"give a location or --pose, not both"};
+  return {};
+}
+
+/// What the navigator would refuse, before anybody is asked for anything: what runs goes on.
+Status judge_location(const GoalArguments& arguments, const navigator::Locations& locations) {
   if (arguments.location.empty()) return {};
-  if (!arguments.pose.empty()) return Error{"give a location or --pose, not both"};
   const auto found = locations.find(arguments.location);
   if (found) return {};
   std::string names;
@@ -104,6 +105,15 @@ Status judge_place(Observer& observer, const std::vector<double>& pose) {
                format("%.2f) m is outside the map", pose[1]) + format(" of %.2f", width) +
                format(" x %.2f m", height) + format(" from (%.2f, ", origin->x) +
                format("%.2f) on", origin->y)};
+}
+
+/// Whether the running robot can go that fast. Where nothing tells its limit, that holds as it is.
+Status ask_pace(Observer& observer, double pace) {
+  if (pace == 0.0) return {};
+  auto reader = observer.reader(topics::kMovementStatus);
+  if (!reader) return Error{reader.error()};
+  const auto status = reader->take(kPatience);
+  return status ? judge_pace(pace, status->velocity_linear_max_normal()) : Status{};
 }
 
 /// How the robot drives: on a terminal one line that is rewritten, else a line now and then.
@@ -332,10 +342,12 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   using namespace SupervisorRequest_Constants;
   auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
+  if (const auto possible = ask_pace(**observer, arguments.max_speed); !possible)
+    return fail(possible.error());
   const auto locations = locations_of(**observer, domain);
   if (!locations) return fail(locations.error());
   if (arguments.location.empty() && arguments.pose.empty()) return list(*locations);
-  if (const auto sound = judge(arguments, *locations); !sound) return fail(sound.error());
+  if (const auto known = judge_location(arguments, *locations); !known) return fail(known.error());
   if (const auto inside = judge_place(**observer, arguments.pose); !inside)
     return fail(inside.error());
   struct sigaction action {};
@@ -367,9 +379,13 @@ void add_goto_command(CLI::App& app, int& exit_code) {
   add_domain_option(*goto_command, *domain);
   goto_command->add_option("location", arguments->location, "Name of a known location");
   goto_command->add_option("--pose", arguments->pose, "x y yaw in map [m, m, rad]")->expected(3);
-  goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default");
+  goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default")
+      ->check(within(0, kFastest));
   goto_command->add_flag("--no-wait", arguments->no_wait, "Return when the goal is taken");
-  goto_command->callback([=, &exit_code] { exit_code = go(meant_domain(*domain), *arguments); });
+  goto_command->callback([=, &exit_code] {
+    const auto sound = judge(*arguments);
+    exit_code = sound ? go(meant_domain(*domain), *arguments) : misused(sound.error());
+  });
 }
 
 }  // namespace usher::operations

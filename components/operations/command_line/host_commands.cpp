@@ -14,6 +14,7 @@
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/host/doctor.hpp"
 #include "operations/host/service.hpp"
 #include "operations/launcher/launcher.hpp"
@@ -22,11 +23,6 @@
 namespace usher::operations {
 
 namespace {
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 /// Asks at the terminal; no without one.
 bool agreed(const std::string& question) {
@@ -90,7 +86,7 @@ bool write(const std::string& path, const std::string& text) {
 }
 
 int install_units(const InstallArguments& arguments) {
-  if (arguments.manifest.empty()) return fail("--systemd needs a manifest");
+  if (arguments.manifest.empty()) return misused("--systemd needs a manifest");
   const auto installation = Installation::of_this_program();
   const auto deployment = load_deployment(arguments.manifest, installation, {}, keys_folder());
   if (!deployment) return fail(deployment.error());
@@ -123,7 +119,7 @@ int install_units(const InstallArguments& arguments) {
 
 int install(const InstallArguments& arguments) {
   if (!arguments.systemd && !arguments.sysctl)
-    return fail("nothing to install: expected --systemd MANIFEST or --sysctl");
+    return misused("nothing to install: expected --systemd MANIFEST or --sysctl");
   if (arguments.sysctl && !write(kSysctlPath, sysctl_file())) return 1;
   return arguments.systemd ? install_units(arguments) : 0;
 }
@@ -165,7 +161,9 @@ void add_host_commands(CLI::App& app, int& exit_code) {
   auto domain = std::make_shared<std::uint32_t>(0);
   auto* doctor_command = app.add_subcommand(
       "doctor", "Examine this machine: buffers, multicast, clock, rights; with --keys the keys");
-  doctor_command->add_option("--domain", *domain, "DDS domain")->capture_default_str();
+  doctor_command->add_option("--domain", *domain, "DDS domain")
+      ->check(domain_number())
+      ->capture_default_str();
   doctor_command->callback([domain, &exit_code] { exit_code = doctor(*domain); });
 
   auto arguments = std::make_shared<KeysArguments>();
@@ -176,7 +174,7 @@ void add_host_commands(CLI::App& app, int& exit_code) {
   keys_command->add_option("--manifest", arguments->manifest,
                            "Manifest file; the shipped marvin.yaml unless given");
   keys_command->add_option("--days", arguments->options.days, "Validity of what is signed now")
-      ->check(CLI::Range(1, 36500))
+      ->check(within(1, 36500))
       ->capture_default_str();
   keys_command->add_flag("--renew", arguments->options.renew,
                          "Make everything anew, the CA too; asks first");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
+#include <cstring>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "runtime/dds/message_layout.hpp"
 #include "runtime/dds/message_types.hpp"
 #include "runtime/dds/observer.hpp"
@@ -25,12 +27,8 @@ using std::chrono::milliseconds;
 constexpr const char* kPrefix = "rt/";
 constexpr std::size_t kItemsShown = 8;
 constexpr std::size_t kWritersShown = 3;           // everybody has a heartbeat
+constexpr double kLongest = 3600.0;                // [s] to look or to wait
 constexpr auto kGoalPatience = milliseconds(500);  // a robot without navigator has none
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 const char* state_name(std::uint8_t state) {
   constexpr const char* kNames[] = {
@@ -132,7 +130,7 @@ int list_topics(std::uint32_t domain, double duration) {
   std::map<std::string, TopicRow> rows;
   for (const auto& endpoint : (*observer)->endpoints()) {
     if (!endpoint.topic.starts_with(kPrefix)) continue;
-    auto& row = rows[endpoint.topic.substr(3)];
+    auto& row = rows[endpoint.topic.substr(std::strlen(kPrefix))];
     row.type = endpoint.type;
     row.latched = row.latched || (endpoint.writer && endpoint.latched);
     (endpoint.writer ? row.writers : row.readers).push_back(endpoint.participant);
@@ -180,8 +178,14 @@ int echo(std::uint32_t domain, const EchoArguments& arguments) {
         return false;
       },
       runtime::from_seconds(arguments.patience));
-  if (!found)
-    return fail("nobody writes " + arguments.topic + " in domain " + std::to_string(domain));
+  if (!found) {
+    std::vector<std::string> written;
+    for (const auto& endpoint : (*observer)->endpoints()) {
+      if (endpoint.writer && endpoint.topic.starts_with(kPrefix))
+        written.push_back(endpoint.topic.substr(std::strlen(kPrefix)));
+    }
+    return fail(nobody_writes(arguments.topic, domain, written));
+  }
   const auto* layout = runtime::MessageLayouts::built_in().find(writer.type);
   if (layout == nullptr) return fail("the type " + writer.type + " is not known here");
 
@@ -218,6 +222,7 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
       app.add_subcommand("status", "What the supervisor thinks of the running robot");
   add_domain_option(*status_command, *domain);
   status_command->add_option("--seconds", *seconds, "How long to look for it")
+      ->check(within(0.1, kLongest))
       ->capture_default_str();
   status_command->callback(
       [=, &exit_code] { exit_code = status(meant_domain(*domain), *seconds); });
@@ -227,16 +232,18 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
       "topics", "Topics with type, quality of service, rate, latency, writers and readers");
   add_domain_option(*topics_command, *domain);
   topics_command->add_option("--seconds", *seconds, "How long to measure")
-      ->check(CLI::PositiveNumber)
+      ->check(within(0.1, kLongest))
       ->capture_default_str();
   auto* echo_command = topics_command->add_subcommand("echo", "Print the samples of a topic");
   add_domain_option(*echo_command, *domain);
   echo_command->add_option("topic", arguments->topic, "Name, for example scan/filtered")
       ->required();
   echo_command->add_option("--count", arguments->count, "How many; 0 = until Ctrl-C")
+      ->check(within(0, 1e6))
       ->capture_default_str();
   echo_command
       ->add_option("--patience", arguments->patience, "Seconds to wait for a writer or a sample")
+      ->check(within(0.1, kLongest))
       ->capture_default_str();
   topics_command->callback([=, &exit_code] {
     const std::uint32_t meant = meant_domain(*domain);

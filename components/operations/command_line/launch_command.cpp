@@ -18,6 +18,7 @@
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/host/service.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/security/permissions.hpp"
@@ -30,11 +31,6 @@ namespace {
 using std::chrono::milliseconds;
 
 std::atomic<bool> stop_asked{false};
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 /// The newest heartbeat of every component.
 class Heartbeats {
@@ -333,8 +329,12 @@ void add_launch_command(CLI::App& app, int& exit_code) {
       "launch", "Start a deployment, watch it, restart what ends, stop it on Ctrl-C");
   launch_command->add_option("manifest", arguments->manifest, "Manifest file")->required();
   launch_command->add_option("--host", arguments->host, "Start only this host's part");
-  launch_command->add_option("--set", arguments->settings,
-                             "COMPONENT.PARAMETER=VALUE, over everything else");
+  launch_command
+      ->add_option("--set", arguments->settings, "COMPONENT.PARAMETER=VALUE, over everything else")
+      ->check([](const std::string& text) {
+        const auto parsed = parse_override(text);
+        return parsed ? std::string() : parsed.error();
+      });
   launch_command->add_option("--run-directory", arguments->run_directory,
                              "Parameter files, logs, memory of the components");
   launch_command->callback([arguments, &exit_code] { exit_code = launch(*arguments); });

@@ -1,7 +1,6 @@
-#include <iostream>
-
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
+#include "operations/command_line/usage.hpp"
 
 namespace {
 
@@ -23,6 +22,7 @@ int main(int argc, char** argv) {
   CLI::App app("Usher: the software of an indoor guide robot", "usher");
   app.require_subcommand(1);
   app.set_version_flag("--version", USHER_VERSION);
+  app.footer(usher::operations::kExitCodes);
   app.fallthrough();  // options of the program may follow its command
   usher::operations::add_robot_options(app);
   int exit_code = 0;
@@ -38,17 +38,6 @@ int main(int argc, char** argv) {
   usher::operations::add_demo_command(app, exit_code);
   usher::operations::add_measuring_commands(app, exit_code);
   name_program_options(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // CLI11 only says that a command is missing.
-    const auto rest = app.remaining();
-    if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-')) {
-      std::cerr << "usher: unknown command '" << rest.front() << "'; see usher --help\n";
-      return 2;
-    }
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  }
+  if (const auto ended = usher::operations::ended_by(app, argc, argv)) return *ended;
   return exit_code;
 }

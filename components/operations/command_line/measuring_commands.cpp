@@ -7,17 +7,14 @@
 #include <iostream>
 #include <memory>
 
+#include "foundation/text/suggestion.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/installation.hpp"
+#include "operations/command_line/usage.hpp"
 
 namespace usher::operations {
 
 namespace {
-
-int fail(const std::string& message, int exit_code = 1) {
-  std::cerr << "usher: " << message << "\n";
-  return exit_code;
-}
 
 /// Becomes another program of the installation.
 int become(const std::string& program, const std::vector<std::string>& arguments) {
@@ -32,7 +29,6 @@ int become(const std::string& program, const std::vector<std::string>& arguments
   return fail("cannot run " + program + ": " + std::strerror(errno));
 }
 
-constexpr int kMisused = 2;  // as `usher experiment` ends then
 constexpr const char* kBenchPrefix = "usher-bench-";
 
 std::vector<std::string> benchmarks(const std::string& programs) {
@@ -50,10 +46,11 @@ int bench(const std::string& name, bool list, const std::vector<std::string>& re
   const auto names = benchmarks(installation.programs);
   if (list || name.empty()) {
     for (const auto& known : names) std::cout << known << "\n";
-    return name.empty() && !list ? fail("name a benchmark of the list above", kMisused) : 0;
+    return list ? 0 : misused("name a benchmark of the list above");
   }
   if (std::find(names.begin(), names.end(), name) == names.end())
-    return fail("unknown benchmark '" + name + "'; see usher bench --list", kMisused);
+    return misused("unknown benchmark '" + name + "'; see usher bench --list" +
+                   suggestion(name, names));
   return become(installation.programs + "/" + kBenchPrefix + name, rest);
 }
 
@@ -70,7 +67,8 @@ void add_measuring_commands(CLI::App& app, int& exit_code) {
       "Of each benchmark:\n"
       "  --json                      Print one JSON object\n"
       "  --instructions              Also count instructions, under valgrind\n"
-      "  --benchmark_*               Options of Google Benchmark");
+      "  --benchmark_*               Options of Google Benchmark\n" +
+      std::string(kExitCodes) + ", 4 the input data is absent");
   bench_command->allow_extras();
   bench_command->fallthrough(false);  // what it does not know is for the other program
   bench_command->callback(

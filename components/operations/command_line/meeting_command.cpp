@@ -9,6 +9,7 @@
 #include "operations/command_line/meeting_client.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
+#include "operations/command_line/usage.hpp"
 
 namespace usher::operations {
 
@@ -25,11 +26,6 @@ constexpr auto kBegins = std::chrono::seconds(20);  // until all of a robot is r
 constexpr const char* kNotReady = "not ready";
 
 std::atomic<bool> stop_asked{false};
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 struct MeetingArguments {
   std::uint32_t domain = 0;
@@ -138,12 +134,12 @@ void add_meeting_command(CLI::App& app, int& exit_code) {
   auto domain = std::make_shared<std::optional<std::uint32_t>>();
   add_domain_option(*command, *domain);
   command->add_option("--persons", arguments->persons, "How many it brings")
-      ->check(CLI::Range(1, 100))
+      ->check(within(1, 100))
       ->capture_default_str();
   command
       ->add_option("--minutes", arguments->minutes,
                    "It gives up then; 0 = its own limit, 15 unless set")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(within(0, 60))
       ->capture_default_str();
   command->add_flag("--no-wait", arguments->no_wait, "Return when the assistant took it");
   command->add_flag("--cancel", arguments->cancel, "End the meeting that is called, by whomever");

@@ -8,6 +8,7 @@
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
+#include "operations/command_line/usage.hpp"
 #include "runtime/dds/observer.hpp"
 #include "wire/conversions.hpp"
 
@@ -17,11 +18,6 @@ namespace {
 
 using runtime::Observer;
 using namespace usher_msgs::msg;
-
-int fail(const std::string& message) {
-  std::cerr << "usher: " << message << "\n";
-  return 1;
-}
 
 int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
@@ -135,10 +131,10 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   log_command->add_option("--out", from_log->out, "YAML file; the picture is written beside it")
       ->required();
   log_command->add_option("--every", from_log->every, "Use every Nth scan")
-      ->check(CLI::PositiveNumber)
+      ->check(within(1, 1000))
       ->capture_default_str();
   log_command->add_option("--resolution", from_log->resolution, "Side of a cell [m]")
-      ->check(CLI::Range(0.01, 1.0))
+      ->check(within(0.01, 1))
       ->capture_default_str();
   log_command->callback([=, &exit_code] { exit_code = map_from_log(*from_log); });
 }

@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <iostream>
 
+#include "foundation/text/suggestion.hpp"
+#include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/security/permissions.hpp"
 #include "runtime/parameters/parameter_file.hpp"
@@ -52,8 +55,10 @@ runtime::Observer::Options reach_robot(const std::string& name, std::uint32_t do
 }
 
 void add_domain_option(CLI::App& command, std::optional<std::uint32_t>& given) {
-  command.add_option("--domain", given,
-                     "DDS domain; else that of the only robot launched on this machine, else 0");
+  command
+      .add_option("--domain", given,
+                  "DDS domain; else that of the only robot launched on this machine, else 0")
+      ->check(domain_number());
 }
 
 MeantDomain meant_domain(const std::optional<std::uint32_t>& given,
@@ -86,6 +91,18 @@ std::uint32_t meant_domain(const std::optional<std::uint32_t>& given) {
 
 std::string nobody_there(const std::string& who, std::uint32_t domain) {
   return "no " + who + " in domain " + std::to_string(domain);
+}
+
+std::string nobody_writes(const std::string& topic, std::uint32_t domain,
+                          const std::vector<std::string>& written) {
+  return "nobody writes " + topic + " in domain " + std::to_string(domain) +
+         suggestion(topic, written);
+}
+
+Status judge_pace(double pace, float fastest) {
+  if (static_cast<float>(pace) <= fastest) return {};
+  return Error{"--max-speed must be at most this robot's " + format("%.2f m/s", fastest) +
+               format(", got %g m/s", pace)};
 }
 
 }  // namespace usher::operations

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/result/result.hpp"
 #include "runtime/dds/observer.hpp"
 
 namespace usher::operations {
@@ -41,5 +42,11 @@ std::uint32_t meant_domain(const std::optional<std::uint32_t>& given);
 
 /// "no WHO in domain N".
 std::string nobody_there(const std::string& who, std::uint32_t domain);
+/// "nobody writes TOPIC in domain N", and which of the topics that somebody writes was meant.
+std::string nobody_writes(const std::string& topic, std::uint32_t domain,
+                          const std::vector<std::string>& written);
+
+/// Refuses a pace [m/s] above `fastest`, the robot's own limit where nothing is near.
+Status judge_pace(double pace, float fastest);
 
 }  // namespace usher::operations

@@ -18,6 +18,7 @@
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/command_line/usage.hpp"
 #include "runtime/dds/observer.hpp"
 
 namespace usher::operations {
@@ -149,10 +150,6 @@ void show(const Keyboard& keyboard, const std::optional<MovementStatus>& movemen
 }
 
 int teleop(std::uint32_t domain, milliseconds hold) {
-  const auto fail = [](const std::string& message) {
-    std::cerr << "usher: " << message << "\n";
-    return 1;
-  };
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
   auto joy = (*observer)->writer(topics::kJoy);
@@ -211,10 +208,13 @@ void add_teleop_command(CLI::App& app, int& exit_code) {
       ->add_option("--hold", *hold,
                    "How long a key counts as held after its last repeat [ms]; longer than the "
                    "keyboard's delay before it repeats")
-      ->check(CLI::Range(100, 1000))
+      ->check(within(100, 1000))
       ->capture_default_str();
-  command->callback(
-      [=, &exit_code] { exit_code = teleop(meant_domain(*domain), milliseconds(*hold)); });
+  command->callback([=, &exit_code] {
+    exit_code = isatty(STDIN_FILENO) == 0
+                    ? fail("teleop needs a terminal: it reads the keys from standard input")
+                    : teleop(meant_domain(*domain), milliseconds(*hold));
+  });
 }
 
 }  // namespace usher::operations

@@ -6,11 +6,15 @@
 #include <filesystem>
 #include <iostream>
 
+#include "foundation/text/suggestion.hpp"
+#include "operations/command_line/usage.hpp"
 #include "operations/experiments/experiment.hpp"
 
 namespace usher::operations {
 
 namespace {
+
+constexpr double kMost = 1e6;  // seeds, windows or minutes
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all = {
@@ -128,18 +132,15 @@ const std::vector<Experiment>& experiments() {
   return all;
 }
 
-int fail(const std::string& message) {
-  std::cerr << "usher experiment: " << message << "\n";
-  return 1;
-}
-
 int run(const Experiment& experiment, ExperimentOptions options) {
   if (options.out.empty()) options.out = std::string("build/experiments/") + experiment.name;
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) return fail("cannot make " + options.out + ": " + error.message());
+  std::cerr << experiment.name << ", results in " << options.out << "\n";
   const auto sheet = experiment.run(options);
-  if (!sheet) return fail(sheet.error());
+  // What an experiment says of an option begins with it.
+  if (!sheet) return sheet.error().starts_with("--") ? misused(sheet.error()) : fail(sheet.error());
   Status saved = write_file(options.out + "/result.json", sheet->json());
   if (saved) saved = write_file(options.out + "/table.md", sheet->markdown());
   if (!saved) return fail(saved.error());
@@ -162,28 +163,31 @@ int main(int argc, char** argv) {
   app.add_option("name", name, "Which one");
   app.add_flag("--list", list, "Name them all");
   app.add_option("--seeds", options.seeds, "How many seeded runs; 0 = the experiment's own number")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(0, kMost));
   app.add_option("--windows", options.windows, "How many fault windows; 0 = the experiment's own")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(0, kMost));
   app.add_option("--out", options.out, "Folder for the results");
   app.add_option("--only", options.only, "One of the experiment's inputs, for example a seed");
   app.add_option("--minutes", options.minutes, "How long; 0 = the experiment's own time")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(0, kMost));
   app.add_flag("--glass", options.glass, "corridor: with glass panes in it");
   app.add_option("--robots", options.robots,
                  "gather: also with so many robots that call the meeting together")
-      ->check(CLI::Range(1, 2))
+      ->check(within(1, 2))
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain of experiments with real processes")
-      ->check(CLI::Range(0, 232))
+      ->check(domain_number())
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.footer(kExitCodes);
+  if (const auto ended = ended_by(app, argc, argv)) return *ended;
+  std::vector<std::string> names;
   for (const auto& experiment : experiments()) {
     if (list) std::cout << experiment.name << ": " << experiment.text << "\n";
     if (!list && experiment.name == name) return run(experiment, options);
+    names.emplace_back(experiment.name);
   }
   if (list) return 0;
-  std::cerr << "usher experiment: unknown experiment '" << name
-            << "'; see usher experiment --list\n";
-  return 2;
+  if (name.empty()) return misused("name an experiment; see usher experiment --list");
+  return misused("unknown experiment '" + name + "'; see usher experiment --list" +
+                 usher::suggestion(name, names));
 }

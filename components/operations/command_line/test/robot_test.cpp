@@ -37,5 +37,19 @@ TEST(MeantDomain, SaysWhereTheRobotsAreInstead) {
             "in domain 0; one was in domain 42 (--domain 42)");
 }
 
+TEST(NobodyWrites, SaysWhichTopicWasMeant) {
+  EXPECT_EQ(nobody_writes("scans", 7, {"odom", "scan", "scan/filtered"}),
+            "nobody writes scans in domain 7; did you mean scan?");
+  EXPECT_EQ(nobody_writes("scan", 7, {"odom"}), "nobody writes scan in domain 7");
+}
+
+TEST(JudgePace, IsThatOfTheRobot) {
+  EXPECT_TRUE(judge_pace(0.3, 1.4F));
+  EXPECT_TRUE(judge_pace(1.4, 1.4F)) << "as the wire rounds it";
+  const auto refused = judge_pace(1.5, 1.4F);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), "--max-speed must be at most this robot's 1.40 m/s, got 1.5 m/s");
+}
+
 }  // namespace
 }  // namespace usher::operations
