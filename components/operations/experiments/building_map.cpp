@@ -1,4 +1,5 @@
 #include "operations/experiments/building_map.hpp"
+#include "operations/experiments/only.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -128,13 +129,12 @@ Result<std::vector<BuildingMap>> choose_buildings(const std::string& data,
   if (data.empty()) return Error{"USHER_TEST_DATA names no folder with maps"};
   auto buildings = find_building_maps(data + "/maps");
   if (!buildings || only.empty()) return buildings;
-  std::string names;
-  for (const auto& building : *buildings) names += " " + building.name;
+  const auto names = names_of(*buildings);
   std::erase_if(*buildings, [&](const BuildingMap& building) {
     return building.name != only && !building.name.starts_with(only + "/") &&
            !building.name.ends_with("/" + only);
   });
-  if (buildings->empty()) return Error{"no building '" + only + "'; there are" + names};
+  if (buildings->empty()) return wrong_only(only, names);
   return buildings;
 }
 

@@ -10,6 +10,7 @@
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "wire/conversions.hpp"
@@ -237,13 +238,20 @@ Status draw(const std::vector<Row>& rows, const Site& site, const std::string& o
 }  // namespace
 
 Result<ResultSheet> run_coverage_experiment(const ExperimentOptions& options) {
+  std::vector<std::string> names;
+  for (const Variant& variant : kVariants) {
+    for (const std::string& name : {std::string(variant.strategy), variant.key()}) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  const auto only = only_of(options.only, names);
+  if (!only) return Error{only.error()};
   const double minutes = options.minutes > 0.0 ? options.minutes : kMinutes;
   const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
   std::vector<Row> rows;
   std::vector<Deployment> deployments;
   for (const Variant& variant : kVariants) {
-    if (!options.only.empty() && variant.key() != options.only && variant.strategy != options.only)
-      continue;
+    if (!only->takes(variant.key()) && !only->takes(variant.strategy)) continue;
     std::vector<Override> overrides = {
         {"local_planner", "fastest_turn", format("%g", kTurnRate)},
         {"local_planner", "spot_turn", format("%g", kTurnRate)},
@@ -258,7 +266,6 @@ Result<ResultSheet> run_coverage_experiment(const ExperimentOptions& options) {
     rows.push_back(
         {&variant, std::vector<std::optional<Exploration>>(static_cast<std::size_t>(seeds))});
   }
-  if (rows.empty()) return Error{"no such strategy: " + options.only};
   const auto site = site_of(deployments.front());
   if (!site) return Error{site.error()};
 

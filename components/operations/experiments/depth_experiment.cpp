@@ -12,6 +12,7 @@
 #include "operations/experiments/depth_pictures.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/scan_judgement.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "runtime/dds/observer.hpp"
@@ -336,6 +337,9 @@ Status measure_processes(const ExperimentOptions& options, ResultSheet& sheet) {
 }  // namespace
 
 Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& options) {
+  constexpr const char* kImages = "images";
+  const auto only = only_of(options.only, {kImages});
+  if (!only) return Error{only.error()};
   auto stage = Stage::make(options.installation, 1);
   if (!stage) return Error{stage.error()};
   ResultSheet sheet;
@@ -343,7 +347,7 @@ Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& optio
   sheet.input = "Kinect v2 in the office, 6 places, pitch -10 to 10 deg; processes for table 4.2";
   if (const auto status = draw_figures(*stage, options.out); !status) return Error{status.error()};
   judge_methods(*stage, sheet);
-  if (options.only != "images") {
+  if (only->name != kImages) {
     if (const auto status = measure_processes(options, sheet); !status)
       return Error{status.error()};
   }

@@ -7,6 +7,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/face_study/annotated.hpp"
 #include "operations/face_study/stage.hpp"
 
@@ -207,6 +208,8 @@ Status draw_roc(const std::vector<Judged>& all, double poses, const std::string&
 }  // namespace
 
 Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options) {
+  const auto only = only_of(options.only, {kPhotographs});
+  if (!only) return Error{only.error()};
   auto empty = Stage::make(0, 1);
   auto stage = Stage::make(kFeatures, 2);
   auto anywhere = FaceDetector::make(face_detector::cascade_file("alt", ""), {});
@@ -215,13 +218,12 @@ Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options)
 
   ResultSheet sheet;
   sheet.name = "depth-model";
-  if (options.only == kPhotographs) {
+  if (only->name == kPhotographs) {
     if (options.data.empty()) return Error{"USHER_TEST_DATA names no folder with faces/"};
     sheet.input = "a rendered room, people with photographed faces, alt";
     if (Status shown = try_photographs(options, sheet); !shown) return Error{shown.error()};
     return sheet;
   }
-  if (!options.only.empty()) return Error{"expected photographs, found " + options.only};
   show_progress("two people step back");
   const auto center = step_back(*anywhere, *empty, true);
   const auto side = step_back(*anywhere, *empty, false);

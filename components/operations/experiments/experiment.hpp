@@ -60,8 +60,8 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
 Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_interaction_zones_experiment(const ExperimentOptions& options);
 
-/// One line that is rewritten: "17 of 100  ..."; where standard error is no terminal, a line a
-/// minute.
+/// One line that is rewritten: "17 of 100  ..."; where standard error is no terminal, the first
+/// line at once, then a line a minute.
 void show_progress(const std::string& line);
 
 }  // namespace usher::operations

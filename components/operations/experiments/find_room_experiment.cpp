@@ -6,6 +6,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/meeting_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
@@ -79,18 +80,19 @@ std::string name_of(const Trial& trial) {
 }  // namespace
 
 Result<ResultSheet> run_find_room_experiment(const ExperimentOptions& options) {
+  const auto only = only_of(options.only, names_of(kStates));
+  if (!only) return Error{only.error()};
   const auto deployment = meeting_deployment(options);
   if (!deployment) return Error{deployment.error()};
   const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
   std::vector<Trial> trials;
   for (std::size_t world = 0; world < kStates.size(); ++world) {
-    if (!options.only.empty() && options.only != kStates[world].name) continue;
+    if (!only->takes(kStates[world].name)) continue;
     for (std::size_t start = 0; start < kStarts.size(); ++start) {
       for (int seed = 1; seed <= seeds; ++seed)
         trials.push_back({world, start, static_cast<std::uint64_t>(seed), {}});
     }
   }
-  if (trials.empty()) return Error{"no such world state: " + options.only};
   const Status done =
       run_jobs(trials.size(), "searches", [&](std::size_t i) -> Result<std::string> {
         Trial& trial = trials[i];

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numeric>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "operations/experiments/follow_judge.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "wire/conversions.hpp"
@@ -301,6 +301,8 @@ ResultSheet judged(const std::vector<Sums>& sums, const Sums* who_follows, std::
 }  // namespace
 
 Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
+  const auto only = only_run_of(options.only, names_of(kManners));
+  if (!only) return Error{only.error()};
   const auto deployment =
       load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
@@ -308,19 +310,12 @@ Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options) {
   if (!places) return Error{places.error()};
   const auto map = site_map(*deployment);
   if (!map) return Error{map.error()};
-  // A manner, or one journey of it: lace_5.
-  const auto underscore = options.only.rfind('_');
-  const std::string only = options.only.substr(0, underscore);
-  const bool one = underscore != std::string::npos;
-  const std::size_t first = one ? std::strtoul(&options.only[underscore + 1], nullptr, 10) : 1;
+  const bool one = only->number > 0;
+  const std::size_t first = one ? only->number : 1;
   std::vector<const Manner*> manners;
   for (const Manner& manner : kManners) {
-    if (only.empty() || only == manner.name) manners.push_back(&manner);
+    if (only->takes(manner.name)) manners.push_back(&manner);
   }
-  if (manners.empty() || first == 0)
-    return Error{
-        "--only takes follows, dawdles, lace, returns or leaves, or one journey as lace_5, not " +
-        options.only};
   const auto seeds = one ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   // Every place far enough for somebody to fall behind gets its turn; the first one is where the
   // robot stands.

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -12,6 +11,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/meeting_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "operations/face_study/annotated.hpp"
@@ -113,21 +113,25 @@ std::string name_of(const Trial& trial) {
   return row_of(trial.distance, trial.robots) + "_" + std::to_string(trial.seed);
 }
 
-/// Of a distance ("short"), one of them ("short_7"), or all.
-std::vector<Trial> trials_of(const std::string& only, int seeds, int most_robots) {
-  const std::size_t end = only.find_last_not_of("0123456789") + 1;
-  const bool one = end < only.size();
-  const std::string row = one ? only.substr(0, end - 1) : only;
-  constexpr long kLast = 1000000;
-  const int first =
-      one ? static_cast<int>(std::min(kLast, std::strtol(only.c_str() + end, nullptr, 10))) : 1;
+std::vector<std::string> row_names(int most_robots) {
+  std::vector<std::string> names;
+  for (int robots = 1; robots <= most_robots; ++robots) {
+    for (std::size_t distance = 0; distance < kDistances.size(); ++distance)
+      names.push_back(row_of(distance, robots));
+  }
+  return names;
+}
+
+/// Of a row ("short"; of its distance, with more robots, too), one of it ("short_7"), or all.
+std::vector<Trial> trials_of(const Only& only, int seeds, int most_robots) {
+  const bool one = only.number > 0;
+  const int first = one ? static_cast<int>(only.number) : 1;
   const int last = one ? first : seeds;
   std::vector<Trial> trials;
   for (int robots = 1; robots <= most_robots; ++robots) {
     for (std::size_t distance = 0; distance < kDistances.size(); ++distance) {
-      const bool chosen =
-          row == row_of(distance, robots) || (!one && row == kDistances[distance].name);
-      if (!row.empty() && !chosen) continue;
+      const bool of_distance = !one && only.name == kDistances[distance].name;
+      if (!only.takes(row_of(distance, robots)) && !of_distance) continue;
       for (int seed = first; seed <= last; ++seed)
         trials.push_back({distance, static_cast<std::uint64_t>(seed), robots, {}});
     }
@@ -166,6 +170,9 @@ Status put_faces(Deployment& deployment, const ExperimentOptions& options) {
 }
 
 Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& options) {
+  const auto only = only_run_of(setup.pixels && options.only.empty() ? "medium" : options.only,
+                                row_names(options.robots));
+  if (!only) return Error{only.error()};
   auto deployment =
       meeting_deployment(options, setup.pixels ? "meeting-pixels.yaml" : "meeting-demo.yaml");
   if (!deployment) return Error{deployment.error()};
@@ -173,7 +180,6 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
     if (Status put = put_faces(*deployment, options); !put) return Error{put.error()};
   }
   const int seeds = options.seeds > 0 ? options.seeds : setup.seeds;
-  const std::string only = setup.pixels && options.only.empty() ? "medium" : options.only;
   const double limit = options.minutes > 0.0 ? 60.0 * options.minutes : kLimit;
   std::vector<Deployment> fleet;
   if (options.robots > 1) {
@@ -182,8 +188,7 @@ Result<ResultSheet> run_gather(const Setup& setup, const ExperimentOptions& opti
     if (!read) return Error{read.error()};
     fleet = std::move(read).value();
   }
-  std::vector<Trial> trials = trials_of(only, seeds, options.robots);
-  if (trials.empty()) return Error{"neither a distance nor a meeting: " + only};
+  std::vector<Trial> trials = trials_of(*only, seeds, options.robots);
   const auto run_one = [&](const Trial& trial, const std::string& name, const std::string& title) {
     return run_meeting(trial.robots > 1 ? fleet : std::vector{*deployment}, case_of(trial, limit),
                        trial.seed, options.out, name, title);

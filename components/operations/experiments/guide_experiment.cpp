@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <thread>
 
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 
@@ -76,15 +76,14 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
 }  // namespace
 
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
+  const auto given = only_seed(options.only);
+  if (!given) return Error{given.error()};
   const auto deployment =
       load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto names = site_locations(*deployment);
   if (!names) return Error{names.error()};
-  const int only =
-      options.only.empty() ? 0 : static_cast<int>(std::strtol(options.only.c_str(), nullptr, 10));
-  if (!options.only.empty() && only < 1)
-    return Error{"--only takes a seed from 1 on, not " + options.only};
+  const int only = static_cast<int>(*given);
   const int seeds = std::max(only, options.seeds > 0 ? options.seeds : kSeeds);
 
   std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));

@@ -139,7 +139,7 @@ Status judge_random(std::vector<Method>& methods, Studio& studio, int scenes,
   std::vector<cv::Mat> mistakes;
   std::string csv = "seed,method,found,missed,false\n";
   for (int seed = 1; seed <= scenes; ++seed) {
-    if (seed % 20 == 0) show_progress(std::to_string(seed) + " of " + std::to_string(scenes));
+    if (seed % 20 == 1) show_progress(std::to_string(seed - 1) + " of " + std::to_string(scenes));
     const auto random = static_cast<std::uint64_t>(seed);
     const auto shot = studio.take(people_study::random_scene(random), random);
     if (!shot) return Error{shot.error()};

@@ -9,6 +9,7 @@
 #include "operations/experiments/course_run.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 
 namespace usher::operations {
@@ -134,6 +135,8 @@ Status draw(const Deployment& deployment, const std::string& out, const std::str
 }  // namespace
 
 Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& options) {
+  const auto only = only_of(options.only, names_of(kAll));
+  if (!only) return Error{only.error()};
   const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
   ResultSheet sheet;
   sheet.name = "obstacle-course";
@@ -148,10 +151,8 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
       "series,seed,arrived,seconds,path,speed,contacts,touches,clearance,steepest,false_scans,"
       "scans,"
       "false_bearings_share,false_costmaps,costmaps\n";
-  bool any = false;
   for (const Series& series : kAll) {
-    if (!options.only.empty() && options.only != series.name) continue;
-    any = true;
+    if (!only->takes(series.name)) continue;
     auto deployment = load_deployment(options.installation.share + "/deploy/" + series.manifest,
                                       options.installation, {});
     if (!deployment) return Error{deployment.error()};
@@ -233,7 +234,6 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
     if (!again) return Error{again.error()};
     sheet.flags["digest_repeats"] = again->digest == runs.front().digest;
   }
-  if (!any) return Error{"--only takes trials, seeds or no-pitch, not " + options.only};
   std::printf("%s\n%s\n", drives.text().c_str(), objects.text().c_str());
   Status saved = write_file(options.out + "/drives.md", drives.markdown());
   if (saved) saved = write_file(options.out + "/objects.md", objects.markdown());

@@ -10,6 +10,7 @@
 #include "operations/experiments/attacked_robot.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 
 namespace usher::operations {
 
@@ -315,13 +316,12 @@ Result<ResultSheet> run_reaction_experiment(const ExperimentOptions& options) {
   auto robot = AttackedRobot::launch(options.installation, options.out + "/run", options.domain);
   if (!robot) return Error{robot.error()};
   auto victims = (*robot)->components("stop");
-  if (!options.only.empty())
-    std::erase_if(victims, [&](const auto& name) { return name != options.only; });
-  const bool touches = options.only.empty() || options.only == kTouched;
-  if (victims.empty() && !touches) {
-    return Error{"--only takes a critical component or " + std::string(kTouched) + ", not " +
-                 options.only};
-  }
+  auto names = victims;
+  names.emplace_back(kTouched);
+  const auto only = only_of(options.only, names);
+  if (!only) return Error{only.error()};
+  std::erase_if(victims, [&](const auto& name) { return !only->takes(name); });
+  const bool touches = only->takes(kTouched);
   const int rounds = options.seeds > 0 ? options.seeds : kRounds;
   Attack attack(**robot);
   std::vector<Trial> trials;

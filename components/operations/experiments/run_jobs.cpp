@@ -19,7 +19,7 @@ void show_progress(const std::string& line) {
     return;
   }
   using Clock = std::chrono::steady_clock;
-  static Clock::time_point due = Clock::now() + std::chrono::minutes(1);
+  static Clock::time_point due;  // the first line at once
   if (line.empty() || Clock::now() < due) return;
   due = Clock::now() + std::chrono::minutes(1);
   std::fprintf(stderr, "%s\n", line.c_str());
@@ -50,6 +50,7 @@ Status run_jobs(std::size_t count, const std::string& what,
       show_progress(std::to_string(++done) + " of " + std::to_string(count) + " " + what);
     }
   };
+  show_progress("0 of " + std::to_string(count) + " " + what);
   {
     const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
     std::vector<std::jthread> threads;

@@ -9,6 +9,7 @@
 #include "operations/experiments/hall.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 
 namespace usher::operations {
 
@@ -313,6 +314,8 @@ bool compare(Table& table, ResultSheet& sheet, const Row& row, const char* what,
 }  // namespace
 
 Result<ResultSheet> run_stopping_experiment(const ExperimentOptions& options) {
+  const auto only = only_of(options.only, names_of(rows()));
+  if (!only) return Error{only.error()};
   const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
   ResultSheet sheet;
   sheet.name = "stopping";
@@ -323,7 +326,7 @@ Result<ResultSheet> run_stopping_experiment(const ExperimentOptions& options) {
   Table table({"test", "figure", "Usher", "thesis, table 8.1", "within 10 % or one sigma"});
   bool all = true;
   for (const Row& row : rows()) {
-    if (!options.only.empty() && options.only != row.name) continue;
+    if (!only->takes(row.name)) continue;
     const auto deployment = deploy_hall(options, row.target);
     if (!deployment) return Error{deployment.error()};
     Figures figures;

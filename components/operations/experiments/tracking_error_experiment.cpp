@@ -6,6 +6,7 @@
 #include "operations/experiments/commanded_robot.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 
@@ -127,18 +128,21 @@ Status draw_way(const Deployment& deployment, const Run& run, const std::string&
 }  // namespace
 
 Result<ResultSheet> run_tracking_error_experiment(const ExperimentOptions& options) {
+  std::vector<std::string> names;
+  for (const Filter& filter : filters()) names.emplace_back(filter.key);
+  const auto only = only_of(options.only, names);
+  if (!only) return Error{only.error()};
   const auto seeds = static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   std::vector<Deployment> deployments;
   std::vector<const Filter*> chosen;
   for (const Filter& filter : filters()) {
-    if (!options.only.empty() && options.only != filter.key) continue;
+    if (!only->takes(filter.key)) continue;
     auto deployment = load_deployment(options.installation.share + "/deploy/meeting-sim.yaml",
                                       options.installation, filter.overrides);
     if (!deployment) return Error{deployment.error()};
     deployments.push_back(std::move(deployment).value());
     chosen.push_back(&filter);
   }
-  if (chosen.empty()) return Error{"no such filter: " + options.only};
   std::vector<std::vector<std::optional<Run>>> runs(chosen.size());
   for (auto& row : runs) row.resize(seeds);
   const Status done =

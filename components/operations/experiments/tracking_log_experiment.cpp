@@ -8,6 +8,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_record.hpp"
 
 namespace usher::operations {
@@ -184,9 +185,10 @@ Result<ResultSheet> run_tracking_log_experiment(const ExperimentOptions& options
   if (options.data.empty()) return Error{"USHER_TEST_DATA names no folder with logs"};
   const std::string folder = options.data + "/carmen/rawodom";
   auto names = find_logs(folder);
-  if (!options.only.empty())
-    std::erase_if(names, [&](const auto& name) { return name != options.only; });
   if (names.empty()) return Error{"no log with reference poses in " + folder};
+  const auto only = only_of(options.only, names);
+  if (!only) return Error{only.error()};
+  std::erase_if(names, [&](const auto& name) { return !only->takes(name); });
   const int seeds = options.seeds > 0 ? options.seeds : kSeeds;
 
   ResultSheet sheet;

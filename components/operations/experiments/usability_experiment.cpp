@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "foundation/random/random.hpp"
@@ -10,6 +9,7 @@
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "operations/experiments/visit_tasks.hpp"
@@ -162,24 +162,20 @@ std::string beside(std::size_t statement, const std::vector<Visit>& visits) {
 }  // namespace
 
 Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options) {
+  const auto only = only_run_of(options.only, names_of(kInputs));
+  if (!only) return Error{only.error()};
   const auto deployment =
       load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto places = site_places(*deployment);
   if (!places) return Error{places.error()};
   if (places->size() < 2) return Error{"the site needs two places, to go to one and back"};
-  // An input, or one visit by it: touch_9.
-  const auto underscore = options.only.rfind('_');
-  const std::string only = options.only.substr(0, underscore);
-  const bool one = underscore != std::string::npos;
-  const std::size_t first = one ? std::strtoul(&options.only[underscore + 1], nullptr, 10) : 1;
+  const bool one = only->number > 0;
+  const std::size_t first = one ? only->number : 1;
   std::vector<const Input*> inputs;
   for (const Input& input : kInputs) {
-    if (only.empty() || only == input.name) inputs.push_back(&input);
+    if (only->takes(input.name)) inputs.push_back(&input);
   }
-  if (inputs.empty() || first == 0)
-    return Error{"--only takes touch, voice or mixed, or one visit as touch_9, not " +
-                 options.only};
   const auto seeds = one ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   // The same participants by each input.
   const auto seed_of = [&](std::size_t i) { return first + i / inputs.size(); };

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "foundation/random/random.hpp"
@@ -10,6 +9,7 @@
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
+#include "operations/experiments/only.hpp"
 #include "operations/experiments/run_jobs.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "operations/experiments/visit_end.hpp"
@@ -209,6 +209,8 @@ std::string line(const Manner& manner, std::size_t seed, const Visit& visit) {
 }  // namespace
 
 Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
+  const auto only = only_run_of(options.only, names_of(kManners));
+  if (!only) return Error{only.error()};
   const auto deployment =
       load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
   if (!deployment) return Error{deployment.error()};
@@ -217,24 +219,14 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
   if (places->size() < 2) return Error{"the site needs two places, one to start from"};
   const auto map = site_map(*deployment);
   if (!map) return Error{map.error()};
-  // A manner, or one visit of it: leads_13.
-  const auto underscore = options.only.rfind('_');
-  const std::string only = options.only.substr(0, underscore);
-  const std::size_t one =
-      underscore == std::string::npos
-          ? 0
-          : static_cast<std::size_t>(std::strtoul(&options.only[underscore + 1], nullptr, 10));
   std::vector<const Manner*> manners;
-  std::string names;
   for (const Manner& manner : kManners) {
-    names += (names.empty() ? "" : " | ") + std::string(manner.name);
-    if (only.empty() || only == manner.name) manners.push_back(&manner);
+    if (only->takes(manner.name)) manners.push_back(&manner);
   }
-  if (manners.empty() || (underscore != std::string::npos && one == 0))
-    return Error{"--only takes " + names + ", or one visit as leads_13, not " + options.only};
-  const std::size_t first = one > 0 ? one : 1;
+  const bool one = only->number > 0;
+  const std::size_t first = one ? only->number : 1;
   const std::size_t count =
-      one > 0 ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
+      one ? 1 : static_cast<std::size_t>(options.seeds > 0 ? options.seeds : kSeeds);
   const auto manner_of = [&](std::size_t i) -> const Manner& {
     return *manners[i % manners.size()];
   };

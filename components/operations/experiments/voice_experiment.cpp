@@ -18,6 +18,7 @@
 #include "interaction/speech/engine/pocketsphinx.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/experiment.hpp"
+#include "operations/experiments/only.hpp"
 #include "tasks/guide/core/texts.hpp"
 
 namespace usher::operations {
@@ -459,6 +460,9 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
     add(way, *commands);  // a stop among them
     add_foreign(way, *micro);
   }
+  const auto chosen = [&](const Set& set) { return set.name.starts_with(options.only); };
+  if (std::none_of(sets.begin(), sets.end(), chosen))
+    return wrong_only(options.only, names_of(sets));
   Table table({"set", "first guess", "understood", "not heard", "at once", "wrong", "asked back",
                "foreign acted on", "of them stops", "foreign asked", "foreign confirmed"});
   ResultSheet sheet;
@@ -467,7 +471,7 @@ Result<ResultSheet> run_voice_experiment(const ExperimentOptions& options) {
   double seconds = 0.0, worked = 0.0;
   std::vector<double> latencies;
   for (const Set& set : sets) {
-    if (!options.only.empty() && !set.name.starts_with(options.only)) continue;
+    if (!chosen(set)) continue;
     Score held_out, all;
     Replies replies(set, *said_yes_no);
     for (std::size_t i = 0; i < set.clips.size(); ++i) {
