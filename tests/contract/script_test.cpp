@@ -176,6 +176,19 @@ TEST_F(Script, InstallsWhatIsMissingOnItsSystem) {
   EXPECT_THAT(calls, Not(HasSubstr("recommends cmake")));
 }
 
+TEST_F(Script, AWrongOptionEndsItBeforeItBuilds) {
+  built(), edited();
+  for (const std::string command : {"build", "test", "install", "package"}) {
+    EXPECT_EQ(run({command, "--nosuch"}), 2) << command;
+    EXPECT_EQ(errors, "usher: " + command + ": unknown option --nosuch\n");
+    EXPECT_EQ(calls, "") << command;
+  }
+  EXPECT_EQ(run({"install", "--prefix"}), 2);
+  EXPECT_EQ(errors, "usher: --prefix needs a directory\n");
+  EXPECT_EQ(run({"test", "--label"}), 2);
+  EXPECT_EQ(calls, "");
+}
+
 TEST_F(Script, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(run({"nosuch"}), 2);
   EXPECT_EQ(errors, "usher: unknown command 'nosuch'; see ./usher --help\n");
