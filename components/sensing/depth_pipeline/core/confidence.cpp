@@ -17,6 +17,8 @@ Confidence::Confidence(std::size_t bearings, int frames, double threshold, doubl
       far_(static_cast<float>(far)),
       past_(bearings * static_cast<std::size_t>(frames_), kNotMeasured) {}
 
+void Confidence::forget() { std::fill(past_.begin(), past_.end(), kNotMeasured); }
+
 void Confidence::rate(std::span<float> ranges, double least, std::span<float> intensities) {
   const std::size_t count = ranges.size();
   assert(intensities.size() == count && past_.size() == count * static_cast<std::size_t>(frames_));

@@ -20,6 +20,8 @@ class Confidence {
   /// Writes the intensities in [0, 1] and takes the ranges into the mean. NaN (not measured) gets 0
   /// and is no part of it. Ranges whose confidence is below `least` become NaN.
   void rate(std::span<float> ranges, double least, std::span<float> intensities);
+  /// The next frame is of another time or direction: it is rated as the first one.
+  void forget();
 
  private:
   int frames_;

@@ -145,6 +145,11 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   return view;
 }
 
+void DepthPipeline::forget_frames() {
+  confidence_.forget();
+  low_confidence_.forget();
+}
+
 void DepthPipeline::sort_pixels(const DepthImage& image, const FloorPrediction& floor) {
   const auto array = [&](int index) {
     return columns_.data() + static_cast<std::size_t>(index) * column_stride_;

@@ -92,6 +92,10 @@ class DepthPipeline {
   /// nothing changes.
   Result<DepthView> process(const DepthImage& image, const CameraPose& pose);
 
+  /// Before an image that does not follow the last one (a gap, a turn of the camera): what it
+  /// measures is not confirmed by those of another place.
+  void forget_frames();
+
  private:
   DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig& config);
 

@@ -50,8 +50,10 @@ void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::L
     channel.confidence.emplace(channel.bearings, config_.confidence_frames,
                                config_.confidence_threshold, config_.max_range);
   }
-  channel.confidence->rate(channel.ranges, config_.least_confidence, channel.intensities);
   const runtime::Time stamp = wire::from_message(scan.header().stamp());
+  if (std::chrono::abs(stamp - channel.rated) > kScanAge) channel.confidence->forget();
+  channel.rated = stamp;
+  channel.confidence->rate(channel.ranges, config_.least_confidence, channel.intensities);
   if (&channel != &low_) {  // which is seen from where the Kinect's scan is
     tf2_msgs::msg::TFMessage place;
     place.transforms().push_back(channel.output->place(stamp));

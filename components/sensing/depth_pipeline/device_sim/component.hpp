@@ -20,6 +20,7 @@ class DepthPipelineSimComponent final : public runtime::Component {
   struct Channel {
     std::optional<Confidence> confidence;
     std::size_t bearings = 0;
+    runtime::Time rated{};  ///< stamp of the newest scan
     std::vector<float> ranges, intensities;
     std::optional<ScanOutput> output;
     runtime::Input<sensor_msgs::msg::LaserScan> input;

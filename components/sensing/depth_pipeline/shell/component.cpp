@@ -17,7 +17,7 @@ constexpr auto kImageAge = milliseconds(300);
 constexpr auto kTiltAge = milliseconds(500);
 constexpr auto kPitchGap = milliseconds(100);
 constexpr auto kTurn = milliseconds(2000);  // no turn of the servo takes longer
-constexpr double kStill = 0.01;             // [rad] between two readings of the servo
+constexpr double kStill = 0.01;             // [rad] between readings of the servo, or images
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
 
 /// base_footprint_T_camera of the optical frame (x right, y down, z forward).
@@ -207,6 +207,11 @@ bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
   Mount mount = camera.mount;
   const double angle = angle_of(camera);
   if (!mount.backward) mount.z += mount_slope_ * angle;
+  if (std::chrono::abs(stamp - camera.rated) > kImageAge ||
+      std::abs(angle - camera.rated_at) > kStill)
+    camera.pipeline->forget_frames();
+  camera.rated = stamp;
+  camera.rated_at = angle;
   const auto view = camera.pipeline->process(*depth, camera_pose(mount, angle, pitch->angle));
   if (!view) {
     refuse(camera, view.error());

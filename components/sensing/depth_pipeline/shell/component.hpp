@@ -33,8 +33,10 @@ class DepthPipelineComponent final : public runtime::Component {
     bool repeated = false;  ///< the newest shows, byte for byte, what the one before did
     std::vector<std::uint16_t> depth;
     Image processed;
-    std::string refused;   ///< why the newest image was; empty: it was not
-    std::string withheld;  ///< why the newest image that gave no scan gave none
+    runtime::Time rated{};  ///< stamp of the newest image that was
+    double rated_at = 0.0;  ///< [rad] its camera's angle
+    std::string refused;    ///< why the newest image was; empty: it was not
+    std::string withheld;   ///< why the newest image that gave no scan gave none
     /// Since then a scan is: the last one of an image that shows anything new, or the first image.
     std::optional<runtime::Time> due;
     bool delivered = false;  ///< a scan, ever

@@ -66,7 +66,8 @@ class DepthPipelineComponentTest : public testing::Test {
                   wire::to_message(host_.now(), "kinect_depth_optical", scene_.camera));
   }
   void show(double pitch = 0.0) {
-    const auto depth = scene_.draw(camera_pose({}, servo_, pitch));
+    auto depth = scene_.draw(camera_pose({}, servo_, pitch));
+    depth.back() = ++shown_;  // noise: no two images are the same
     sensor_msgs::msg::Image image;
     wire::to_message(host_.now(), "kinect_depth_optical", view_of(scene_.camera, depth), image);
     host_.publish(topics::kKinectDepth, image);
@@ -99,12 +100,26 @@ class DepthPipelineComponentTest : public testing::Test {
   milliseconds images_ahead_{};
   std::string rear_encoding_ = "16UC1";
   int elapsed_ = 0;  // [ms]
+  std::uint16_t shown_ = 0;
 };
 
 class FittingDepthPipelineTest : public DepthPipelineComponentTest {
  protected:
   FittingDepthPipelineTest()
       : DepthPipelineComponentTest(std::string(kParameters).insert(1, "refit: true, ")) {}
+};
+
+/// Of three frames, as by default.
+class RatingDepthPipelineTest : public DepthPipelineComponentTest {
+ protected:
+  RatingDepthPipelineTest()
+      : DepthPipelineComponentTest(
+            "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: "
+            "0.235 m}") {
+    tell_camera();
+    live(100);
+    stream(300);
+  }
 };
 
 float ahead(const sensor_msgs::msg::LaserScan& scan) {
@@ -175,6 +190,34 @@ TEST_F(DepthPipelineComponentTest, WaitsForThePitchOfTheImage) {
   with_pitch_ = true;
   live(20);
   EXPECT_EQ(host_.written(topics::kKinectScan).size(), 1U);
+}
+
+TEST_F(RatingDepthPipelineTest, ForgetsItsFramesOverAGap) {
+  EXPECT_NEAR(ahead(*host_.last(topics::kKinectScan)), 2.0, 0.03);
+  live(200);
+  show();
+  live(30);
+  EXPECT_NEAR(ahead(*host_.last(topics::kKinectScan)), 2.0, 0.03) << "a few are missing";
+  live(400);
+  show();
+  live(30);
+  EXPECT_TRUE(std::isnan(ahead(*host_.last(topics::kKinectScan)))) << "confirmed by old ones";
+  show();
+  live(30);
+  EXPECT_NEAR(ahead(*host_.last(topics::kKinectScan)), 2.0, 0.03);
+}
+
+TEST_F(RatingDepthPipelineTest, ForgetsItsFramesOverATurnOfTheCamera) {
+  host_.clear();
+  servo_ = -0.05;
+  live(150);
+  show();
+  live(30);
+  ASSERT_TRUE(host_.last(topics::kKinectScan));
+  EXPECT_TRUE(std::isnan(ahead(*host_.last(topics::kKinectScan)))) << "confirmed by another view";
+  show();
+  live(30);
+  EXPECT_NEAR(ahead(*host_.last(topics::kKinectScan)), 2.0, 0.03);
 }
 
 TEST_F(DepthPipelineComponentTest, SaysWhenTheCameraIsSilent) {
@@ -438,6 +481,15 @@ TEST_F(DepthPipelineSim, RatesAndPassesTheModelsScans) {
   host.publish(topics::kSimKinectScan, scan);
   host.run_for(milliseconds(1100));
   EXPECT_EQ(host.counter("scans: rejected"), 1U);
+}
+
+TEST_F(DepthPipelineSim, ForgetsItsScansOverAGap) {
+  for (int i = 0; i < 4; ++i) {
+    scan.header(wire::header(host.now(), "kinect_level"));
+    host.publish(topics::kSimKinectScan, scan);
+    host.run_for(milliseconds(i == 2 ? 400 : 33));
+  }
+  EXPECT_TRUE(std::isnan(host.last(topics::kKinectScan)->ranges()[0]));
 }
 
 TEST_F(DepthPipelineSim, TellsTheTimeBetweenTheScansOfEachCamera) {

@@ -56,6 +56,14 @@ TEST(Confidence, WhatWasNotMeasuredIsNoPartOfTheMean) {
   EXPECT_EQ(rate(confidence, 1.5F).intensity, 1.0F);
 }
 
+TEST(Confidence, TheFirstFrameAfterItForgotIsNotBelieved) {
+  Confidence confidence(1, 3, 0.5, 5.0);
+  for (int i = 0; i < 3; ++i) rate(confidence, 2.0F);
+  confidence.forget();
+  EXPECT_TRUE(std::isnan(rate(confidence, 2.0F).range));
+  EXPECT_EQ(rate(confidence, 2.0F).range, 2.0F);
+}
+
 TEST(Confidence, OneFrameAfterNothingWasMeasuredIsNotBelieved) {
   Confidence confidence(1, 3, 0.5, 5.0);
   for (int i = 0; i < 3; ++i) rate(confidence, kNan);
