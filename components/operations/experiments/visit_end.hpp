@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "idl/topics.hpp"
+#include "operations/results/result_sheet.hpp"
 
 namespace usher::operations {
 
@@ -16,5 +19,26 @@ struct OpenVisit {
 /// Who holds the robot that stands, other than the guide, whose questions all have a time-out.
 /// Nothing: it is a dead end.
 std::optional<std::string> waits_safely_for(const OpenVisit& visit);
+
+/// What a visitor wants of a visit.
+enum class Wish {
+  kToArrive,
+  kToBreakOff,    ///< on the way
+  kToFallSilent,  ///< at a question
+};
+
+struct VisitEnd {
+  Wish wish = Wish::kToArrive;
+  bool ended = false;        ///< and the robot is free for the next one
+  std::uint8_t outcome = 0;  ///< {GuideVisit_Constants OUTCOME_*}
+};
+
+/// Whether the visit ended in the way that the visitor chose; also where the robot arrived before
+/// he could break off or fall silent.
+bool ended_as_wished(const VisitEnd& visit);
+
+/// Of those who want to arrive, the share that did, and how many of the others ended in another way
+/// than theirs, with what is asked of both. Nothing is asked about those of whom there are none.
+void judge_ends(std::span<const VisitEnd> visits, ResultSheet& sheet);
 
 }  // namespace usher::operations

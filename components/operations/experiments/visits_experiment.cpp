@@ -38,6 +38,7 @@ struct Manner {
   const char* name;
   const char* text;
   Values (*character)(Random& random);
+  Wish wish = Wish::kToArrive;
 };
 
 std::string within(Random& random, double least, double most) {
@@ -76,7 +77,8 @@ const std::array kManners{
     Manner{"leaves", "walks away for good",
            [](Random& r) {
              return Values{{"walks_away_at", within(r, 3, 30)}};
-           }},
+           },
+           Wish::kToBreakOff},
     Manner{"stops", "stops the robot, goes on",
            [](Random& r) {
              return Values{{"stops_at", within(r, 3, 30)}, {"stops_for", within(r, 2, 60)}};
@@ -84,11 +86,13 @@ const std::array kManners{
     Manner{"forgets", "stops the robot, forgets it",
            [](Random& r) {
              return Values{{"stops_at", within(r, 3, 30)}, {"gives_up_in", "guide_paused"}};
-           }},
+           },
+           Wish::kToBreakOff},
     Manner{"cancels", "cancels on the way",
            [](Random& r) {
              return Values{{"cancels_at", within(r, 1, 30)}};
-           }},
+           },
+           Wish::kToBreakOff},
     Manner{"blocks", "steps in the robot's way",
            [](Random& r) {
              return Values{{"blocks_at", within(r, 3, 30)}, {"blocks_for", within(r, 3, 40)}};
@@ -105,7 +109,7 @@ const std::array kManners{
            [](Random& r) {
              return Values{{"returns_to", "foyer"}, {"rates", r.below(2) == 0 ? "all" : "some"}};
            }},
-    Manner{"silent", "stops answering", gives_up}};
+    Manner{"silent", "stops answering", gives_up, Wish::kToFallSilent}};
 
 struct Visit {
   bool ended = false;                    ///< and the robot is free for the next one
@@ -230,6 +234,9 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
   const auto manner_of = [&](std::size_t i) -> const Manner& {
     return *manners[i % manners.size()];
   };
+  const auto end_of = [&](std::size_t i, const Visit& visit) {
+    return VisitEnd{manner_of(i).wish, visit.ended, visit.outcome};
+  };
   const auto run_visit = [&](std::size_t i, const std::string& trace) {
     const std::size_t seed = first + i;
     const std::string& place = (*places)[1 + seed % (places->size() - 1)].name;
@@ -241,9 +248,10 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
     auto each = run_visit(i, i < manners.size() ? options.out + "/" + name : std::string());
     if (!each) return Error{each.error()};
     std::string said;
-    if (!each->ended || each->contacts > 0) {
-      said = name + " to " + each->place + ": " + each->state + ", waits for " +
-             each->waits_for.value_or("nothing") + ", contacts " + std::to_string(each->contacts) +
+    if (!ended_as_wished(end_of(i, *each)) || each->contacts > 0) {
+      said = name + " to " + each->place + ": " + kOutcomes.at(each->outcome) + ", " + each->state +
+             ", waits for " + each->waits_for.value_or("nothing") + ", contacts " +
+             std::to_string(each->contacts) +
              (each->contacts > 0 ? ", the last with " + each->contact_with : "") +
              "; again with usher experiment visits --only " + name + "_" +
              std::to_string(first + i) + "\n" + each->complaints;
@@ -306,6 +314,9 @@ Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options) {
   sheet.targets["dead_ends"] = {Bound::kAtMost, 0.0};
   sheet.metrics["contacts"] = contacts;
   sheet.targets["contacts"] = {Bound::kAtMost, 0.0};
+  std::vector<VisitEnd> ends;
+  for (std::size_t i = 0; i < count; ++i) ends.push_back(end_of(i, *visits[i]));
+  judge_ends(ends, sheet);
   // The first visit once more: the same bytes.
   const auto again = run_visit(0, "");
   if (!again) return Error{again.error()};
