@@ -1,6 +1,5 @@
 // usher-train-people: trains the network of the people detector on random scenes and writes it as
 // perception/people_detector/core/network_weights.cpp. Deterministic.
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <memory>
 #include <numeric>
 
+#include "operations/command_line/usage.hpp"
 #include "operations/people_study/scoring.hpp"
 
 namespace {
@@ -319,18 +319,19 @@ void write(const Network& network, const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  using usher::operations::within;
   CLI::App app("Trains the network of the people detector on random scenes");
   std::string out = "network_weights.cpp";
   int count = 12000, epochs = 12, rounds = 3, tests = 1000;
   bool trains = true;
   app.add_option("--out", out, "Where the network is written");
-  app.add_option("--scenes", count, "New ones in each round")->check(CLI::Range(10, 100000));
-  app.add_option("--epochs", epochs, "Of each round")->check(CLI::Range(1, 1000));
+  app.add_option("--scenes", count, "New ones in each round")->check(within(10, 100000));
+  app.add_option("--epochs", epochs, "Of each round")->check(within(1, 1000));
   app.add_option("--rounds", rounds, "Each takes what the one before it took wrongly for people")
-      ->check(CLI::Range(1, 10));
-  app.add_option("--tests", tests, "Scenes that it is tested on")->check(CLI::Range(1, 100000));
+      ->check(within(1, 10));
+  app.add_option("--tests", tests, "Scenes that it is tested on")->check(within(1, 100000));
   app.add_flag("!--test-only", trains, "Tests the network that is built in");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto ended = usher::operations::ended_by(app, argc, argv)) return *ended;
   std::vector<Sample> samples;
   Trainer trainer;
   Scenes scenes;
