@@ -53,6 +53,15 @@ struct Manner {
   const char* language;  ///< of the visitor
 };
 
+/// What was not as it should be.
+struct Complaints {
+  std::vector<std::string> wrong;  ///< however busy the machine is
+  std::vector<std::string> late;   ///< also where the machine is too busy for real time
+
+  bool none() const { return wrong.empty() && late.empty(); }
+  bool forgivable(bool busy) const { return busy && wrong.empty() && !late.empty(); }
+};
+
 /// Everything that could be seen and heard during a visit.
 class Witness {
  public:
@@ -107,33 +116,37 @@ class Witness {
     }
     return all;
   }
-  /// What was not as it should be; empty = all was.
-  std::vector<std::string> complaints(const Manner& manner) const {
-    std::vector<std::string> all;
+  Complaints complaints(const Manner& manner) const {
+    Complaints all;
     const auto expect = [&](bool good, const std::string& what) {
-      if (!good) all.push_back(what);
+      if (!good) all.wrong.push_back(what);
     };
-    judge_tasks(all);
-    expect(greeted_after_ < kGreetWithin * slowdown(), "objective 1: greeted too late or never");
+    const auto expect_in_time = [&](bool good, const std::string& what) {
+      if (!good) all.late.push_back(what);
+    };
+    judge_tasks(all.wrong);
+    expect(std::isfinite(greeted_after_), "objective 1: never greeted");
+    expect_in_time(greeted_after_ < kGreetWithin * slowdown(), "objective 1: greeted too late");
     expect(map_error_ < kMapError, "objective 2: the map shows another place");
     expect(visit_ && visit_->started() == 2 && visit_->arrived() == 2,
            "objective 3: not guided twice");
     expect(goal_error_ < kGoalError && visitor_behind_ < kVisitorBehind,
            "objective 3: not all are there");
+    expect(!manner.speech || !captions_.empty(), "objective 4: nothing was said");
     for (const auto& [id, sentence] : said_) {
       const double stayed = sentence.until - sentence.at;
       if (stayed <= kSpokenAfter) continue;
       const std::string which =
           "\"" + sentence.text + "\", shown for " + std::to_string(stayed) + " s";
       expect(sentence.shown, "objective 5: not on the screen " + which);
-      expect(!manner.speech || captions_.contains(sentence.text),
-             "objective 4: never said " + which);
-      expect(!manner.speech || finished_ >= id, "objective 4: not finished " + which);
+      expect_in_time(!manner.speech || captions_.contains(sentence.text),
+                     "objective 4: never said " + which);
+      expect_in_time(!manner.speech || finished_ >= id, "objective 4: not finished " + which);
     }
     expect(visit_ && visit_->language() == manner.language, "another language at the end");
     expect(languages_ == std::set<std::string>{manner.language},
            "a question in another language than the visitor's");
-    judge_answers(manner.input, all);
+    judge_answers(manner.input, all.wrong);
     expect(torso_error_ < kTorsoError, "objective 6: the torso took another pose");
     return all;
   }
@@ -296,12 +309,28 @@ class Visit : public testing::TestWithParam<Manner> {
   }
 };
 
-void judge_sound(const std::string& path, std::vector<std::string>& complaints) {
+/// On a busy machine speech may be killed before it has written its file.
+void judge_sound(const std::string& path, Complaints& complaints) {
   const auto said = speech::read_wav_file(path);
   if (!said)
-    complaints.push_back("objective 4: nothing came from the loudspeaker: " + said.error());
+    complaints.late.push_back("objective 4: nothing came from the loudspeaker: " + said.error());
   else if (said->duration() < kLeastSound || speech::rms(said->samples) < kLeastLoudness)
-    complaints.emplace_back("objective 4: the loudspeaker was silent");
+    complaints.wrong.emplace_back("objective 4: the loudspeaker was silent");
+}
+
+TEST(Complaints, AreForgivenOnABusyMachineOnlyWhereAllIsLateAndNothingWrong) {
+  EXPECT_TRUE((Complaints{{}, {"greeted too late"}}.forgivable(true)));
+  EXPECT_FALSE((Complaints{{}, {"greeted too late"}}.forgivable(false)));
+  EXPECT_FALSE((Complaints{{"task not done"}, {"greeted too late"}}.forgivable(true)));
+  EXPECT_FALSE((Complaints{{"not guided twice"}, {}}.forgivable(true)));
+}
+
+TEST(Witness, OfAVisitThatNeverBeganIsNotForgiving) {
+  const Complaints all = Witness{}.complaints({"touch", false, "de"});
+  EXPECT_THAT(all.wrong,
+              testing::IsSupersetOf({"objective 1: never greeted", "objective 3: not guided twice",
+                                     "another language at the end"}));
+  EXPECT_FALSE(all.forgivable(true));
 }
 
 TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
@@ -310,9 +339,9 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
   const auto networks = two_networks(TwoNetworks::Kind::kOneSubnet);
   if (!networks) GTEST_SKIP() << kNoNamespaces;
   const std::string pictures = USHER_BINARY_DIR "/hri_visits/" + input;
-  std::vector<std::string> complaints, harm;
-  // On a machine that is busy with other things sentences come late, and whoever shall stop is
-  // killed before it has written its file: such a run does not count.
+  Complaints complaints;
+  std::vector<std::string> harm;
+  // On a machine that is busy with other things sentences come late: there is a second try.
   for (int attempt = 0; attempt < 2; ++attempt) {
     std::filesystem::remove_all(pictures);
     const Folder folder;
@@ -323,8 +352,8 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
     witness.print(input);
     complaints = witness.complaints(manner);
     harm = witness.harm();
-    if (!over) complaints.emplace_back("the visit did not end");
-    if (!complaints.empty()) std::printf("%s", robot.story().c_str());
+    if (!over) complaints.wrong.emplace_back("the visit did not end");
+    if (!complaints.none()) std::printf("%s", robot.story().c_str());
     robot.stop();
     if (manner.speech) judge_sound(folder.path() + "/said.wav", complaints);
     for (const char* state : {"location_show", "guide_active", "guide_success"}) {
@@ -333,15 +362,17 @@ TEST_P(Visit, DoesTheSevenTasksAndMeetsTheSixObjectives) {
           std::filesystem::directory_iterator(pictures, none), [&](const auto& entry) {
             return entry.path().filename().string().find(state) != std::string::npos;
           });
-      if (!pictured) complaints.push_back(std::string("objective 5: no picture of ") + state);
+      if (!pictured) complaints.late.push_back(std::string("objective 5: no picture of ") + state);
     }
-    if (complaints.empty() || !harm.empty() || (witness.lag() < kLag && slowdown() < kBusy)) break;
-    std::printf("the machine was busy: %s\n", testing::PrintToString(complaints).c_str());
+    if (complaints.none() || !harm.empty() || (witness.lag() < kLag && slowdown() < kBusy)) break;
+    std::printf("the machine was busy: %s %s\n", testing::PrintToString(complaints.wrong).c_str(),
+                testing::PrintToString(complaints.late).c_str());
   }
   EXPECT_THAT(harm, testing::IsEmpty());
-  if (!complaints.empty() && harm.empty() && slowdown() >= kBusy)
+  EXPECT_THAT(complaints.wrong, testing::IsEmpty());
+  if (harm.empty() && complaints.forgivable(slowdown() >= kBusy))
     GTEST_SKIP() << "this machine is too busy for a conversation in real time";
-  EXPECT_THAT(complaints, testing::IsEmpty());
+  EXPECT_THAT(complaints.late, testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(By, Visit,
