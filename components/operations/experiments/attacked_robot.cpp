@@ -109,7 +109,9 @@ Status AttackedRobot::listen() {
   };
   keep(observer_->reader(topics::kSimBaseCommand,
                          [this, note](const auto& message, const auto&) {
-                           const Wheels wheels{Clock::now(), message.v(), message.w()};
+                           using namespace usher_sim_msgs::msg::BaseCommand_Constants;
+                           const Wheels wheels{Clock::now(), message.v(), message.w(),
+                                               message.mode() == MODE_EMERGENCY_STOP};
                            note([&] { wheels_.push_back(wheels); });
                          }),
        wheels_reader_);

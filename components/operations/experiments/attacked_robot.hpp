@@ -32,6 +32,7 @@ class AttackedRobot {
   struct Wheels {
     Instant at;
     double v = 0.0, w = 0.0;
+    bool off = false;  ///< an emergency stop
     /// Told to stand; a turn rate may still keep it on its arc while it rolls out.
     bool zero() const { return v == 0.0; }
   };

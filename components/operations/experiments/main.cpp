@@ -70,7 +70,7 @@ const std::vector<Experiment>& experiments() {
        run_false_stops_experiment},
       {"monopoly",
        "Foreign writers on every topic that moves the robot (real processes): samples executed, "
-       "time until they are named",
+       "time until they are named; --only TOPIC",
        run_monopoly_experiment},
       {"faults",
        "Seeded windows of 20 s in which something goes wrong while the robot drives, lock-step, "

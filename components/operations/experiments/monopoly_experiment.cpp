@@ -7,6 +7,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/attacked_robot.hpp"
 #include "operations/experiments/experiment.hpp"
+#include "operations/experiments/only.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::operations {
@@ -51,16 +52,27 @@ const std::array<Way, 6>& ways() {
   return all;
 }
 
+/// What an intruder puts into a sample of its own.
+struct Forgery {
+  std::uint64_t number = 0;
+  std::uint64_t epoch = 0;    ///< the true one
+  runtime::Time now;          ///< on the robot's clock
+  runtime::Guid commander{};  ///< its writer of drive/command, where it has one
+};
+
 /// One topic that moves the robot: who may write it, and what the intruder writes there.
 struct Target {
   std::string topic;  ///< on the wire
   std::string type;
   std::string writer;
   std::uint8_t state = 0;  ///< of the supervisor, in which the topic moves the robot
-  std::function<Bytes(AttackedRobot&, std::uint64_t number)> forge;
+  std::function<Bytes(const Forgery&)> forge;
   std::function<bool(const Bytes&)> moves;  ///< the robot, whoever obeys it
   bool on_the_way = false;                  ///< written while the robot drives under navigation
+  bool commands = false;  ///< the intruder writes drive/command, too, with each sample
+  bool by_hand = false;   ///< the operator's hand is on the sticks, which are not enabled
 
+  std::string name() const { return topic.substr(3); }  ///< in the catalogue
   bool takes(const Way& way) const { return way.replay != Replay::kOnTheWay || on_the_way; }
 };
 
@@ -78,54 +90,90 @@ Bytes bytes_of(const Message& message) {
 
 template <class Message>
 Target make_target(const topics::Topic<Message>& topic, std::uint8_t state,
-                   std::function<Message(AttackedRobot&, std::uint64_t)> make,
-                   bool on_the_way = false) {
+                   Message (*make)(const Forgery&)) {
   const std::string_view writers = topic.writers;
-  return {
-      "rt/" + std::string(topic.name),
-      std::string(runtime::message_type<Message>().name),
-      std::string(writers.substr(0, writers.find(' '))),
-      state,
-      [make](AttackedRobot& robot, std::uint64_t number) { return bytes_of(make(robot, number)); },
-      [](const Bytes& cdr) {
-        const auto message = runtime::message_type<Message>().deserialize(cdr);
-        return message != nullptr &&
-               std::abs(speed_of(*static_cast<const Message*>(message.get()))) > kMoving;
-      },
-      on_the_way};
+  return {"rt/" + std::string(topic.name),
+          std::string(runtime::message_type<Message>().name),
+          std::string(writers.substr(0, writers.find(' '))),
+          state,
+          [make](const Forgery& forgery) { return bytes_of(make(forgery)); },
+          [](const Bytes& cdr) {
+            if constexpr (requires(const Message& m) { speed_of(m); }) {
+              const auto message = runtime::message_type<Message>().deserialize(cdr);
+              return message != nullptr &&
+                     std::abs(speed_of(*static_cast<const Message*>(message.get()))) > kMoving;
+            } else {
+              return false;
+            }
+          }};
+}
+
+geometry_msgs::msg::TwistStamped forged_twist(const Forgery& forgery) {
+  geometry_msgs::msg::TwistStamped message;
+  message.header(wire::header(forgery.now, "base_link"));
+  message.twist().linear().x(kRogueSpeed);
+  message.twist().angular().z(kRogueTurn);
+  return message;
+}
+DriveCommand forged_command(const Forgery& forgery) {
+  DriveCommand message;
+  message.stamp(wire::to_message(forgery.now));
+  message.epoch(forgery.epoch);
+  message.number(1'000'000'000 + forgery.number);
+  message.v(kRogueSpeed);
+  message.w(kRogueTurn);
+  return message;
+}
+/// The next right to drive, for the intruder itself.
+DriveGrant forged_grant(const Forgery& forgery) {
+  DriveGrant message;
+  message.stamp(wire::to_message(forgery.now));
+  message.granted(true);
+  message.epoch(forgery.epoch + 1);
+  message.writer(forgery.commander);
+  message.valid_for(0.12F);
+  return message;
+}
+MovementEnable forged_enable(const Forgery& forgery) {
+  MovementEnable message;
+  message.header(wire::header(forgery.now, ""));
+  message.movement(true), message.manual(true);
+  message.speed_factor(1.0F);
+  message.epoch(forgery.epoch);
+  return message;
+}
+BaseRequest forged_request(const Forgery& forgery) {
+  BaseRequest message;
+  message.id(1'000'000'000 + forgery.number);
+  message.client("supervisor");
+  message.command(BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  return message;
 }
 
 std::vector<Target> targets() {
-  const std::function<geometry_msgs::msg::TwistStamped(AttackedRobot&, std::uint64_t)> twist =
-      [](AttackedRobot& robot, std::uint64_t) {
-        geometry_msgs::msg::TwistStamped message;
-        message.header(wire::header(robot.observer().now(), "base_link"));
-        message.twist().linear().x(kRogueSpeed);
-        message.twist().angular().z(kRogueTurn);
-        return message;
-      };
-  const std::function<DriveCommand(AttackedRobot&, std::uint64_t)> command =
-      [](AttackedRobot& robot, std::uint64_t number) {
-        DriveCommand message;
-        message.stamp(wire::to_message(robot.observer().now()));
-        message.epoch(robot.status() ? robot.status()->epoch() : 0);  // the true one
-        message.number(1'000'000'000 + number);
-        message.v(kRogueSpeed);
-        message.w(kRogueTurn);
-        return message;
-      };
   using namespace SupervisorStatus_Constants;
-  return {make_target(topics::kDriveCommand, STATE_MANUAL, command, true),
-          make_target(topics::kCmdVelManual, STATE_MANUAL, twist),
-          make_target(topics::kCmdVelInteraction, STATE_INTERACTION, twist),
-          make_target(topics::kCmdVelNavigation, STATE_NAVIGATION_ACTIVE, twist, true)};
+  Target command = make_target(topics::kDriveCommand, STATE_MANUAL, forged_command);
+  Target navigation = make_target(topics::kCmdVelNavigation, STATE_NAVIGATION_ACTIVE, forged_twist);
+  Target grant = make_target(topics::kDriveGrant, STATE_MANUAL, forged_grant);
+  Target enable = make_target(topics::kMovementEnable, STATE_INTERACTION, forged_enable);
+  command.on_the_way = navigation.on_the_way = true;
+  grant.commands = true;
+  enable.by_hand = true;
+  return {command,
+          make_target(topics::kCmdVelManual, STATE_MANUAL, forged_twist),
+          make_target(topics::kCmdVelInteraction, STATE_INTERACTION, forged_twist),
+          grant,
+          enable,
+          make_target(topics::kBaseRequest, STATE_MANUAL, forged_request),
+          navigation};
 }
 
 struct Attack {
   std::string topic, way;
   std::uint64_t written = 0;
-  std::uint64_t executed = 0;  ///< commands at the wheels to drive, though nobody else wished so
-  double reported_ms = 0.0;    ///< from its writer's birth
+  /// Commands at the wheels to drive, or to switch their motors off, though nobody else wished so.
+  std::uint64_t executed = 0;
+  double reported_ms = 0.0;  ///< from its writer's birth
   std::string reported_as;
 };
 
@@ -188,7 +236,7 @@ class Monopoly {
       replay = std::move(recorded).value();
     }
     if (auto status = make_ready(target.state); !status) return Error{status.error()};
-    Attack attack{.topic = target.topic.substr(3), .way = way.name};
+    Attack attack{.topic = target.name(), .way = way.name};
     robot_.forget();
     auto rogue = Observer::create({.name = way.in_the_name_of_the_writer ? target.writer : kRogue,
                                    .host = "nuc",
@@ -197,6 +245,20 @@ class Monopoly {
     const auto first = Clock::now();
     auto writer = (*rogue)->foreign_writer(target.topic, target.type, way.quality);
     if (!writer) return Error{writer.error()};
+    std::unique_ptr<Observer::RawWriter> commander;
+    if (target.commands) {
+      auto made = (*rogue)->foreign_writer("rt/" + std::string(topics::kDriveCommand.name),
+                                           std::string(runtime::message_type<DriveCommand>().name),
+                                           way.quality);
+      if (!made) return Error{made.error()};
+      commander = std::move(made).value();
+    }
+    const auto forgery = [&] {
+      const auto lock = robot_.locked();
+      return Forgery{attack.written, robot_.status() ? robot_.status()->epoch() : 0,
+                     robot_.observer().now(), commander ? commander->guid() : runtime::Guid{}};
+    };
+    if (target.by_hand) robot_.hold(kRogueSpeed, kRogueTurn);
     std::optional<AttackedRobot::Instant> named;
     // What is written before anybody could hear it attacks nobody.
     robot_.wait_for(
@@ -206,9 +268,13 @@ class Monopoly {
         },
         milliseconds(500));
     for (; attack.written < samples; ++attack.written) {
-      const Bytes sample =
-          replay.empty() ? forged(target, attack.written) : replay[attack.written % replay.size()];
-      (*writer)->write(sample);
+      const Forgery own = forgery();
+      (*writer)->write(replay.empty() ? target.forge(own) : replay[attack.written % replay.size()]);
+      if (commander) {
+        Forgery granted = own;
+        ++granted.epoch;
+        commander->write(bytes_of(forged_command(granted)));
+      }
       if (named) continue;
       const auto lock = robot_.locked();
       named = named_at(target, way, attack);
@@ -220,20 +286,17 @@ class Monopoly {
     attack.reported_ms = named ? std::chrono::duration<double, std::milli>(*named - first).count()
                                : std::numeric_limits<double>::infinity();
     attack.executed = executed();
+    robot_.release();
     return attack;
   }
 
  private:
-  /// Commands to drive that reached the wheels.
+  /// Commands to drive, and to switch off, that reached the wheels.
   std::uint64_t executed() {
     const auto lock = robot_.locked();
     return static_cast<std::uint64_t>(
         std::count_if(robot_.wheels().begin(), robot_.wheels().end(),
-                      [](const auto& wheels) { return !wheels.zero(); }));
-  }
-  Bytes forged(const Target& target, std::uint64_t number) {
-    const auto lock = robot_.locked();
-    return target.forge(robot_, number);
+                      [](const auto& wheels) { return !wheels.zero() || wheels.off; }));
   }
 
   static std::vector<std::uint8_t> way_to(std::uint8_t state) {
@@ -245,24 +308,26 @@ class Monopoly {
   }
 
   /// Drives for a moment, so that there is something worth replaying; what the right writer sends
-  /// must move the wheels, or nothing would be proven by what the intruder's samples do not.
+  /// must move the wheels, or nothing would be proven by what the intruder's samples do not. Empty
+  /// where nobody speaks: forged samples take the place.
   Result<std::vector<Bytes>> record(const Target& target) {
     auto recording = Recording::make(robot_.observer(), target);
     if (!recording) return Error{recording.error()};
     robot_.forget();
-    robot_.hold(kRogueSpeed, kRogueTurn);
-    std::this_thread::sleep_for(milliseconds(1500));
+    for (const double way : {1.0, -1.0}) {  // and back, or it would soon be at a wall
+      robot_.hold(way * kRogueSpeed, way * kRogueTurn);
+      std::this_thread::sleep_for(milliseconds(1500));
+    }
     auto samples = (*recording)->samples();
     robot_.release();
     const auto moved = [&] {
       const auto lock = robot_.locked();
       return std::any_of(robot_.wheels().begin(), robot_.wheels().end(), [](const auto& wheels) {
-        return std::abs(wheels.v - kRogueSpeed) < 0.01;
+        return std::abs(wheels.v) > kMoving;  // less than the hand wants beside a wall
       });
     };
-    if (!moved()) return Error{"the operator's own hand did not move the wheels"};
-    // A topic on which nobody speaks now has nothing to replay: a forged sample takes its place.
-    if (samples.empty()) samples.push_back(forged(target, 0));
+    if (!moved())
+      return Error{"the operator's own hand did not move the wheels: " + robot_.complaints()};
     return samples;
   }
 
@@ -310,9 +375,14 @@ class Monopoly {
 }  // namespace
 
 Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
+  auto all = targets();
+  std::vector<std::string> topics;
+  for (const auto& target : all) topics.push_back(target.name());
+  const auto only = only_of(options.only, topics);
+  if (!only) return Error{only.error()};
+  std::erase_if(all, [&](const Target& target) { return !only->takes(target.name()); });
   auto robot = AttackedRobot::launch(options.installation, options.out + "/run", options.domain);
   if (!robot) return Error{robot.error()};
-  const auto all = targets();
   // --seeds N: so many thousand samples in all.
   const std::uint64_t wanted =
       options.seeds > 0 ? static_cast<std::uint64_t>(options.seeds) * 1000 : kSamples;
@@ -346,7 +416,9 @@ Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
   sheet.input =
       "MARVIN as processes, standing in the state in which the topic would move it; a foreign "
       "participant writes each topic that "
-      "moves the robot: same quality, other quality, the right writer's name, exclusive ownership "
+      "moves the robot (drive/command; cmd_vel/*; drive/grant, for commands of its own; "
+      "movement/enable, for sticks that are held but not enabled; base/request, an emergency "
+      "stop): same quality, other quality, the right writer's name, exclusive ownership "
       "of the highest strength, replayed bytes, also of a drive under navigation";
   sheet.metrics = {{"samples", samples}, {"executed", executed}, {"named_ms_max", slowest}};
   sheet.targets = {{"samples", {Bound::kAtLeast, static_cast<double>(each * attacks)}},
