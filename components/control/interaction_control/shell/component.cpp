@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include "control/interaction_control/shell/read_posing.hpp"
 #include "wire/conversions.hpp"
@@ -38,7 +39,8 @@ std::optional<Pose2> pose_of(const nav_msgs::msg::Odometry* odometry) {
 
 }  // namespace
 
-Parameters InteractionControlComponent::read_parameters(runtime::Parameters& parameters) {
+Parameters InteractionControlComponent::read_parameters(runtime::Host& host) {
+  auto& parameters = host.parameters();
   Parameters p;
   p.dead_zone = parameters.number("dead_zone", "rad", {0.02, 0.7}, p.dead_zone,
                                   "An error up to this is facing.");
@@ -50,13 +52,18 @@ Parameters InteractionControlComponent::read_parameters(runtime::Parameters& par
                                  "Slower than this the base does not turn.");
   p.search_rate = parameters.number("search_rate", "rad/s", {0.05, 0.5}, p.search_rate,
                                     "Of the turn while nobody is found.");
-  if (p.resume_zone <= p.dead_zone) p.resume_zone = 1.5 * p.dead_zone;
+  if (p.resume_zone <= p.dead_zone) {
+    std::ostringstream wrong;
+    wrong << "resume_zone must be above dead_zone, got " << p.resume_zone << " rad and "
+          << p.dead_zone << " rad";
+    host.fault(wrong.str());
+  }
   return p;
 }
 
 InteractionControlComponent::InteractionControlComponent(runtime::Host& host)
     : host_(host),
-      parameters_(read_parameters(host.parameters())),
+      parameters_(read_parameters(host)),
       face_(parameters_),
       thresholds_(read_thresholds(host.parameters())),
       posing_(read_posing(host, thresholds_)),

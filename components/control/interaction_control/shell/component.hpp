@@ -18,7 +18,7 @@ class InteractionControlComponent final : public runtime::Component {
   explicit InteractionControlComponent(runtime::Host& host);
 
  private:
-  static Parameters read_parameters(runtime::Parameters& parameters);
+  static Parameters read_parameters(runtime::Host& host);
   void aim(const usher_msgs::msg::FaceTarget& target);
   void tick();
   std::vector<Sighting> people_around(const geometry::Pose2& odom_T_base);

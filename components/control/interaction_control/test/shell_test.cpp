@@ -74,6 +74,17 @@ TEST(InteractionControlShell, StandsWithoutTargetOdometryOrEnable) {
   EXPECT_EQ(bench.w(), 0.0) << "not enabled";
 }
 
+TEST(InteractionControlShell, TakesNoZoneThatEndsBeforeItBegins) {
+  try {
+    const runtime::TestHost host(
+        runtime::component_factory<InteractionControlComponent>("interaction_control"),
+        "dead_zone: 0.3 rad\nresume_zone: 0.2 rad");
+    FAIL() << "it runs";
+  } catch (const std::runtime_error& refused) {
+    EXPECT_STREQ(refused.what(), "resume_zone must be above dead_zone, got 0.2 rad and 0.3 rad");
+  }
+}
+
 TEST(InteractionControlShell, RejectsNonsense) {
   Bench bench;
   bench.run(500, MODE_FACE, std::numeric_limits<double>::quiet_NaN());

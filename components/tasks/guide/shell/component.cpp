@@ -1,5 +1,7 @@
 #include "tasks/guide/shell/component.hpp"
 
+#include <sstream>
+
 #include "interaction/phrases/shell/read_phrases.hpp"
 #include "tasks/service/shell/messages.hpp"
 #include "wire/conversions.hpp"
@@ -28,46 +30,51 @@ constexpr const char* kLog = "visits.csv";
 
 Parameters GuideComponent::read_parameters(runtime::Parameters& parameters) {
   Parameters p;
-  const auto time = [&](const char* name, Time& value, const char* text) {
-    value = runtime::from_seconds(
-        parameters.number(name, "s", {0.1, 3600}, runtime::seconds(value), text));
+  const auto time = [&](const char* name, runtime::Range range, Time& value, const char* text) {
+    value =
+        runtime::from_seconds(parameters.number(name, "s", range, runtime::seconds(value), text));
   };
   const auto number = [&](const char* name, const char* unit, runtime::Range range, double& value,
                           const char* text) {
     value = parameters.number(name, unit, range, value, text);
   };
-  time("introduction_time", p.introduction, "How long the greeting is shown.");
-  time("answer_timeout", p.answer, "How long a question waits for an answer.");
-  time("warning_time", p.warning,
+  time("introduction_time", {1, 60}, p.introduction, "How long the greeting is shown.");
+  time("answer_timeout", {30, 3600}, p.answer,
+       "How long a question waits for an answer; above warning_time.");
+  time("warning_time", {20, 600}, p.warning,
        "So long before a time-out it is announced, with a button for more time; at least 20 s by "
        "WCAG 2.2.1.");
-  time("pause_timeout", p.pause, "How long a stop on the way waits.");
-  time("arrived_time", p.arrived, "How long the arrival is shown.");
-  time("goodbye_time", p.goodbye, "How long the goodbye is shown.");
-  time("left_time", p.left, "Nobody there for so long: the visitor has gone.");
-  time("greet_after", p.greet_after, "How long somebody must be near before being greeted.");
+  time("pause_timeout", {30, 3600}, p.pause,
+       "How long a stop on the way waits; above warning_time.");
+  time("arrived_time", {1, 60}, p.arrived, "How long the arrival is shown.");
+  time("goodbye_time", {1, 60}, p.goodbye, "How long the goodbye is shown.");
+  time("left_time", {2, 600}, p.left, "Nobody there for so long: the visitor has gone.");
+  time("greet_after", {0.2, 30}, p.greet_after,
+       "How long somebody must be near before being greeted.");
   number("greet_within", "m", {0.5, 5}, p.greet_within, "How near somebody is greeted.");
   number("greet_below", "m/s", {0.1, 3}, p.greet_below, "Who walks faster passes by.");
-  time("tone_time", p.tone, "From the tone to the first motion; ISO 13482 asks for a warning.");
-  time("acknowledge_timeout", p.acknowledge, "The navigator must take a goal by then.");
-  time("recovery_timeout", p.recovery, "How long a robot that may not move is waited for.");
-  time("finish_time", p.finish,
+  time("tone_time", {0.5, 5}, p.tone,
+       "From the tone to the first motion; ISO 13482 asks for a warning.");
+  time("acknowledge_timeout", {1, 60}, p.acknowledge, "The navigator must take a goal by then.");
+  time("recovery_timeout", {5, 3600}, p.recovery,
+       "How long a robot that may not move is waited for.");
+  time("finish_time", {1, 60}, p.finish,
        "Greeting, arrival and goodbye stay so much longer at most, until they are said to their "
        "end.");
-  time("please_after", p.please, "Blocked for so long it asks to make way.");
+  time("please_after", {1, 60}, p.please, "Blocked for so long it asks to make way.");
   number("guide_speed", "m/s", {0.2, 1.4}, p.speed,
          "Pace of guiding; the limits of the place still hold.");
   number("follow_near", "m", {0.5, 6}, p.follow.near, "Up to this gap at the full pace.");
   number("follow_far", "m", {1, 6}, p.follow.far, "At this gap the robot waits.");
   number("follow_resume", "m", {0.5, 6}, p.follow.resume, "At this gap it goes on.");
-  time("follow_unseen", p.follow.unseen, "Nobody behind for so long: it waits.");
-  time("follow_grace", p.follow.grace,
+  time("follow_unseen", {0.5, 10}, p.follow.unseen, "Nobody behind for so long: it waits.");
+  time("follow_grace", {0.1, 60}, p.follow.grace,
        "After a departure the visitor steps behind: for so long at most, and until he was seen "
        "there.");
   number("follow_grace_way", "m", {0, 10}, p.follow.grace_way,
          "The same: until the robot has gone so far.");
-  time("follow_call", p.follow.call, "Waiting for so long it calls, and again.");
-  time("follow_give_up", p.follow.give_up, "Waiting for so long it gives up.");
+  time("follow_call", {1, 60}, p.follow.call, "Waiting for so long it calls, and again.");
+  time("follow_give_up", {5, 3600}, p.follow.give_up, "Waiting for so long it gives up.");
   number("follow_behind", "m", {0.8, 4}, p.behind,
          "So far behind a visitor whom the robot follows.");
   p.questionnaire =
@@ -81,6 +88,13 @@ Guide GuideComponent::make(runtime::Host& host, const std::string& kept) {
   auto& parameters = host.parameters();
   const Parameters p = read_parameters(parameters);
   auto phrases = phrases::read_phrases(host, "guide", kTextKeys);
+  if (p.warning >= p.answer || p.warning >= p.pause) {
+    std::ostringstream wrong;
+    wrong << "warning_time must be below answer_timeout and pause_timeout, got "
+          << runtime::seconds(p.warning) << " s, " << runtime::seconds(p.answer) << " s and "
+          << runtime::seconds(p.pause) << " s";
+    host.fault(wrong.str());
+  }
   if (!(p.follow.resume < p.follow.far) || !(p.follow.near < p.follow.far))
     host.fault("follow_near and follow_resume must be below follow_far");
   Memory memory;

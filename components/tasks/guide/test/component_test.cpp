@@ -1,6 +1,6 @@
 #include "tasks/guide/shell/component.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
@@ -11,6 +11,26 @@ namespace {
 
 using namespace usher_msgs::msg;
 using std::chrono::milliseconds;
+
+TEST(GuideParameters, ThatCannotBeMeantAreRefused) {
+  const auto error = [](const std::string& parameters) -> std::string {
+    try {
+      const runtime::TestHost host(runtime::component_factory<GuideComponent>("guide"), parameters);
+      return "";
+    } catch (const std::runtime_error& refused) {
+      return refused.what();
+    }
+  };
+  EXPECT_EQ(error("answer_timeout: 40 s\nwarning_time: 30 s"), "");
+  EXPECT_EQ(
+      error("answer_timeout: 40 s\nwarning_time: 40 s"),
+      "warning_time must be below answer_timeout and pause_timeout, got 40 s, 40 s and 120 s");
+  EXPECT_THAT(error("pause_timeout: 50 s\nwarning_time: 55 s"), testing::HasSubstr("55 s"));
+  for (const char* nonsense : {"answer_timeout: 0.1 s", "warning_time: 10 s", "tone_time: 1 h",
+                               "tone_time: 0.1 s", "arrived_time: 1 h", "follow_unseen: 1 h"}) {
+    EXPECT_THAT(error(nonsense), testing::HasSubstr("must be in")) << nonsense;
+  }
+}
 
 /// The component in a robot that is told by hand what it does. Its texts are their keys.
 class Stage : public testing::Test {
@@ -190,6 +210,29 @@ TEST_F(Stage, WaitsForNoVoiceThatHasGone) {
   speech.reset();
   run(2700);
   EXPECT_EQ(screen().state(), "location_ask");
+}
+
+TEST_F(Stage, AsksNobodyToMakeWayOnOldWordOfAnObstacle) {
+  drive();
+  const auto blocked_for = [&](int ms) {
+    for (int at = 0; at < ms; at += 100) {
+      FollowStatus follow;
+      follow.header(wire::header(host.now(), ""));
+      follow.state(GoalStatus_Constants::STATE_WAITING);
+      follow.blocked_for(1.0F);
+      host.publish(topics::kFollowStatus, follow);
+      run(100);
+    }
+  };
+  const auto pleas = [&] {
+    return std::ranges::count_if(host.written(topics::kDialogueScreen), [](const auto& screen) {
+      return screen.tone() == DialogueScreen_Constants::TONE_PLEASE;
+    });
+  };
+  blocked_for(1500), run(5000);
+  EXPECT_EQ(pleas(), 0);
+  blocked_for(4000);
+  EXPECT_GT(pleas(), 0);
 }
 
 TEST_F(Stage, GreetsWhoIsAnotherOne) {
