@@ -132,7 +132,7 @@ TEST(ExpectationOfAFault, ForATouchThatNobodyTellsOfIsNothing) {
 TEST(ExpectationOfAFault, BesideASilentSupervisorIsThatTheGrantRunsOut) {
   WindowPlan plan;
   plan.faults = {{FaultKind::kHang, "supervisor", "", 3.0},
-                 {FaultKind::kRogue, "cmd_vel/navigation", "rogue", 3.0}};
+                 {FaultKind::kRogue, "cmd_vel/navigation", "rogue", 4.0}};
   const auto all = expectations(plan, kTargets);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[1].zero_within, all[0].zero_within);
@@ -140,6 +140,9 @@ TEST(ExpectationOfAFault, BesideASilentSupervisorIsThatTheGrantRunsOut) {
   EXPECT_LT(alone.zero_within, all[1].zero_within);
   EXPECT_EQ(all[1].read_within, alone.read_within + 3.0) << "nobody tells why until it is back";
   EXPECT_EQ(all[0].read_within, alone.read_within);
+  plan.faults[1].duration = 2.0;
+  EXPECT_EQ(expectations(plan, kTargets)[1].revoked_within, Expectation::kNever)
+      << "came and went while nobody watched";
 }
 
 }  // namespace
