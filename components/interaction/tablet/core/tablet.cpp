@@ -69,6 +69,8 @@ Touched Tablet::take(const Screen& screen, Time now) {
     pending_.reset();
     typed_.clear();
   }
+  if (another || !(screen.time_left >= 0.0)) announced_ = 0.0;
+  if (screen.time_left >= 0.0) announced_ = std::max(announced_, screen.time_left);
   Touched touched = follow_hold(drove, now);
   watch_buttons(now);
   return touched;
@@ -221,6 +223,7 @@ View Tablet::view(Time now) const {
     view.progress = screen_.progress;
     view.way_text = way_text(screen_.remaining, screen_.eta);
     if (screen_.time_left >= 0.0) view.time_left = screen_.time_left;
+    if (announced_ > 0.0) view.time_left_share = screen_.time_left / announced_;
     add_options(view, now);
     if (pending_ && now - pending_->since < kPatience) {
       view.pending = true;

@@ -142,6 +142,7 @@ class Tablet {
 
   phrases::PhraseBook phrases_;
   Screen screen_;
+  double announced_ = 0.0;  ///< [s] that were left when the end of this question was announced
   bool robot_heard_ = false, dialogue_heard_ = false;
   std::optional<geometry::Pose2> pose_;
   std::optional<Pending> pending_;

@@ -42,11 +42,12 @@ struct View {
   bool stop_offered = false, start_offered = false;  ///< by the tablet itself, at the lower left
   bool start_active = true;
   std::string stop_label, start_label;
-  double time_left = -1.0;  ///< [s] until the question is given up; negative: not soon
-  double progress = -1.0;   ///< {0..1}; negative: none
-  std::string way_text;     ///< "35 m · 1½ min"
-  std::string place;        ///< name of the location that is marked on the map
-  std::string here_label;   ///< "You are here"
+  double time_left = -1.0;       ///< [s] until the question is given up; negative: not soon
+  double time_left_share = 0.0;  ///< {0..1} of what was left when that was announced
+  double progress = -1.0;        ///< {0..1}; negative: none
+  std::string way_text;          ///< "35 m · 1½ min"
+  std::string place;             ///< name of the location that is marked on the map
+  std::string here_label;        ///< "You are here"
   bool located = false;
   geometry::Pose2 robot;  ///< in map
 

@@ -73,6 +73,25 @@ TEST(Tablet, SortsButtonsIntoPanels) {
   EXPECT_EQ(view.time_left, 12.0);
 }
 
+TEST(Tablet, ShowsWhatIsLeftOfTheTimeThatWasAnnounced) {
+  Tablet tablet = make();
+  Screen shown = screen(1, "guide_ask", {"yes", "stay"});
+  const auto share = [&](double time_left) {
+    shown.time_left = time_left;
+    static_cast<void>(tablet.take(shown, {}));
+    return tablet.view({}).time_left_share;
+  };
+  EXPECT_EQ(share(NAN), 0.0);
+  EXPECT_EQ(share(60.0), 1.0) << "whatever the guide's warning_time";
+  EXPECT_EQ(share(45.0), 0.75);
+  EXPECT_EQ(share(0.0), 0.0);
+  EXPECT_EQ(share(NAN), 0.0) << "he asked for more time";
+  EXPECT_EQ(share(20.0), 1.0);
+  EXPECT_EQ(share(5.0), 0.25);
+  shown.id = 2;
+  EXPECT_EQ(share(5.0), 1.0) << "another question";
+}
+
 TEST(Tablet, AnswersOnceUntilTheReply) {
   Tablet tablet = make();
   static_cast<void>(tablet.take(screen(7, "guide_ask", {"yes", "no"}), {}));

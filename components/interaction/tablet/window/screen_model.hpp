@@ -103,6 +103,7 @@ class ScreenModel : public QObject {
   Q_PROPERTY(QString startLabel READ startLabel NOTIFY changed)
   Q_PROPERTY(QString queryLabel READ queryLabel NOTIFY changed)
   Q_PROPERTY(double timeLeft READ timeLeft NOTIFY changed)
+  Q_PROPERTY(double timeLeftShare READ timeLeftShare NOTIFY changed)
   Q_PROPERTY(double progress READ progress NOTIFY changed)
   Q_PROPERTY(QString wayText READ wayText NOTIFY changed)
   Q_PROPERTY(QString hereLabel READ hereLabel NOTIFY changed)
@@ -136,6 +137,7 @@ class ScreenModel : public QObject {
   QString startLabel() const { return text(view_.start_label); }
   QString queryLabel() const { return text(view_.query_label); }
   double timeLeft() const { return view_.time_left; }
+  double timeLeftShare() const { return view_.time_left_share; }
   double progress() const { return view_.progress; }
   QString wayText() const { return text(view_.way_text); }
   QString hereLabel() const { return text(view_.here_label); }

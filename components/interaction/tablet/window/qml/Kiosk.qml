@@ -163,7 +163,7 @@ Item {
                 radius: height / 2
                 color: Theme.surface
                 Rectangle {
-                    width: parent.width * Math.max(0, Math.min(1, kiosk.model.timeLeft / 20))
+                    width: parent.width * kiosk.model.timeLeftShare
                     height: parent.height
                     radius: height / 2
                     color: Theme.focus
