@@ -68,8 +68,8 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
   // Libraries are no components; those of drivers, tasks and texts have what shells share, too.
   if (starts_with_any(name, {"drivers/base_obedience/core/", "drivers/laser_scanner/core/",
                              "drivers/serial_frame/core/", "interaction/finger/core/",
-                             "interaction/phrases/core/", "simulation/rendering/core/",
-                             "tasks/service/core/"})) {
+                             "interaction/own_stop/core/", "interaction/phrases/core/",
+                             "simulation/rendering/core/", "tasks/service/core/"})) {
     return {};
   }
   if (from.room.starts_with("tasks/") && from.layer == "shell" &&

@@ -39,7 +39,7 @@ void Conversation::take(const Screen& screen, Time now) {
   if (offers(kContinue)) halts_at_.reset();  // whatever else has come instead holds nothing
   // An answer, by touch or voice, sets the robot off; unless it was given before the stop.
   const bool sets_off = another && answered && alive_ && offers(kStop);
-  const bool late = sets_off && holds_ && now - stopped_at_ < kAnswerLate;
+  const bool late = sets_off && holds_ && stop_.late(now);
   if (sets_off && !late) lift_hold();
   if (another) {
     question_.reset();
@@ -95,7 +95,7 @@ void Conversation::hear_done() {
 }
 
 void Conversation::stop(Time now) {
-  stopped_at_ = now;
+  stop_.stop(now);
   question_.reset();
   wishes_.break_off = true;
   const bool stands = alive_ && offers(kContinue);  // the dialogue has stopped it already
@@ -130,9 +130,7 @@ void Conversation::lift_hold() {
 }
 
 void Conversation::hear_visit(bool served, bool navigates) {
-  const bool goes_on = served || (visit_ && navigates);
-  if (visit_ && !goes_on) lift_hold();
-  visit_ = goes_on;
+  if (stop_.ends(served, navigates)) lift_hold();
 }
 
 /// What was understood for sure: answers the screen, lifts its own stop.

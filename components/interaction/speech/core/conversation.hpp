@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "interaction/own_stop/core/visits_stop.hpp"
 #include "interaction/speech/core/grammar.hpp"
 #include "interaction/speech/core/hearing.hpp"
 #include "interaction/speech/core/tones.hpp"
@@ -68,8 +69,6 @@ class Conversation {
   /// How long a question back waits.
   static constexpr Time kPatience = std::chrono::seconds(8);
   static constexpr int kMostQuestions = 2;  ///< about one utterance
-  /// An answer that sets the robot off so soon after a stop was given before it.
-  static constexpr Time kAnswerLate = std::chrono::milliseconds(1500);
   /// A dialogue that has not stopped the robot by then is not waited for.
   static constexpr Time kStopLate = std::chrono::milliseconds(500);
 
@@ -140,10 +139,10 @@ class Conversation {
   Sentences sentences_;
   Screen screen_;
   std::uint64_t said_ = 0;
-  bool able_ = false, alive_ = true, visit_ = false;
+  bool able_ = false, alive_ = true;
   bool holds_ = false, waited_ = false, greeted_ear_ = false;
   std::string answered_;          ///< our newest answer
-  Time stopped_at_{};             ///< by voice
+  own_stop::VisitsStop stop_;     ///< the visitor's newest, by voice
   std::optional<Time> halts_at_;  ///< unless the dialogue has stopped the robot by then
   std::optional<Question> question_;
   std::vector<Phrase> phrases_;

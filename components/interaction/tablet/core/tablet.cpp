@@ -51,12 +51,8 @@ void Tablet::hear(bool robot, bool dialogue, Time now) {
   watch_buttons(now);
 }
 
-/// A stop of this visitor must not hold the robot for the next.
 Touched Tablet::hear_visit(bool served, bool navigates, Time now) {
-  const bool goes_on = served || (visit_ && navigates);
-  const bool ended = visit_ && !goes_on;
-  visit_ = goes_on;
-  Touched touched{.move = ended && lift_hold()};
+  Touched touched{.move = stop_.ends(served, navigates) && lift_hold()};
   watch_buttons(now);
   return touched;
 }
@@ -95,7 +91,7 @@ Touched Tablet::follow_hold(bool drove, Time now) {
       break;
     case Hold::kOwn:
       if (!drives || drove) break;
-      if (now - stopped_at_ >= kCalms) return {.move = lift_hold()};
+      if (!stop_.late(now)) return {.move = lift_hold()};
       hold_ = Hold::kDialogue;
       return {.answer = Answer{screen_.id, kDialogueStop, {}}};
   }
@@ -129,7 +125,7 @@ void Tablet::watch_buttons(Time now) {
 }
 
 Touched Tablet::stop(Time now) {
-  stopped_at_ = now;
+  stop_.stop(now);
   calm_at_ = now + kCalms;
   Touched touched{.stop = true};
   hold_ = Hold::kOwn;

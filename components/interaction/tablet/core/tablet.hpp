@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
+#include "interaction/own_stop/core/visits_stop.hpp"
 #include "interaction/phrases/core/phrase_file.hpp"
 #include "interaction/tablet/core/view.hpp"
 
@@ -83,9 +84,8 @@ class Tablet {
   /// long a double tap takes; reading what is new takes longer.
   static constexpr Time kSettles = std::chrono::milliseconds(400);
   /// Who is frightened taps Stop again and again, and what lets the robot move comes to where Stop
-  /// was: it takes no touch until nobody has touched for so long. An answer that sets the robot off
-  /// sooner after a stop was given before it.
-  static constexpr Time kCalms = std::chrono::milliseconds(1500);
+  /// was: it takes no touch until nobody has touched for so long, as long as answers may be late.
+  static constexpr Time kCalms = own_stop::VisitsStop::kAnswerLate;
 
   /// Whether robot (supervisor) and dialogue (guide) are heard.
   void hear(bool robot, bool dialogue, Time now);
@@ -148,11 +148,10 @@ class Tablet {
   std::optional<Pending> pending_;
   std::string typed_, hint_;
   bool asks_ = false;
-  bool visit_ = false;
   Hold hold_ = Hold::kNone;
+  own_stop::VisitsStop stop_;         ///< the visitor's newest, by this tablet
   std::vector<std::string> buttons_;  ///< ids on the view, the screen's first
   Time settled_{};                    ///< when they may be touched
-  Time stopped_at_{};                 ///< by this tablet
   Time calm_at_{};                    ///< when the robot may be let move again
 };
 
