@@ -21,11 +21,13 @@ bool voice = false;  ///< of the visitor
 /// A microphone in a room that is silent but for the visitor; the loudspeaker takes what it gets.
 class QuietCard final : public speech::SoundCard {
  public:
-  Status open_loudspeaker(const std::string&, int rate) override {
+  Opening to_open_loudspeaker(const std::string&, int rate) override {
     rate_ = static_cast<std::size_t>(rate);
-    return {};
+    return [] { return Status{}; };
   }
-  Status open_microphone(const std::string&) override { return {}; }
+  Opening to_open_microphone(const std::string&) override {
+    return [] { return Status{}; };
+  }
   std::size_t room() override { return rate_ / 50; }
   Status write(std::span<const std::int16_t>) override { return {}; }
   std::uint64_t unheard() override { return 0; }

@@ -23,6 +23,7 @@ __attribute__((format(printf, 5, 6))) void say_nothing(const char*, int, const c
                                                        const char*, ...) {  // NOLINT: ALSA's type
 }
 
+/// SND_PCM_NONBLOCK: once it is open, it is only told and asked what the device does at once.
 class Alsa {
  public:
   Alsa() = default;
@@ -99,21 +100,11 @@ class Card final : public SoundCard {
     if (!recorded_to_.empty()) static_cast<void>(write_wav_file(recorded_to_, recorded_).ok());
   }
 
-  Status open_loudspeaker(const std::string& device, int rate) override {
-    rate_ = rate;
-    recorded_.rate = rate;
-    if (is_file(device)) recorded_to_ = device;
-    if (device.empty() || device == "none" || is_file(device)) return {};
-    return loudspeaker_.open(device, SND_PCM_STREAM_PLAYBACK, rate);
+  Opening to_open_loudspeaker(const std::string& device, int rate) override {
+    return [this, device, rate] { return open_loudspeaker(device, rate); };
   }
-  Status open_microphone(const std::string& device) override {
-    if (device.empty() || device == "none") return Error{"there is no microphone"};
-    if (!is_file(device)) return microphone_.open(device, SND_PCM_STREAM_CAPTURE, kSpeechRate);
-    auto sound = read_wav_file(device);
-    if (!sound) return Error{sound.error()};
-    spoken_ = for_recognizer(*sound);
-    from_file_ = true;
-    return {};
+  Opening to_open_microphone(const std::string& device) override {
+    return [this, device] { return open_microphone(device); };
   }
   std::size_t room() override {
     const auto tick = static_cast<std::size_t>(rate_) / kTicksPerSecond;
@@ -139,6 +130,23 @@ class Card final : public SoundCard {
   }
 
  private:
+  Status open_loudspeaker(const std::string& device, int rate) {
+    rate_ = rate;
+    recorded_.rate = rate;
+    if (is_file(device)) recorded_to_ = device;
+    if (device.empty() || device == "none" || is_file(device)) return {};
+    return loudspeaker_.open(device, SND_PCM_STREAM_PLAYBACK, rate);
+  }
+  Status open_microphone(const std::string& device) {
+    if (device.empty() || device == "none") return Error{"there is no microphone"};
+    if (!is_file(device)) return microphone_.open(device, SND_PCM_STREAM_CAPTURE, kSpeechRate);
+    auto sound = read_wav_file(device);
+    if (!sound) return Error{sound.error()};
+    spoken_ = for_recognizer(*sound);
+    from_file_ = true;
+    return {};
+  }
+
   int rate_ = kSpeechRate;
   Alsa loudspeaker_, microphone_;
   bool from_file_ = false;

@@ -18,12 +18,14 @@ namespace state = usher_msgs::msg::SpeechStatus_Constants;
 
 constexpr auto kStep = milliseconds(20);
 constexpr auto kDialogueAge = milliseconds(3000);
+constexpr std::size_t kStepsPerSecond = 50;
 constexpr std::uint64_t kLevelEvery = 2;    // steps: 25 Hz
 constexpr std::uint64_t kStatusEvery = 25;  // steps, when nothing changes: 2 Hz
 constexpr std::uint64_t kMostSkipped = 50;  // steps that are made up for: 1 s
 constexpr std::uint64_t kRetryEvery = 250;  // steps between two tries to open a device: 5 s
 constexpr std::size_t kMostJobs = 4;        // that wait for voice or recognizer
 constexpr double kDucked = 0.25;            // of the volume, while somebody speaks
+constexpr auto kOpenTime = milliseconds(50);
 constexpr auto kLoadTime = milliseconds(1000);
 constexpr auto kSynthesisTime = milliseconds(30);
 constexpr auto kRecognitionTime = milliseconds(120);
@@ -114,15 +116,42 @@ SpeechComponent::SpeechComponent(runtime::Host& host, Equipment equipment)
 }
 
 void SpeechComponent::open_devices() {
-  const auto open = [](std::string& trouble, const Status& status) {
-    trouble = status ? "" : status.error();
-  };
-  if (ticks_ == 1 || !loudspeaker_trouble_.empty()) {
-    open(loudspeaker_trouble_,
-         card_->open_loudspeaker(settings_.loudspeaker, synthesizer_->rate()));
-  }
-  if (ticks_ == 1 || !microphone_trouble_.empty())
-    open(microphone_trouble_, card_->open_microphone(settings_.microphone));
+  const bool first = ticks_ == 1;
+  if (!loudspeaker_opens_ && (first || !loudspeaker_trouble_.empty())) open_loudspeaker();
+  if (!microphone_opens_ && (first || !microphone_trouble_.empty())) open_microphone();
+}
+
+void SpeechComponent::open_loudspeaker() {
+  loudspeaker_opens_ = true;
+  if (loudspeaker_trouble_.empty())
+    loudspeaker_trouble_ = "waits for the loudspeaker " + settings_.loudspeaker;
+  const auto opened = std::make_shared<Status>();
+  host_.offload(
+      kOpenTime,
+      [card = card_, opened,
+       open = card_->to_open_loudspeaker(settings_.loudspeaker, synthesizer_->rate())] {
+        *opened = open();
+      },
+      [this, opened] {
+        loudspeaker_opens_ = false;
+        loudspeaker_trouble_ = opened->ok() ? "" : opened->error();
+      });
+}
+
+void SpeechComponent::open_microphone() {
+  microphone_opens_ = true;
+  if (microphone_trouble_.empty())
+    microphone_trouble_ = "waits for the microphone " + settings_.microphone;
+  const auto opened = std::make_shared<Status>();
+  host_.offload(
+      kOpenTime,
+      [card = card_, opened, open = card_->to_open_microphone(settings_.microphone)] {
+        *opened = open();
+      },
+      [this, opened] {
+        microphone_opens_ = false;
+        microphone_trouble_ = opened->ok() ? "" : opened->error();
+      });
 }
 
 void SpeechComponent::load() {
@@ -232,11 +261,13 @@ void SpeechComponent::say_next() {
 }
 
 void SpeechComponent::play() {
-  out_.resize(card_->room());
+  // Time passes also while it is opened.
+  const auto step = static_cast<std::size_t>(player_.rate()) / kStepsPerSecond;
+  out_.resize(loudspeaker_opens_ ? step : card_->room());
   if (out_.empty()) return;
   player_.set_gain(settings_.volume * (activity_.voice() ? kDucked : 1.0));
   player_.take(out_);
-  if (!loudspeaker_trouble_.empty()) return;  // time passes all the same
+  if (!loudspeaker_trouble_.empty()) return;
   if (const Status written = card_->write(out_); !written) loudspeaker_trouble_ = written.error();
 }
 
@@ -250,7 +281,7 @@ void SpeechComponent::hear() {
   }
   // What nobody hears comes back to no microphone.
   constexpr double kSilence = -100.0;  // [dB]
-  const double echo = loudspeaker_trouble_.empty() ? player_.loudness(card_->unheard()) : kSilence;
+  const double echo = loudspeaker_trouble_.empty() ? player_.loudness(unheard()) : kSilence;
   // Heard all the time, so that the room's noise is known when somebody is waited for.
   auto utterance = activity_.hear(in_, echo);
   if (!conversation_.listens()) {
@@ -285,8 +316,8 @@ void SpeechComponent::recognize_next() {
 }
 
 void SpeechComponent::tick(std::uint64_t skipped) {
-  if (++ticks_ == 1) load();
-  if (ticks_ % kRetryEvery == 1) open_devices();
+  if (++ticks_ % kRetryEvery == 1) open_devices();
+  if (ticks_ == 1) load();
   conversation_.can_understand(models_ready_ && microphone_trouble_.empty());
   conversation_.hear_dialogue(guide_.fresh() != nullptr || meeting_.fresh() != nullptr);
   const auto* supervisor = supervisor_.latest();
@@ -297,20 +328,20 @@ void SpeechComponent::tick(std::uint64_t skipped) {
     play();
     hear();
   }
-  const bool sounds = player_.sounds(card_->unheard()) || synthesizing_ || !to_say_.empty();
+  const bool sounds = player_.sounds(unheard()) || synthesizing_ || !to_say_.empty();
   conversation_.step(sounds, now());
   fulfil();
   understood_ = conversation_.counts().acted + conversation_.counts().confirmed;
   ignored_ = conversation_.counts().ignored + conversation_.counts().denied;
-  finished_id_ = std::max(finished_id_, player_.finished(card_->unheard()));
+  finished_id_ = std::max(finished_id_, player_.finished(unheard()));
   report();
 }
 
 usher_msgs::msg::SpeechStatus SpeechComponent::status() {
   usher_msgs::msg::SpeechStatus status;
-  const std::uint64_t unheard = card_->unheard();
-  const auto caption = player_.caption(unheard);
-  const bool sounds = player_.sounds(unheard);
+  const std::uint64_t waits = unheard();
+  const auto caption = player_.caption(waits);
+  const bool sounds = player_.sounds(waits);
   status.state(conversation_.asks()            ? state::STATE_ASKING
                : sounds                        ? state::STATE_SPEAKING
                : conversation_.awaits_answer() ? state::STATE_LISTENING
@@ -336,7 +367,7 @@ usher_msgs::msg::SpeechStatus SpeechComponent::status() {
 
 void SpeechComponent::report() {
   if (ticks_ % kLevelEvery == 0) {
-    const double level = level_of(player_.loudness(card_->unheard()));
+    const double level = level_of(player_.loudness(unheard()));
     if (level > 0.0 || !level_was_zero_ || ticks_ % kStatusEvery == 0) {
       usher_msgs::msg::SpeechLevel message;
       message.header(wire::header(host_.now(), ""));

@@ -44,6 +44,9 @@ class SpeechComponent final : public runtime::Component {
   void recognize_next();
   void ask_supervisor(std::uint8_t command);
   void open_devices();
+  void open_loudspeaker();
+  void open_microphone();
+  std::uint64_t unheard() { return loudspeaker_opens_ ? 0 : card_->unheard(); }
   usher_msgs::msg::SpeechStatus status();
   void report();
 
@@ -52,12 +55,13 @@ class SpeechComponent final : public runtime::Component {
   phrases::PhraseBook texts_;
   Conversation conversation_;
   VoiceActivity activity_;
-  std::unique_ptr<SoundCard> card_;
+  std::shared_ptr<SoundCard> card_;
   std::shared_ptr<Synthesizer> synthesizer_;
   std::shared_ptr<Recognizer> recognizer_;  ///< null: nothing is understood
   Player player_;
   std::string loudspeaker_trouble_, microphone_trouble_, voice_trouble_, models_trouble_;
   bool models_ready_ = false;
+  bool loudspeaker_opens_ = false, microphone_opens_ = false;  ///< beside the handlers
 
   std::deque<Wishes::Say> to_say_;
   bool synthesizing_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,13 +15,17 @@
 
 namespace usher::speech {
 
-/// Microphone and loudspeaker. Called on the component's thread every 20 ms; never blocks.
+/// Microphone and loudspeaker, each by itself. Called in handlers every 20 ms, and does at once
+/// what can be done at once; only an Opening may block.
 class SoundCard {
  public:
+  /// Opens a device. Runs on any thread, while nothing else is asked of this half of the card.
+  using Opening = std::function<Status()>;
+
   virtual ~SoundCard() = default;
-  /// Opens what is named, each by itself; "" = none. May be called again after a failure.
-  virtual Status open_loudspeaker(const std::string& device, int rate) = 0;
-  virtual Status open_microphone(const std::string& device) = 0;  ///< at kSpeechRate, one channel
+  /// How to open what is named; "" = none. May be called again after a failure.
+  virtual Opening to_open_loudspeaker(const std::string& device, int rate) = 0;
+  virtual Opening to_open_microphone(const std::string& device) = 0;  ///< kSpeechRate, one channel
   /// Samples that can be written now without more than 120 ms waiting.
   virtual std::size_t room() = 0;
   /// An error means that the device is gone; it is closed then.
@@ -64,11 +69,13 @@ struct Equipment {
 /// Nothing at all that sounds: 20 ms pass with every call. For simulation in one thread.
 class NullSoundCard final : public SoundCard {
  public:
-  Status open_loudspeaker(const std::string&, int rate) override {
+  Opening to_open_loudspeaker(const std::string&, int rate) override {
     rate_ = static_cast<std::size_t>(rate);
-    return {};
+    return [] { return Status{}; };
   }
-  Status open_microphone(const std::string&) override { return Error{"there is no microphone"}; }
+  Opening to_open_microphone(const std::string&) override {
+    return [] { return Status{Error{"there is no microphone"}}; };
+  }
   std::size_t room() override { return rate_ / 50; }
   Status write(std::span<const std::int16_t>) override { return {}; }
   std::uint64_t unheard() override { return 0; }

@@ -2,9 +2,9 @@
 
 namespace usher::speech {
 
-Status StreamMicrophone::open_microphone(const std::string& device) {
+SoundCard::Opening StreamMicrophone::to_open_microphone(const std::string& device) {
   if (!device.starts_with("tcp://") && !device.starts_with("listen://"))
-    return card_->open_microphone(device);
+    return card_->to_open_microphone(device);
   if (device_.empty()) {
     device_ = device;
     host_.open_stream(device,
@@ -17,7 +17,7 @@ Status StreamMicrophone::open_microphone(const std::string& device) {
                        .on_close = [this](const std::string&) { there_ = false; }});
   }
   waiting_.clear();
-  return there_ ? Status{} : nobody();
+  return [status = there_ ? Status{} : nobody()] { return status; };
 }
 
 void StreamMicrophone::take(std::span<const std::uint8_t> bytes) {

@@ -19,10 +19,10 @@ class StreamMicrophone final : public SoundCard {
   StreamMicrophone(runtime::Host& host, std::unique_ptr<SoundCard> card)
       : host_(host), card_(std::move(card)) {}
 
-  Status open_loudspeaker(const std::string& device, int rate) override {
-    return card_->open_loudspeaker(device, rate);
+  Opening to_open_loudspeaker(const std::string& device, int rate) override {
+    return card_->to_open_loudspeaker(device, rate);
   }
-  Status open_microphone(const std::string& device) override;
+  Opening to_open_microphone(const std::string& device) override;
   std::size_t room() override { return card_->room(); }
   Status write(std::span<const std::int16_t> samples) override { return card_->write(samples); }
   std::uint64_t unheard() override { return card_->unheard(); }

@@ -19,9 +19,11 @@ namespace state = usher_msgs::msg::SpeechStatus_Constants;
 /// What the test hears and says; outlives the component.
 struct Room {
   bool microphone = true, loudspeaker = true, models = true;
-  double voice = 0.0;  ///< {0..1} loudness of a visitor
-  double hum = 20.0;   ///< peak of what always sounds
-  Hearing hearing;     ///< what the recognizer will make of it
+  int opened = 0;           ///< devices, or tried to
+  int asked_too_early = 0;  ///< while that half of the card is being opened
+  double voice = 0.0;       ///< {0..1} loudness of a visitor
+  double hum = 20.0;        ///< peak of what always sounds
+  Hearing hearing;          ///< what the recognizer will make of it
   std::vector<Phrase> listened_for;
   Sound recognized;         ///< the newest sound that the recognizer got
   double heard_peak = 0.0;  ///< of the loudspeaker
@@ -30,21 +32,38 @@ struct Room {
 class FakeCard final : public SoundCard {
  public:
   explicit FakeCard(Room& room) : room_(room) {}
-  Status open_loudspeaker(const std::string&, int rate) override {
+  Opening to_open_loudspeaker(const std::string&, int rate) override {
     rate_ = static_cast<std::size_t>(rate);
-    return room_.loudspeaker ? Status{} : Error{"no loudspeaker here"};
+    loudspeaker_waits_ = true;
+    return [this] {
+      loudspeaker_waits_ = false;
+      ++room_.opened;
+      return room_.loudspeaker ? Status{} : Error{"no loudspeaker here"};
+    };
   }
-  Status open_microphone(const std::string&) override {
-    return room_.microphone ? Status{} : Error{"no microphone here"};
+  Opening to_open_microphone(const std::string&) override {
+    microphone_waits_ = true;
+    return [this] {
+      microphone_waits_ = false;
+      ++room_.opened;
+      return room_.microphone ? Status{} : Error{"no microphone here"};
+    };
   }
-  std::size_t room() override { return rate_ / 50; }
+  std::size_t room() override {
+    room_.asked_too_early += loudspeaker_waits_ ? 1 : 0;
+    return rate_ / 50;
+  }
   Status write(std::span<const std::int16_t> samples) override {
     for (const auto sample : samples)
       room_.heard_peak = std::max(room_.heard_peak, std::abs(double{1} * sample));
     return {};
   }
-  std::uint64_t unheard() override { return 0; }
+  std::uint64_t unheard() override {
+    room_.asked_too_early += loudspeaker_waits_ ? 1 : 0;
+    return 0;
+  }
   Status read(std::vector<std::int16_t>& samples) override {
+    room_.asked_too_early += microphone_waits_ ? 1 : 0;
     if (!room_.microphone) return Error{"no microphone here"};
     for (int i = 0; i < 320; ++i) {
       samples.push_back(static_cast<std::int16_t>(room_.hum * std::sin(0.9 * at_) +
@@ -56,6 +75,7 @@ class FakeCard final : public SoundCard {
 
  private:
   Room& room_;
+  bool loudspeaker_waits_ = false, microphone_waits_ = false;  ///< to be open
   std::size_t rate_ = 8000;
   double at_ = 0.0;
 };
@@ -76,7 +96,7 @@ class FakeRecognizer final : public Recognizer {
 
 class Speech : public testing::Test {
  protected:
-  void start() {
+  void start(double time = 2.0) {
     host_ = std::make_unique<runtime::TestHost>(
         runtime::ComponentFactory{"speech",
                                   [this](runtime::Host& host) {
@@ -88,7 +108,7 @@ class Speech : public testing::Test {
                                                                           std::move(equipment)));
                                   }},
         "texts: " USHER_SOURCE_DIR "/config/dialogue/en.yaml");
-    pass(2.0);
+    pass(time);
   }
   void pass(double time) {
     for (int i = 0; i < static_cast<int>(std::lround(time * 10.0)); ++i) {
@@ -447,6 +467,26 @@ TEST_F(Speech, CaptionsGoOnWithoutALoudspeaker) {
   EXPECT_EQ(status().sentence(), "Would you like to go?");
   pass(3.0);
   EXPECT_TRUE(status().finished()) << "so nobody waits for it";
+}
+
+// A device that hangs must not hold the handlers.
+TEST_F(Speech, OpensItsDevicesBesideTheHandlers) {
+  start(0.0);
+  host_->run_for(milliseconds(50));
+  EXPECT_EQ(room_.opened, 0) << "after its first steps";
+  EXPECT_FALSE(status().audible());
+  pass(2.0);
+  EXPECT_EQ(room_.opened, 2);
+  show(5, {"yes", "no"}, "Would you like to go?");
+  EXPECT_TRUE(status().audible());
+  EXPECT_TRUE(status().understands());
+  room_.microphone = false;
+  pass(6.0);
+  EXPECT_GT(room_.opened, 2) << "tried again";
+  room_.microphone = true;
+  pass(6.0);
+  EXPECT_TRUE(status().understands());
+  EXPECT_EQ(room_.asked_too_early, 0);
 }
 
 TEST_F(Speech, SpeaksWithoutModels) {

@@ -130,8 +130,8 @@ TEST(SoundCard, IsTwoFilesWhereNoneIsWanted) {
   ASSERT_TRUE(write_wav_file(microphone, {16000, said}).ok());
   {
     const auto card = make_sound_card();
-    ASSERT_TRUE(card->open_microphone(microphone).ok());
-    ASSERT_TRUE(card->open_loudspeaker(loudspeaker, 22050).ok());
+    ASSERT_TRUE(card->to_open_microphone(microphone)().ok());
+    ASSERT_TRUE(card->to_open_loudspeaker(loudspeaker, 22050)().ok());
     std::vector<std::int16_t> heard;
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(card->read(heard).ok());
     ASSERT_EQ(heard.size(), 960U) << "20 ms each time";
@@ -148,11 +148,11 @@ TEST(SoundCard, IsTwoFilesWhereNoneIsWanted) {
 
 TEST(SoundCard, NamesTheDeviceThatIsNotThere) {
   const auto card = make_sound_card();
-  EXPECT_NE(card->open_microphone("hw:77").error().find("hw:77"), std::string::npos);
-  EXPECT_NE(card->open_loudspeaker("hw:77", 22050).error().find("hw:77"), std::string::npos);
-  EXPECT_FALSE(card->open_microphone("none").ok());
-  EXPECT_FALSE(card->open_microphone("/nowhere.wav").ok());
-  EXPECT_TRUE(card->open_loudspeaker("none", 22050).ok());
+  EXPECT_NE(card->to_open_microphone("hw:77")().error().find("hw:77"), std::string::npos);
+  EXPECT_NE(card->to_open_loudspeaker("hw:77", 22050)().error().find("hw:77"), std::string::npos);
+  EXPECT_FALSE(card->to_open_microphone("none")().ok());
+  EXPECT_FALSE(card->to_open_microphone("/nowhere.wav")().ok());
+  EXPECT_TRUE(card->to_open_loudspeaker("none", 22050)().ok());
 }
 
 }  // namespace
