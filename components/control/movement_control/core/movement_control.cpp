@@ -236,9 +236,11 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     const double linear_share = share(limits.limit.linear, wish.twist.v);
     const double angular_share = share(limits.limit.angular, wish.twist.w);
     const double factor = std::min(linear_share, angular_share);
-    // A base that is still faster than it may be rolls on with its speed: so does its turn.
+    // A base that is still faster than it may be, or was told to be, rolls on with its speed: so
+    // does its turn.
     const auto turn = [&](double part) {
-      const double v = inputs.measured ? inputs.measured->v : 0.0;
+      const double measured = inputs.measured ? inputs.measured->v : 0.0;
+      const double v = std::abs(last_.v) > std::abs(measured) ? last_.v : measured;
       if (guards(wish.source) || !(v * wish.twist.v > 0.0)) return wish.twist.w * part;
       return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)),
                         -limits.limit.angular, limits.limit.angular);

@@ -128,8 +128,8 @@ class Component : public testing::Test {
   /// A window of 6 m around the robot with a pane across its way.
   void speak_costs() {
     grid::Grid<std::uint8_t> costs({120, 120, 0.05, odom_T_base.x - 3.0, odom_T_base.y - 3.0});
-    for (double y = -1.0; y <= 1.0; y += 0.02) {
-      const auto at = costs.geometry().cell_at(odom_T_base * geometry::Point2(*glass, y));
+    for (int i = -50; i <= 50; ++i) {
+      const auto at = costs.geometry().cell_at(odom_T_base * geometry::Point2(*glass, 0.02 * i));
       costs.at(at) = 254;
     }
     host.publish(topics::kLocalCosts, wire::to_message(host.now(), costs_frame, costs));

@@ -68,6 +68,12 @@ TEST(MovementControl, KeepsTheArcWhileTheBaseIsFasterThanItMayBe) {
   inputs.navigation = Twist2{0.7, 0.4};
   inputs.measured = Twist2{0.7, 0.2};
   EXPECT_NEAR(decide().w, 0.25, 1e-9) << "no limit of the turn rate is passed";
+  inputs.enables->speed_factor = 1.0;
+  inputs.navigation = inputs.measured = Twist2{0.7, 0.2};
+  decide();
+  inputs.enables->speed_factor = 0.25;
+  inputs.measured = Twist2{0.1, 0.0};  // odometers that hang
+  EXPECT_NEAR(control.decide(inputs, now += milliseconds(20)).twist.w, 0.2, 1e-9);
 }
 
 TEST(MovementControl, DecidesByTheTable) {
