@@ -219,21 +219,16 @@ void Following::see_faces(const usher_msgs::msg::Faces& message, runtime::Time s
   see(Source::kFace, stamp, faced_, odom_T_base, {});
 }
 
-/// map_T_odom, the newest.
 std::optional<geometry::Pose2> Following::localization() const {
-  const auto newest = transforms_.buffer().newest(frames::kMap, frames::kOdom);
-  if (!newest) return std::nullopt;
-  const auto pose = transforms_.lookup_planar(frames::kMap, frames::kOdom, runtime::Time(*newest));
-  return pose ? std::optional(*pose) : std::nullopt;
+  return transforms_.newest_planar(frames::kMap, frames::kOdom, kLocalizationAge);
 }
 
 void Following::see(Source source, runtime::Time stamp, std::span<const Sighting> sightings,
                     const geometry::Pose2& odom_T_base, const geometry::Pose2& base_T_foot) {
   looked_[static_cast<std::size_t>(source)] = host_.now();
   place_sightings(sightings, odom_T_base * base_T_foot, errors_, observations_);
-  // By an old one the walls are elsewhere; and who is followed may lean on a wall.
-  if (const auto map_T_odom =
-          transforms_.newest_planar(frames::kMap, frames::kOdom, kLocalizationAge)) {
+  // Who is followed may lean on a wall.
+  if (const auto map_T_odom = localization()) {
     std::erase_if(observations_, [&](const Observation& one) {
       return legs_->on_the_map(*map_T_odom * one.position, in_wall_) && !followed(one.position);
     });

@@ -40,6 +40,7 @@ class Following {
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan);
   void update(const sensor_msgs::msg::LaserScan& scan, runtime::Time stamp,
               const geometry::Pose2& odom_T_base);
+  /// map_T_odom, the newest; nothing where it is old: the walls are elsewhere by it.
   std::optional<geometry::Pose2> localization() const;
   bool followed(const geometry::Point2& in_odom) const;
   void note(runtime::Time stamp, const geometry::Pose2& odom_T_base);

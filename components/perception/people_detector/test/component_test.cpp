@@ -20,11 +20,12 @@ using std::chrono::milliseconds;
 
 class Component : public testing::Test {
  protected:
-  void localize() { send_transform(frames::kMap, frames::kOdom, map_T_odom); }
+  void localize() { localized = true; }
   /// One second of a robot that stands, 50 scans; `walker` by time in the map.
   template <class Walker>
   void run(double seconds, const Walker& walker) {
     for (int i = 0; i < static_cast<int>(50 * seconds); ++i, time += 0.02) {
+      if (localized) send_transform(frames::kMap, frames::kOdom, map_T_odom);
       send_transform(frames::kOdom, frames::kBaseFootprint, odom_T_base);
       send_transform(frames::kBaseFootprint, "laser_level", {0.1, 0.0, 0.0});
       const Pose2 sensor = map_T_odom * odom_T_base * Pose2{0.1, 0.0, 0.0};
@@ -58,6 +59,7 @@ class Component : public testing::Test {
                          "robot.half_width: 0.33 m"};
   const Pose2 map_T_odom{0.5, 0.5, 0.3};
   const Pose2 odom_T_base{0.4, 0.6, 0.1};
+  bool localized = false;
   double time = 0.0;
 };
 
@@ -100,6 +102,20 @@ TEST_F(Component, WithoutMapOrPoseItKnowsNobodyAndSaysWhy) {
   run(1.0, crossing);
   EXPECT_TRUE(host.last(topics::kPeople)->people().empty());
   EXPECT_EQ(host.heartbeat().reason(), "robot not localized");
+}
+
+TEST_F(Component, TakesNoWallForLegsByAnOldPose) {
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(2.0, crossing);
+  EXPECT_EQ(host.last(topics::kPeople)->people().size(), 1U);
+  localized = false;
+  run(0.8, crossing);
+  EXPECT_EQ(host.heartbeat().reason(), "");
+  EXPECT_TRUE(host.last(topics::kPeople)->people().at(0).by_laser());
+  run(1.5, crossing);
+  EXPECT_EQ(host.heartbeat().reason(), "robot not localized");
+  for (const auto& person : host.last(topics::kPeople)->people()) EXPECT_FALSE(person.by_laser());
 }
 
 TEST_F(Component, FallsSilentWithTheScanAndRefusesABadOne) {
