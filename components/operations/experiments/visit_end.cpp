@@ -6,7 +6,18 @@ namespace usher::operations {
 
 namespace {
 
-constexpr double kLeastArrived = 0.99;  // of those who want to
+constexpr double kLeastArrived = 0.99;
+constexpr double kLeastLed = 0.9;  // a leader walks out of sight round a corner
+
+struct Tally {
+  double all = 0, as_wished = 0;
+};
+
+void ask_for_share(const Tally& tally, const char* name, double least, ResultSheet& sheet) {
+  if (tally.all == 0) return;
+  sheet.metrics[name] = tally.as_wished / tally.all;
+  sheet.targets[name] = {Bound::kAtLeast, least};
+}
 
 bool holds(const usher_msgs::msg::SupervisorStatus& status) {
   using namespace usher_msgs::msg::SupervisorStatus_Constants;
@@ -30,6 +41,7 @@ bool ended_as_wished(const VisitEnd& visit) {
   if (visit.outcome == OUTCOME_ARRIVED) return true;
   switch (visit.wish) {
     case Wish::kToArrive:
+    case Wish::kToLead:
       return false;
     case Wish::kToBreakOff:
       return visit.outcome == OUTCOME_GIVEN_UP;
@@ -40,22 +52,19 @@ bool ended_as_wished(const VisitEnd& visit) {
 }
 
 void judge_ends(std::span<const VisitEnd> visits, ResultSheet& sheet) {
-  double wanted = 0, arrived = 0, others = 0, otherwise = 0;
+  Tally guided, led, others;
   for (const VisitEnd& visit : visits) {
-    const bool as_wished = ended_as_wished(visit);
-    if (visit.wish == Wish::kToArrive)
-      ++wanted, arrived += as_wished ? 1 : 0;
-    else
-      ++others, otherwise += as_wished ? 0 : 1;
+    Tally& tally = visit.wish == Wish::kToArrive ? guided
+                   : visit.wish == Wish::kToLead ? led
+                                                 : others;
+    ++tally.all;
+    tally.as_wished += ended_as_wished(visit) ? 1 : 0;
   }
-  if (wanted > 0) {
-    sheet.metrics["arrived_of_those_who_want_to"] = arrived / wanted;
-    sheet.targets["arrived_of_those_who_want_to"] = {Bound::kAtLeast, kLeastArrived};
-  }
-  if (others > 0) {
-    sheet.metrics["others_that_ended_otherwise"] = otherwise;
-    sheet.targets["others_that_ended_otherwise"] = {Bound::kAtMost, 0.0};
-  }
+  ask_for_share(guided, "arrived_of_those_who_are_guided", kLeastArrived, sheet);
+  ask_for_share(led, "arrived_of_those_who_lead", kLeastLed, sheet);
+  if (others.all == 0) return;
+  sheet.metrics["others_that_ended_otherwise"] = others.all - others.as_wished;
+  sheet.targets["others_that_ended_otherwise"] = {Bound::kAtMost, 0.0};
 }
 
 }  // namespace usher::operations

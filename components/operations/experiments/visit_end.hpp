@@ -23,6 +23,7 @@ std::optional<std::string> waits_safely_for(const OpenVisit& visit);
 /// What a visitor wants of a visit.
 enum class Wish {
   kToArrive,
+  kToLead,        ///< the robot, to where he says "done"
   kToBreakOff,    ///< on the way
   kToFallSilent,  ///< at a question
 };
@@ -37,8 +38,9 @@ struct VisitEnd {
 /// he could break off or fall silent.
 bool ended_as_wished(const VisitEnd& visit);
 
-/// Of those who want to arrive, the share that did, and how many of the others ended in another way
-/// than theirs, with what is asked of both. Nothing is asked about those of whom there are none.
+/// The shares of those who want to arrive, and of those who want to lead, that did, and how many of
+/// the others ended in another way than theirs, with what is asked of each. Nothing is asked about
+/// those of whom there are none.
 void judge_ends(std::span<const VisitEnd> visits, ResultSheet& sheet);
 
 }  // namespace usher::operations

@@ -104,7 +104,8 @@ const std::array kManners{
     Manner{"leads", "lets the robot follow",
            [](Random&) {
              return Values{{"leads", "true"}, {"steps_up_to", "1.1"}};
-           }},
+           },
+           Wish::kToLead},
     Manner{"again", "goes to a second place, says what it was like",
            [](Random& r) {
              return Values{{"returns_to", "foyer"}, {"rates", r.below(2) == 0 ? "all" : "some"}};

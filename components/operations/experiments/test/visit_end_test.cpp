@@ -46,13 +46,14 @@ TEST(VisitEnd, IsAsTheVisitorWishedOrAnArrival) {
   const auto as_wished = [](Wish wish, std::uint8_t end) {
     return ended_as_wished({wish, true, end});
   };
-  for (const Wish wish : {Wish::kToArrive, Wish::kToBreakOff, Wish::kToFallSilent}) {
+  for (const Wish wish : {Wish::kToArrive, Wish::kToLead, Wish::kToBreakOff, Wish::kToFallSilent}) {
     EXPECT_TRUE(as_wished(wish, outcome::OUTCOME_ARRIVED));
     EXPECT_FALSE(as_wished(wish, outcome::OUTCOME_ENDED)) << "said goodbye without a journey";
     EXPECT_FALSE(ended_as_wished({wish, false, outcome::OUTCOME_ARRIVED})) << "goes on";
   }
   EXPECT_FALSE(as_wished(Wish::kToArrive, outcome::OUTCOME_GIVEN_UP));
   EXPECT_FALSE(as_wished(Wish::kToArrive, outcome::OUTCOME_LEFT));
+  EXPECT_FALSE(as_wished(Wish::kToLead, outcome::OUTCOME_GIVEN_UP)) << "the robot lost him";
   EXPECT_TRUE(as_wished(Wish::kToBreakOff, outcome::OUTCOME_GIVEN_UP));
   EXPECT_FALSE(as_wished(Wish::kToBreakOff, outcome::OUTCOME_LEFT)) << "there was no journey";
   EXPECT_TRUE(as_wished(Wish::kToFallSilent, outcome::OUTCOME_LEFT));
@@ -77,6 +78,11 @@ TEST(VisitEnd, NoRobotPassesWithWhichNobodyArrives) {
   visits[110].outcome = outcome::OUTCOME_LEFT;
   EXPECT_FALSE(passes()) << "who wanted to break off had no journey";
   visits.assign(100, {Wish::kToArrive, true, outcome::OUTCOME_LEFT});
+  EXPECT_FALSE(passes());
+  visits.assign(10, {Wish::kToLead, true, outcome::OUTCOME_ARRIVED});
+  visits[0].outcome = outcome::OUTCOME_GIVEN_UP;
+  EXPECT_TRUE(passes()) << "1 of 10 leaders lost";
+  visits[1].outcome = outcome::OUTCOME_GIVEN_UP;
   EXPECT_FALSE(passes());
   visits.assign(20, off);
   EXPECT_TRUE(passes()) << "nobody wanted to arrive";
