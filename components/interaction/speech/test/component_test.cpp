@@ -376,6 +376,28 @@ TEST_F(Speech, StopsThroughTheSupervisorWhenTheGuideIsGone) {
   EXPECT_TRUE(answers().empty());
 }
 
+TEST_F(Speech, RepeatsAStopUntilTheSupervisorIsBack) {
+  start();
+  show(5, {"stop"}, "Go.");
+  guide_ = false;
+  pass(4.0);
+  say(0, -25.0);
+  pass(3.0);
+  const auto asked = host_->written(topics::kSupervisorRequest);
+  ASSERT_GT(asked.size(), 10U);
+  EXPECT_EQ(asked.front(), asked.back()) << "the same one";
+  EXPECT_EQ(status().hint(), "Stopped. Say Start to go on.");
+  usher_msgs::msg::SupervisorStatus supervisor;
+  supervisor.last_request(asked.back().id());
+  supervisor.last_request_client("speech");
+  supervisor.stopped_by({"speech"});
+  host_->publish(topics::kSupervisorStatus, supervisor, "supervisor");
+  pass(0.5);
+  host_->clear();
+  pass(2.0);
+  EXPECT_TRUE(host_->written(topics::kSupervisorRequest).empty());
+}
+
 TEST_F(Speech, StopsThroughTheSupervisorUnlessTheDialogueHasDoneIt) {
   namespace result = usher_msgs::msg::DialogueScreen_Constants;
   for (const auto what : {result::RESULT_DONE, result::RESULT_LATE}) {

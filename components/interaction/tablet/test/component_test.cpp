@@ -306,6 +306,48 @@ TEST_F(Component, ShowsBuildingRouteAndPlaces) {
   host_.publish(topics::kMap, map, "map_server");
   host_.run_for(milliseconds(1100));
   EXPECT_EQ(host_.counter("inputs: rejected"), 1U);
+  EXPECT_EQ(window_.plan.width, 4) << "the one before";
+}
+
+TEST_F(Component, ShowsTheRobotOnlyWhereItIsLocalizedNow) {
+  hear();
+  show(screen(5, "location_show", {"done"}));
+  usher_msgs::msg::LocalizationStatus localization;
+  const auto localize = [&](std::uint8_t state) {
+    localization.header(wire::header(host_.now(), "map"));
+    localization.state(state);
+    host_.publish(topics::kLocalizationStatus, localization, "amcl");
+    host_.run_for(milliseconds(210));
+    return window_.view.located;
+  };
+  namespace state = usher_msgs::msg::LocalizationStatus_Constants;
+  EXPECT_FALSE(localize(state::STATE_GOOD)) << "nobody told where";
+  geometry_msgs::msg::PoseWithCovarianceStamped pose;
+  pose.header(wire::header(host_.now(), "map"));
+  pose.pose().pose(wire::to_message(geometry::Pose2{4.0, 3.0, 0.0}));
+  host_.publish(topics::kAmclPose, pose, "amcl");
+  EXPECT_TRUE(localize(state::STATE_GOOD));
+  EXPECT_EQ(window_.view.robot.x, 4.0);
+  EXPECT_FALSE(localize(state::STATE_LOST));
+  EXPECT_TRUE(localize(state::STATE_GOOD)) << "the pose of a robot that stands stays";
+  for (int i = 0; i < 22; ++i) hear();
+  EXPECT_FALSE(window_.view.located) << "nobody localizes it any more";
+}
+
+TEST_F(Component, DrawsTheNewestPlanUntilThereIsAnother) {
+  nav_msgs::msg::Path path;
+  path.header(wire::header(host_.now(), "map"));
+  for (const double x : {1.0, 2.0}) {
+    auto& pose = path.poses().emplace_back();
+    pose.pose(wire::to_message(geometry::Pose2{x, 0.0, 0.0}));
+  }
+  host_.publish(topics::kPlan, path, "navigator");
+  host_.run_for(milliseconds(5000));
+  EXPECT_EQ(window_.route.size(), 2U) << "the map shows it on the way only";
+  path.poses().clear();
+  host_.publish(topics::kPlan, path, "navigator");
+  host_.run_for(milliseconds(110));
+  EXPECT_TRUE(window_.route.empty());
 }
 
 }  // namespace

@@ -188,6 +188,15 @@ TEST_F(Someone, StepsUpWhenTheRobotWaitsAndTouchesNothingBeforeItGreets) {
   EXPECT_TRUE(answers().empty());
 }
 
+TEST_F(Someone, AnswersNothingWithoutAScreenAndStepsUpToNothingThatHeDoesNotSee) {
+  start("steps_up_to: 1 m\ncomes_after: 1 s", false);
+  pass(50);
+  EXPECT_TRUE(answers().empty());
+  show(1, "inactive", {"language:en"});
+  pass(50);
+  EXPECT_TRUE(host_->written(topics::kSimPersonGoal).empty()) << "no sim/ground_truth";
+}
+
 TEST(StepUp, LeadsRoundTheRobot) {
   const geometry::Pose2 robot{4.0, 4.0, 0.0};
   EXPECT_EQ(step_up(robot, {5.1, 4.0}, 1.0), std::nullopt);

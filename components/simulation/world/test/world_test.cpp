@@ -300,6 +300,28 @@ TEST(TwoRobots, HaveTheSamePeople) {
   EXPECT_LT((ada - second.base().truth().pose.position()).norm(), 2.0) << "it follows otto";
 }
 
+TEST(TwoRobots, AreWithTheirPeopleWhereTheyWereWhenTheirWorldFallsSilent) {
+  World first({.name = "iris"}, hall(), std::vector{stands("ada", 6.0, 1.0)}, {3.0, 2.0, 0.0}, 1);
+  World second({.name = "otto", .moves_people = false}, hall(), {}, {3.0, 2.0, 0.0}, 2);
+  ASSERT_TRUE(first.send_person("ada", {9.0, 1.0}, 1.2, false, "").ok());
+  for (int i = 0; i < 50; ++i) first.step();
+  const auto people = first.people();
+  const auto bodies = first.bodies();
+  ASSERT_GT(people[0].velocity.norm(), 0.5) << "on the way";
+  second.show_people({people.begin(), people.end()}, {bodies.begin(), bodies.end()});
+  second.show_robots({pioneer_at({6.0, 2.0, 0.0})});
+  const Point2 ada = second.people()[0].position;
+  std::vector<float> ranges;
+  const auto ahead = [&] {
+    second.scan(0, ranges);
+    return static_cast<double>(ranges[ranges.size() / 2]);
+  };
+  const double otto = ahead();
+  for (int i = 0; i < 500; ++i) second.step();
+  EXPECT_EQ(second.people()[0].position, ada);
+  EXPECT_NEAR(ahead(), otto, 0.3) << "this one sways";
+}
+
 TEST(TwoRobots, AreWatchedOneAtATime) {
   PersonPlan plan = stands("ada", 6.0, 2.0);
   plan.watches = true;
