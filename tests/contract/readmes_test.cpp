@@ -12,7 +12,6 @@ namespace usher::contract {
 namespace {
 
 namespace fs = std::filesystem;
-using runtime::Contract;
 
 /// The folder of a component: its name, that of the one whose device it simulates, or of the one
 /// that it lives with.

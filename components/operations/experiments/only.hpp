@@ -32,6 +32,7 @@ Error wrong_only(const std::string& text, const std::vector<std::string>& names,
 template <class Inputs>
 std::vector<std::string> names_of(const Inputs& inputs) {
   std::vector<std::string> names;
+  names.reserve(inputs.size());
   for (const auto& input : inputs) names.emplace_back(input.name);
   return names;
 }
