@@ -85,6 +85,10 @@ const std::vector<Experiment>& experiments() {
        "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
        "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",
        run_human_detection_experiment},
+      {"people-data",
+       "Legs in recorded scans and a person in recorded depth images, with what others marked in "
+       "them: recall, precision; --only laser | frames",
+       run_people_data_experiment},
       {"obstacle-course",
        "Thesis 8.2.3: MARVIN drives round the objects of table 8.2, lock-step: five trials with "
        "rendered images, with and without pitch correction, --seeds N with the depth model; --only "

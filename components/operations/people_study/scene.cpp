@@ -186,6 +186,16 @@ Scene random_scene(std::uint64_t seed, Crowd crowd) {
   return scene;
 }
 
+Scene rear_scene(std::uint64_t seed) {
+  const depth_pipeline::Mount mount{.x = -0.2, .z = 0.9, .backward = true};
+  Scene scene = random_scene(seed);
+  // The base leans a little while it drives.
+  Random random(stream_seed(seed, "lean"));
+  scene.camera = depth_pipeline::camera_pose(mount, radians(-15.0), radians(random.gaussian(0, 2)));
+  scene.camera.forward = 0.0;
+  return scene;
+}
+
 std::vector<Scene> thesis_scenes() {
   std::vector<Scene> scenes;
   add_poses(scenes);
@@ -195,11 +205,10 @@ std::vector<Scene> thesis_scenes() {
   return scenes;
 }
 
-Studio::Studio()
-    : intrinsics_([] {
-        const rendering::Lens lens = rendering::kinect_v2().lens;
-        return imaging::Intrinsics{lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
-      }()),
+Studio::Studio(const rendering::DepthSensorConfig& sensor)
+    : sensor_(sensor),
+      intrinsics_{sensor.lens.width, sensor.lens.height, sensor.lens.fx,
+                  sensor.lens.fy,    sensor.lens.cx,     sensor.lens.cy},
       pipeline_(depth_pipeline::DepthPipeline::make(intrinsics_, {.origin = 0.0}).value()) {}
 
 std::vector<Truth> Studio::truths_of(const Scene& scene) const {
@@ -220,7 +229,7 @@ Result<Studio::Shot> Studio::take(const Scene& scene, std::uint64_t seed) {
   auto renderer = rendering::Renderer::make(scene.model);
   if (!renderer) return Error{scene.name + ": " + renderer.error()};
   renderer->place(scene.bodies);
-  rendering::DepthSensor sensor(rendering::kinect_v2(), seed);
+  rendering::DepthSensor sensor(sensor_, seed);
   const geometry::Pose3 pose{{0.0, 0.0, scene.camera.height},
                              geometry::from_roll_pitch_yaw(0.0, scene.camera.down, 0.0)};
   sensor.measure(*renderer, pose, 0.0, raw_);

@@ -34,13 +34,15 @@ enum class Crowd { kUsual, kHard };
 /// A room with furniture, walls, poles, boards and other things that are upright, and up to five
 /// people of any posture, some of them side by side; the same for the same seed.
 Scene random_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
+/// The same room seen by MARVIN's rear camera, where config/robots/marvin.yaml mounts it.
+Scene rear_scene(std::uint64_t seed);
 /// The cases of thesis figures 8.17 to 8.21 and what the issue of partly visible people adds.
 std::vector<Scene> thesis_scenes();
 
-/// An image of a scene through the whole chain: Kinect v2, noise, depth pipeline.
+/// An image of a scene through the whole chain: camera, noise, depth pipeline.
 class Studio {
  public:
-  Studio();
+  explicit Studio(const rendering::DepthSensorConfig& sensor = rendering::kinect_v2());
   struct Shot {
     imaging::DepthImage raw, processed;  ///< valid until the next
     people_detector::View view;
@@ -54,6 +56,7 @@ class Studio {
  private:
   std::vector<Truth> truths_of(const Scene& scene) const;
 
+  rendering::DepthSensorConfig sensor_;
   imaging::Intrinsics intrinsics_;
   depth_pipeline::DepthPipeline pipeline_;
   rendering::Hits hits_;
