@@ -54,7 +54,7 @@ template <class Parse>
 Status for_each_line(std::string_view text, Parse parse) {
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const Status status = parse(Words(text.substr(0, end)), line);
+    Status status = parse(Words(text.substr(0, end)), line);
     if (!status) return status;
     text.remove_prefix(std::min(end + 1, text.size()));
   }

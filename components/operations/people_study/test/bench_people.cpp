@@ -59,7 +59,7 @@ struct FivePeople {
   imaging::DepthImage image() const { return {kCamera.width, kCamera.height, processed}; }
 
   explicit FivePeople(const std::string& file) {
-    processed.resize(640 * 480);
+    processed.resize(307'200);  // 640 x 480
     if (file.empty()) return;
     const auto cloud = read_point_cloud(file);
     auto pipeline = depth_pipeline::DepthPipeline::make(kCamera, {.origin = 0.0}).value();
