@@ -49,6 +49,7 @@ Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_human_detection_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_people_data_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_tracking_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_haar_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_depth_model_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_tracking_error_experiment(const ExperimentOptions& options);

@@ -1,5 +1,6 @@
 #include "operations/experiments/hall.hpp"
 
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 
@@ -12,16 +13,22 @@ namespace usher::operations {
 
 namespace {
 
+std::string location(const std::string& name, const geometry::Pose2& pose) {
+  char place[96];
+  std::snprintf(place, sizeof place, "x: %.3f, y: %.3f, yaw: %.4f", pose.x, pose.y, pose.yaw);
+  std::string title = name;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return "  - {name: " + name + ", title: " + title + ", " + place + "}\n";
+}
+
 std::string site_of(const Hall& hall) {
   char pose[96];
   std::snprintf(pose, sizeof pose, "%.3f, %.3f, %.4f", hall.start.x, hall.start.y, hall.start.yaw);
-  char place[96];
-  std::snprintf(place, sizeof place, "x: %.3f, y: %.3f, yaw: %.4f", hall.start.x, hall.start.y,
-                hall.start.yaw);
   std::string text = "map: map.yaml\nworld: world.yaml\n";
   if (!hall.people.empty()) text += "people: people.yaml\n";
-  text.append("initial_pose: [").append(pose).append("]\n");
-  text.append("locations:\n  - {name: start, title: Start, ").append(place).append("}\n");
+  text.append("initial_pose: [").append(pose).append("]\nlocations:\n");
+  text += location("start", hall.start);
+  for (const auto& [name, place] : hall.places) text += location(name, place);
   return text;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "foundation/geometry/pose2.hpp"
@@ -9,11 +10,12 @@
 
 namespace usher::operations {
 
-/// A building of one room for one experiment, with nothing to guide to.
+/// A building of one room for one experiment, with nothing to guide to but what `places` names.
 struct Hall {
-  std::string world;     ///< as in world.yaml
-  std::string people{};  ///< as in people.yaml; empty = nobody
-  geometry::Pose2 start;
+  std::string world;      ///< as in world.yaml
+  std::string people{};   ///< as in people.yaml; empty = nobody
+  geometry::Pose2 start;  ///< the location "start"
+  std::vector<std::pair<std::string, geometry::Pose2>> places{};  ///< other locations, by name
 };
 
 /// A deployment of `deploy/MANIFEST.yaml` in the hall: writes its site into `folder`, which exists.

@@ -85,6 +85,11 @@ const std::vector<Experiment>& experiments() {
        "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
        "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",
        run_human_detection_experiment},
+      {"tracking",
+       "Four people cross and hide each other before MARVIN, standing and driving, and one follows "
+       "it for 20 minutes, lock-step: MOTA, switched identities; --only standing | driving | "
+       "followed | pixels (rendered images), --minutes N",
+       run_tracking_experiment},
       {"people-data",
        "Legs in recorded scans and a person in recorded depth images, with what others marked in "
        "them: recall, precision; --only laser | frames",
