@@ -87,8 +87,9 @@ const std::vector<Experiment>& experiments() {
        run_human_detection_experiment},
       {"tracking",
        "Four people cross and hide each other before MARVIN, standing and driving, and one follows "
-       "it for 20 minutes, lock-step: MOTA, switched identities; --only standing | driving | "
-       "followed | pixels (rendered images), --minutes N",
+       "it or stays with it for 20 minutes, lock-step: MOTA, switched identities; --only standing "
+       "| "
+       "driving | followed | stays | pixels (rendered images), --minutes N",
        run_tracking_experiment},
       {"people-data",
        "Legs in recorded scans and a person in recorded depth images, with what others marked in "
