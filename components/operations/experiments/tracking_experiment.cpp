@@ -310,13 +310,14 @@ Result<Watched> watch(const ExperimentOptions& options, const Case& one, std::ui
   if (one.visitor == Visitor::kFollows) send_visitor(*run, Point2::Zero(), 1.3, true);
   const double end = kSettles + 60.0 * minutes;
   std::size_t errands = 0, arrivals = 0;
-  for (double left = 60.0 * minutes; left > 0.0; left = end - (*robot)->elapsed()) {
+  const auto left = [&] { return end - (*robot)->elapsed(); };
+  while (left() > 0.0) {
     if (!one.drives) {
-      stand(*run, one, seed, left);
+      stand(*run, one, seed, left());
       continue;
     }
     const char* place = errands++ % 2 == 0 ? "east" : "west";
-    const auto sent = (*robot)->send(place, std::min(kLongestWay, left));
+    const auto sent = (*robot)->send(place, std::min(kLongestWay, left()));
     if (!sent) return Error{sent.error()};
     arrivals += sent->reported;
   }
