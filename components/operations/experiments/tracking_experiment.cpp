@@ -270,9 +270,10 @@ void send_visitor(LockstepRun& run, const Point2& place, double speed, bool foll
 void stand(LockstepRun& run, const Case& one, std::uint64_t seed, double seconds) {
   if (one.visitor != Visitor::kStays) return run.world().run_for(runtime::from_seconds(seconds));
   Random random(stream_seed(seed, "steps"));
-  for (double left = seconds; left > 0.0; left -= kStep) {
+  const int steps = static_cast<int>(std::ceil(seconds / kStep));
+  for (int i = 0; i < steps; ++i) {
     send_visitor(run, {random.uniform(3.2, 4.5), random.uniform(3.5, 5.5)}, 0.5, false);
-    run.world().run_for(runtime::from_seconds(std::min(kStep, left)));
+    run.world().run_for(runtime::from_seconds(std::min(kStep, seconds - i * kStep)));
   }
 }
 
@@ -281,7 +282,7 @@ Status save_notes(const ExperimentOptions& options, const Case& one, std::uint64
   const auto map = site_map(deployment);
   if (!map) return Error{map.error()};
   const std::string path = options.out + "/" + one.name;
-  const Status saved =
+  Status saved =
       write_file(path + ".csv",
                  "t,person,x,y,in_view,visible,told_as,robot_x,robot_y,robot_yaw\n" + watched.csv);
   if (!saved) return saved;
