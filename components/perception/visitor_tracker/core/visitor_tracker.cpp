@@ -37,6 +37,7 @@ constexpr double kAdapts = 10.0;     // [s] of being seen until other light is t
 constexpr double kHidden = 0.7;      // [s] a number that shows up elsewhere after that ...
 constexpr double kElsewhere = 1.5;   // [m] ... is not his
 constexpr std::uint64_t kLost = std::numeric_limits<std::uint64_t>::max();  // nobody's number
+constexpr double kRecognised = 0.7;   // [s] in the visitor's clothes
 constexpr double kSighted = 0.15;     // [s] an older sighting is none
 constexpr double kGoneAhead = 1.0;    // [m] who is there and does not follow was never the visitor
 constexpr double kMostFollows = 1.5;  // [s]
@@ -187,6 +188,7 @@ void VisitorTracker::observe(const Moment& moment, double passed) {
     const bool sighted = look.person->unseen <= kSighted;
     habit.unlike =
         !on_the_way() || !is_another(*look.person) ? 0.0 : habit.unlike + (sighted ? passed : 0.0);
+    habit.alike = !looks_like_him(*look.person) ? 0.0 : habit.alike + (sighted ? passed : 0.0);
     look.habit = habit;
   }
 }
@@ -404,6 +406,7 @@ void VisitorTracker::keep_leader(double passed) {
   if (!seen(find(held_))) {
     const Look* found = held_ == 0 ? nearest_before() : come_from_there();
     if (!found) found = come_back();
+    if (!found) found = recognised();
     if (found) hold(*found, time_);
   }
   note_others(passed);
@@ -456,6 +459,22 @@ const VisitorTracker::Look* VisitorTracker::come_back() const {
         look.habit.beside && (look.person->position - *look.habit.beside).norm() < kComes;
     if (look.habit.stands < config_.returns || stood_there || !may_be(look)) continue;
     if (!best || look.range < best->range) best = &look;
+  }
+  return best;
+}
+
+/// Who wears the visitor's clothes, no farther from where he was last seen than he can have walked,
+/// the nearest to there.
+const VisitorTracker::Look* VisitorTracker::recognised() const {
+  const Look* best = nullptr;
+  double least = kReach + kWalk * (time_ - last_.time);
+  for (const Look& look : looks_) {
+    const double off = (look.person->position - last_.place).norm();
+    if (!seen(&look) || look.habit.beside || look.habit.alike < kRecognised || off > least)
+      continue;
+    if (!may_be(look)) continue;
+    best = &look;
+    least = off;
   }
   return best;
 }

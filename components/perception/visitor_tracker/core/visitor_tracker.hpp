@@ -73,9 +73,9 @@ struct Estimate {
 /// whoever walks behind the robot for a while, near enough to where the visitor was last seen. Who
 /// crosses, comes from ahead or stands beside the way is not taken for him. When the first identity
 /// turns up again, it counts. When the robot follows the visitor: the same one, wherever he goes;
-/// when the identity broke, whoever first turned up where he was going to be, or comes to stand at
-/// the robot for a while. Who was there beside him is another one, and so is whose clothes have
-/// clearly other colors, whatever number the people tracker gives him.
+/// when the identity broke, whoever first turned up where he was going to be, comes to stand at the
+/// robot for a while, or wears his clothes. Who was there beside him is another one, and so is
+/// whose clothes have clearly other colors, whatever number the people tracker gives him.
 ///
 /// Nobody is there only where a camera looks; else it is not known. Deterministic; up to 64 people.
 class VisitorTracker {
@@ -108,6 +108,7 @@ class VisitorTracker {
     double stays = 0.0;   ///< [s] near `anchor` and the robot, which stands
     double stands = 0.0;  ///< [s] at the robot without a break
     double unlike = 0.0;  ///< [s] clearly, without a break
+    double alike = 0.0;   ///< [s] seen in the visitor's clothes, likewise
   };
   struct Look {
     const Person* person = nullptr;
@@ -138,6 +139,7 @@ class VisitorTracker {
   void note_others(double passed);
   const Look* come_from_there() const;
   const Look* come_back() const;
+  const Look* recognised() const;
   geometry::Point2 expected(double gone) const;
   const Look* same_place(const geometry::Pose2& odom_T_base) const;
   const Look* follower(double least, double nearest, bool any) const;

@@ -10,6 +10,7 @@ constexpr int kMostTries = 2;       ///< after an error
 constexpr int kSome = 4;            ///< statements, then it has enough
 constexpr double kCatchesUp = 6.0;  ///< [s] of a follower from the robot's farthest gap
 constexpr double kComesUp = 4.0;    ///< [s] that the robot needs to where its leader stands
+constexpr double kTurnsBack = 1.0;  ///< [s] after a call
 
 bool due(double at, double since) { return at >= 0.0 && since >= at; }
 
@@ -17,6 +18,10 @@ bool due(double at, double since) { return at >= 0.0 && since >= at; }
 
 void Visitor::see(const Screen& screen, double now) {
   const bool another = screen.id != screen_.id;
+  if (screen.calls == false || screen.state != "follow_me")
+    called_at_.reset();
+  else if (screen.calls == true && !called_at_)
+    called_at_ = now;
   const bool more_hits = typed_ && screen.options != screen_.options;
   screen_ = screen;
   if (!offers("stay"))
@@ -183,7 +188,8 @@ bool Visitor::crowded(double now) const {
 Walk Visitor::walk(double now) const {
   if (!departed_at_) return Walk::kStand;
   if (screen_.state == "follow_me") {
-    return character_.leads && !led_at_ ? Walk::kLead : Walk::kStand;
+    if (!character_.leads || led_at_) return Walk::kStand;
+    return called_at_ && now - *called_at_ >= kTurnsBack ? Walk::kReturn : Walk::kLead;
   }
   const double since = now - *departed_at_;
   const double away = since - character_.walks_away_at;

@@ -17,6 +17,7 @@ struct Screen {
   std::vector<std::string> options;  ///< ids of its buttons
   std::string text_option;           ///< id of the line to type into; empty: none
   double time_left = -1.0;           ///< [s] until the question is given up; negative: not soon
+  std::optional<bool> calls;         ///< it calls him, or has said something else; nothing: a sound
 };
 
 /// How a visitor behaves. Times in seconds, those on the way from the departure on.
@@ -51,7 +52,7 @@ struct Choice {
   std::string text;  ///< typed, for a line
 };
 
-enum class Walk : std::uint8_t { kStand, kFollow, kDawdle, kAway, kBlock, kLead };
+enum class Walk : std::uint8_t { kStand, kFollow, kDawdle, kAway, kBlock, kLead, kReturn };
 
 /// A visitor who wants to go to a place: reads each screen for a while, then answers it once.
 /// Times of calls are seconds on any clock that does not go back.
@@ -66,6 +67,7 @@ class Visitor {
   const Character& character() const { return character_; }
 
   /// Stands until the first departure, then follows until the end, unless its character is another.
+  /// Who leads comes back when it is called.
   Walk walk(double now) const;
   bool arrived() const { return arrivals_ > 0; }
   /// Whether others stand round the robot now.
@@ -99,7 +101,7 @@ class Visitor {
   bool saw_map_ = false;
   bool gave_in_ = false;  ///< it does not want to go there any more
   bool misled_ = false;   ///< it was understood wrongly, and begins anew
-  std::optional<double> led_at_, awaited_at_;
+  std::optional<double> led_at_, awaited_at_, called_at_;
   int arrivals_ = 0, errors_ = 0, rated_ = 0, languages_asked_ = 0, begun_again_ = 0;
 };
 

@@ -13,12 +13,14 @@ namespace {
 constexpr auto kStep = std::chrono::milliseconds(200);
 constexpr auto kSpeechAge = std::chrono::milliseconds(3000);
 constexpr auto kTruthAge = std::chrono::milliseconds(500);
-constexpr double kDawdling = 0.5;  ///< [m/s]
-constexpr double kBlocksAt = 1.2;  ///< [m] before the robot's middle
-constexpr double kThere = 0.5;     ///< [m] from a point it has come by
-constexpr double kLeadsBy = 3.5;   ///< [m] farther ahead of the robot it waits
-constexpr double kRound = 1.1;     ///< [m] from the robot's middle others stand
+constexpr double kDawdling = 0.5;   ///< [m/s]
+constexpr double kBlocksAt = 1.2;   ///< [m] before the robot's middle
+constexpr double kThere = 0.5;      ///< [m] from a point it has come by
+constexpr double kLeadsBy = 3.5;    ///< [m] farther ahead of the robot it waits
+constexpr double kReturnsTo = 1.5;  ///< [m] before a robot that has called
+constexpr double kRound = 1.1;      ///< [m] from the robot's middle others stand
 namespace input = usher_msgs::msg::DialogueAnswer_Constants;
+namespace tone = usher_msgs::msg::DialogueScreen_Constants;
 
 double in_seconds(runtime::Time time) { return runtime::seconds(time.time_since_epoch()); }
 
@@ -143,6 +145,8 @@ void VisitorComponent::take(const usher_msgs::msg::DialogueScreen& screen) {
       sayable.push_back(option.id());
   }
   if (screen.time_left() >= 0.0F) seen.time_left = screen.time_left();
+  if (screen.tone() == tone::TONE_CALL || screen.tone() == tone::TONE_NONE)
+    seen.calls = screen.tone() == tone::TONE_CALL;
   core_.see(seen, in_seconds(host_.now()));
   delivery_.see(seen.id, seen.options);
   hearing_.see(seen.id, std::move(sayable), screen.listens());
@@ -282,17 +286,27 @@ void VisitorComponent::lead(double now) {
   const auto behind = robot();
   const auto here = place_of(person_);
   if (!behind || !here) return;
-  const auto next = [&] {
-    return geometry::Point2(leads_along_[2 * led_past_], leads_along_[2 * led_past_ + 1]);
-  };
-  if (2 * led_past_ < leads_along_.size() && (*here - next()).norm() < kThere) ++led_past_;
+  if (2 * led_past_ < leads_along_.size() && (*here - led_along(led_past_)).norm() < kThere)
+    ++led_past_;
   if (2 * led_past_ >= leads_along_.size()) {
     core_.led(now);
     send(person_, *here, 0.0);
   } else {
     const bool waits = (*here - behind->position()).norm() > kLeadsBy;
-    send(person_, next(), waits ? 0.0 : speed_);
+    send(person_, led_along(led_past_), waits ? 0.0 : speed_);
   }
+}
+
+/// Back to a robot that has called, round the corners that it has come by.
+void VisitorComponent::come_back() {
+  const auto behind = robot();
+  const auto here = place_of(person_);
+  if (!behind || !here) return;
+  const double range = (*here - behind->position()).norm();
+  if (led_past_ > 0 && (*here - led_along(led_past_ - 1)).norm() < kThere) --led_past_;
+  const bool corner = led_past_ > 0 && (*here - led_along(led_past_ - 1)).norm() < range;
+  send(person_, corner ? led_along(led_past_ - 1) : behind->position(),
+       range > kReturnsTo ? speed_ : 0.0);
 }
 
 /// The bystanders come and stand round the robot; later they go back.
@@ -332,6 +346,8 @@ void VisitorComponent::walk(double now) {
       return step_up(kBlocksAt);
     case Walk::kLead:
       return lead(now);
+    case Walk::kReturn:
+      return come_back();
     case Walk::kFollow:
     case Walk::kDawdle:
     case Walk::kAway:

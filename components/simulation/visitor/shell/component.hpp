@@ -43,6 +43,10 @@ class VisitorComponent final : public runtime::Component {
   void walk(double now);
   void block();
   void lead(double now);
+  void come_back();
+  geometry::Point2 led_along(std::size_t point) const {
+    return {leads_along_[2 * point], leads_along_[2 * point + 1]};
+  }
   void gather(bool crowded);
   void send(const std::string& whom, const geometry::Point2& place, double speed,
             bool follow = false);

@@ -287,6 +287,24 @@ TEST(Visitor, LeadsTheRobotAndSaysWhenTheyAreThere) {
   EXPECT_EQ(chosen(unseen, 0.0), "yes") << "a robot that sees nobody cannot follow";
 }
 
+TEST(Visitor, WhoLeadsComesBackWhenTheRobotCalls) {
+  Character leader = kitchen();
+  leader.leads = true;
+  Visitor visitor(leader);
+  Screen following = screen(1, "follow_me", {"done", "stop"});
+  visitor.see(following, 0.0);
+  following.calls = true;
+  visitor.see(following, 10.0);
+  EXPECT_EQ(visitor.walk(10.5), Walk::kLead) << "he has not heard it out";
+  EXPECT_EQ(visitor.walk(11.0), Walk::kReturn);
+  following.calls.reset();
+  visitor.see(following, 12.0);
+  EXPECT_EQ(visitor.walk(12.0), Walk::kReturn) << "a sound";
+  following.calls = false;
+  visitor.see(following, 13.0);
+  EXPECT_EQ(visitor.walk(13.0), Walk::kLead);
+}
+
 TEST(Visitor, BlocksTheWayAndIsCrowdedForAWhile) {
   Character crowded = kitchen();
   crowded.blocks_at = 5.0, crowded.blocks_for = 10.0;

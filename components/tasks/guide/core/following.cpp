@@ -14,6 +14,9 @@ constexpr double kLookFrom = 0.3;  ///< [m] before the place where an unseen vis
 constexpr double kJump = 2.0;      ///< [m] nobody walks so far unseen: the way begins anew
 constexpr int kMostGoalsFailed = 5;               ///< in a row
 constexpr Time kRests = std::chrono::seconds(5);  ///< then a tone sounds before it drives again
+constexpr Time kLooks = std::chrono::seconds(2);  ///< in each direction, for a lost visitor
+constexpr Time kStuck = std::chrono::seconds(4);  ///< on the way to where he was last
+constexpr double kLooksOn = 1.2;                  ///< [rad] to the next one, a camera's view
 
 }  // namespace
 
@@ -33,6 +36,7 @@ bool Guide::choose_following(const std::string& option, Time now) {
   goals_failed_ = 0;
   trail_ = {};
   going_to_.reset();
+  looks_round_ = false;
   unseen_since_.reset();
   not_allowed_since_.reset();
   stands_told_.reset();
@@ -83,6 +87,7 @@ void Guide::watch_following(Time now) {
     goals_failed_ = 0;
     return;
   }
+  if (looks_round_) return;
   going_to_.reset();
   if (++goals_failed_ >= kMostGoalsFailed) fail(Text::kNoWay, Cause::kFailure, now);
 }
@@ -127,38 +132,60 @@ void Guide::go_behind(Time now) {
   const geometry::Point2 robot = surroundings_.pose->position();
   const auto& visitor = surroundings_.visitor;
   const bool seen = visitor && visitor->seen;
-  if (seen &&
-      std::hypot(visitor->x, visitor->y) < parameters_.behind) {  // he has stopped or come back
+  const bool near = seen && std::hypot(visitor->x, visitor->y) < parameters_.behind;
+  if (near || (seen && looks_round_)) {  // he has stopped or come back, or is found
     if (goal_id_ != 0) {
       actions_.cancel = goal_id_;
       actions_.remember = true;
     }
     goal_id_ = 0;
+    looks_round_ = false;
     going_to_.reset();
     return;
   }
   // One who went round a corner is looked for where he was last.
   const bool unseen = unseen_since_ && now - *unseen_since_ >= parameters_.follow.unseen;
   const auto place = trail_.behind(unseen ? kLookFrom : parameters_.behind);
-  if (!place || (place->position() - robot).norm() < kGoalStep) return;
+  if (!place || (place->position() - robot).norm() < kGoalStep) {
+    if (unseen) look_round(now);
+    return;
+  }
   // Never past him.
   if (seen && (place->position() - robot).norm() > std::hypot(visitor->x, visitor->y)) return;
-  if (going_to_ && (place->position() - *going_to_).norm() < kGoalStep) return;
+  if (going_to_ && (place->position() - *going_to_).norm() < kGoalStep) {
+    if (unseen) look_round(now);  // from as near as it comes
+    return;
+  }
   if (going_to_ && now - goal_given_at_ < kGoalEvery) return;
+  if (go_to(*place, now)) going_to_ = place->position(), looks_round_ = false;
+}
+
+/// A lost visitor is not where he was last seen: a camera's view farther round after the other.
+void Guide::look_round(Time now) {
+  const bool stuck = blocked_since_ && now - *blocked_since_ >= kStuck && !looks_round_;
+  if (!stuck && (goal_id_ != 0 || now - drove_at_ < kLooks)) return;
+  geometry::Pose2 turned = *surroundings_.pose;
+  turned.yaw = geometry::normalized(turned.yaw + kLooksOn);
+  if (go_to(turned, now)) looks_round_ = true;
+}
+
+/// False: it has rested, and a tone sounds first.
+bool Guide::go_to(const geometry::Pose2& place, Time now) {
   if (now - drove_at_ >= kRests) {
     drove_at_ = now;
     move_at_ = now + parameters_.tone;
-    return sound(Tone::kMoving);
+    sound(Tone::kMoving);
+    return false;
   }
-  going_to_ = place->position();
   goal_id_ = next_id_++;
   if (first_goal_ == 0) first_goal_ = goal_id_;
   goal_given_at_ = now;
-  actions_.goal = Goal{goal_id_, {}, *place};
+  actions_.goal = Goal{goal_id_, {}, place};
   moved_at_ = now;
   // For the supervisor a navigation ends with each goal that is reached.
   if (surroundings_.supervisor == Supervisor::kAvailable) start_navigation();
   actions_.remember = true;
+  return true;
 }
 
 }  // namespace usher::guide

@@ -260,6 +260,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void follow_visitor(Time now);
   void watch_following(Time now);
   void go_behind(Time now);
+  void look_round(Time now);
+  bool go_to(const geometry::Pose2& place, Time now);
   void start_navigation();
   std::optional<std::uint64_t> own_goal() const;
   void watch_obstacle(Time now);
@@ -330,6 +332,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   Trail trail_;                   ///< of the visitor whom the robot follows
   std::uint64_t first_goal_ = 0;  ///< of this following; its goals up to goal_id_ are all ours
   std::optional<geometry::Point2> going_to_;
+  bool looks_round_ = false;  ///< the newest goal is to turn, in search of him
   Time goal_given_at_{};
   Time moved_at_{};       ///< when the newest goal of a following was given
   Time drove_at_{};       ///< when a following last had a goal, or announced one

@@ -134,8 +134,11 @@ void Guide::watch_robot(Time now) {
   // A visitor who stopped it himself has his own time.
   const bool refused = surroundings_.permission != Permission::kGiven &&
                        (state_ == State::kGuideActive || follows());
-  const bool held = refused || (supervisor != Supervisor::kNavigation &&
-                                (supervisor != Supervisor::kAvailable || on_the_way()));
+  // Between two goals of a following it navigates nowhere.
+  const bool between = follows() && goal_id_ == 0;
+  const bool held =
+      refused || (supervisor != Supervisor::kNavigation &&
+                  (supervisor != Supervisor::kAvailable || (on_the_way() && !between)));
   if (!held) {
     not_allowed_since_.reset();
     return;
@@ -318,7 +321,7 @@ void Guide::watch_obstacle(Time now) {
   }
   if (!blocked) {
     blocked_since_.reset();
-    if (pleads_ && follows()) say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
+    if (pleads_ && follows() && !unseen_since_) say_on_the_way(Text::kWalkAhead, Tone::kNone, now);
     pleads_ = false;
     return;
   }

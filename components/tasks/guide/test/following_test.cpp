@@ -129,10 +129,64 @@ TEST(Guide, LooksForALostLeaderWhereHeWasAndCalls) {
   EXPECT_NEAR(rig.goal_pose->x, 2.7, 1e-9);
   EXPECT_EQ(rig.guide.screen().text, "I cannot see you. Please come back to me.");
   rig.navigate(GoalState::kSucceeded);
-  rig.wait(10500);
+  rig.drive(10500);
   EXPECT_EQ(rig.said, std::vector<std::string>(3, "I cannot see you. Please come back to me."));
   rig.see(1.5), rig.wait(200);
   EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Choose Done when we are there.");
+}
+
+TEST(Guide, LooksRoundWhereALostLeaderIsNot) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.see_nobody(), rig.wait(1500);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.pose = geometry::Pose2{2.7, 0.0, 0.0};
+  rig.taken(), rig.wait(1500);
+  EXPECT_EQ(rig.taken(), "") << "it looks";
+  rig.wait(600);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  EXPECT_NEAR(rig.goal_pose->x, 2.7, 1e-9);
+  EXPECT_NEAR(rig.goal_pose->yaw, 1.2, 1e-9);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.pose->yaw = 1.2;
+  rig.wait(2100);
+  EXPECT_NEAR(rig.goal_pose->yaw, 2.4, 1e-9);
+  rig.navigate(GoalState::kActive), rig.taken();
+  rig.see(2.5), rig.wait(100);
+  EXPECT_EQ(rig.taken(), "cancel") << "there he is";
+}
+
+TEST(Guide, LooksRoundWhenTheWayToWhereALeaderWasIsBlocked) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.see_nobody(), rig.wait(1500);
+  rig.navigate(GoalState::kActive);
+  rig.around.navigation->blocked = true, rig.taken();
+  rig.wait(3500);
+  EXPECT_EQ(rig.taken(), "");
+  rig.wait(1000);
+  EXPECT_EQ(rig.taken(), "goal:pose");
+  EXPECT_NEAR(rig.goal_pose->x, 0.0, 1e-9);
+  EXPECT_NEAR(rig.goal_pose->yaw, 1.2, 1e-9);
+  for (int i = 0; i < 8; ++i) rig.navigate(GoalState::kFailed), rig.wait(2100);
+  EXPECT_EQ(rig.state(), "follow_me") << "a turn that fails is no way that fails";
+}
+
+TEST(Guide, BetweenTwoGoalsOfAFollowingNothingIsMissing) {
+  Rig rig;
+  rig.around.pose = geometry::Pose2{0.0, 0.0, 0.0};
+  rig.to_following();
+  rig.see(3.0), rig.wait(1100);
+  rig.navigate(GoalState::kSucceeded);
+  rig.around.supervisor = Supervisor::kAvailable;
+  rig.see(1.0), rig.wait(3000);
+  EXPECT_EQ(rig.guide.screen().text, "Walk ahead. Choose Done when we are there.");
+  rig.around.permission = Permission::kRefused, rig.wait(1100);
+  EXPECT_EQ(rig.guide.screen().text, "One moment, please. I have to wait for a part of me.");
 }
 
 TEST(Guide, FollowsAgainAfterAHaltAndNeverPastTheVisitor) {
