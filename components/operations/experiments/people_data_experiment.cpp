@@ -145,12 +145,6 @@ void add_row(const char* name, const LegScore& score, Table& table) {
 /// Marks and ways over the map that one recording's scans give.
 Status draw_legs(const LegRecording& recording, const grid::OccupancyGrid& map, const Ways& ways,
                  const std::string& path) {
-  constexpr std::array<std::array<int, 3>, 6> kColors{{{40, 100, 190},
-                                                       {200, 60, 50},
-                                                       {60, 150, 80},
-                                                       {150, 90, 170},
-                                                       {210, 150, 40},
-                                                       {40, 150, 160}}};
   std::vector<DrawnWay> drawn;
   for (const MarkedScan& scan : recording.scans) {
     for (const Point2& leg : scan.legs)
@@ -159,8 +153,8 @@ Status draw_legs(const LegRecording& recording, const grid::OccupancyGrid& map, 
   }
   std::size_t next = 0;
   for (const auto& [id, way] : ways) {
-    const auto& color = kColors[next++ % kColors.size()];
-    drawn.push_back({"person " + std::to_string(id), color[0], color[1], color[2], 2, way});
+    drawn.push_back({.label = "person " + std::to_string(id), .points = way});
+    drawn.back().paint(next++);
   }
   return draw_ways(drawn, map, recording.name + ": who the laser alone takes for people", path);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -209,6 +210,17 @@ Status draw_runs(const std::vector<RunRecord>& runs, const grid::OccupancyGrid& 
   }
   picture.legend({{"planned", kPlan}, {"driven", kDriven}, {"not reached", kGoal}});
   return picture.save(path);
+}
+
+void DrawnWay::paint(std::uint64_t number) {
+  constexpr std::array<std::array<int, 3>, 6> kColors{{{40, 100, 190},
+                                                       {200, 60, 50},
+                                                       {60, 150, 80},
+                                                       {150, 90, 170},
+                                                       {210, 150, 40},
+                                                       {40, 150, 160}}};
+  const auto& color = kColors[number % kColors.size()];
+  red = color[0], green = color[1], blue = color[2];
 }
 
 Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& map,

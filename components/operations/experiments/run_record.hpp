@@ -109,6 +109,9 @@ struct DrawnWay {
   int red = 0, green = 0, blue = 0;
   int thickness = 2;  ///< [px]
   std::vector<geometry::Point2> points;
+
+  /// In the color of somebody's number: six that are easily told apart, over and over.
+  void paint(std::uint64_t number);
 };
 Status draw_ways(const std::vector<DrawnWay>& ways, const grid::OccupancyGrid& map,
                  const std::string& title, const std::string& path);

@@ -227,20 +227,13 @@ class TrackingWatch {
 
   void draw(const std::vector<TrackingJudge::Truth>& truths,
             const std::vector<TrackingJudge::Told>& told) {
-    constexpr std::array<std::array<int, 3>, 6> kColors{{{40, 100, 190},
-                                                         {200, 60, 50},
-                                                         {60, 150, 80},
-                                                         {150, 90, 170},
-                                                         {210, 150, 40},
-                                                         {40, 150, 160}}};
     if (truths_.empty()) truths_.resize(truths.size(), {"", 190, 190, 190, 7, {}});
     if (!truths_.empty()) truths_.front().label = "people";
     for (std::size_t i = 0; i < truths_.size(); ++i) truths_[i].points.push_back(truths[i].place);
     for (const auto& one : told) {
       DrawnWay& way = told_[one.id];
-      const auto& color = kColors[one.id % kColors.size()];
       way.label = "as " + std::to_string(one.id);
-      way.red = color[0], way.green = color[1], way.blue = color[2];
+      way.paint(one.id);
       way.points.push_back(one.place);
     }
   }

@@ -44,56 +44,6 @@ constexpr double kWayOut = 1.0;      // [m] that arcs may take to turn it by kGa
 constexpr double kGain = 0.3;        // [rad]
 constexpr double kSoon = 0.65;       // [rad] of a turn whose room bounds its rate now
 
-Status check(const DynamicWindowConfig& c) {
-  const CriticWeights& w = c.weights;
-  constexpr double kMost = 1e6;
-  return within({
-      {"pace", c.pace, 0.05, 3.0},
-      {"slowest", c.slowest, 0.01, c.pace},
-      {"careful_speed", c.careful_speed, 0.0, 3.0},
-      {"clearance", c.clearance, 0.0, 0.5},
-      {"disc_clearance", c.disc_clearance, 0.0, 2.0},
-      {"tight_speed", c.tight_speed, c.slowest, c.pace},
-      {"fastest_turn", c.fastest_turn, 0.05, 5.0},
-      {"spot_turn", c.spot_turn, 0.05, 5.0},
-      {"slowest_turn", c.slowest_turn, 0.01, c.spot_turn},
-      {"tight_turn", c.tight_turn, 0.01, c.spot_turn},
-      {"lateral_acceleration", c.lateral_acceleration, 0.05, 10.0},
-      {"turn_stopping_time", c.turn_stopping_time, 0.05, 5.0},
-      {"braking", c.braking, 0.1, 20.0},
-      {"reverse_speed", c.reverse_speed, 0.0, 1.0},
-      {"window", c.window, 0.02, 4.0},
-      {"speed_samples", static_cast<double>(c.speed_samples), 3, 64},
-      {"turn_samples", static_cast<double>(c.turn_samples), 3, 255},
-      {"simulated_time", c.simulated_time, 0.5, 4.0},
-      {"steps", static_cast<double>(c.steps), 6, 40},
-      {"margin", c.margin, 0.0, 1.0},
-      {"forward_point", c.forward_point, 0.0, 2.0},
-      {"position_tolerance", c.position_tolerance, 0.02, 2.0},
-      {"yaw_tolerance", c.yaw_tolerance, 0.01, 3.2},
-      {"turn_first_angle", c.turn_first_angle, 0.3, 3.2},
-      {"limits.acceleration", c.limits.acceleration, 0.05, 10.0},
-      {"limits.deceleration", c.limits.deceleration, 0.05, 10.0},
-      {"limits.angular_acceleration", c.limits.angular_acceleration, 0.05, 20.0},
-      {"response.latency", c.response.latency, 0.0, 1.0},
-      {"response.time_constant", c.response.time_constant, 0.0, 3.0},
-      {"response.turn_time_constant", c.response.turn_time_constant, 0.0, 3.0},
-      {"response.acceleration", c.response.acceleration, 0.05, 10.0},
-      {"response.angular_acceleration", c.response.angular_acceleration, 0.05, 20.0},
-      {"weights.path", w.path, 0.0, kMost},
-      {"weights.goal", w.goal, 0.0, kMost},
-      {"weights.alignment", w.alignment, 0.0, kMost},
-      {"weights.goal_front", w.goal_front, 0.0, kMost},
-      {"weights.obstacle", w.obstacle, 0.0, kMost},
-      {"weights.moving_obstacle", w.moving_obstacle, 0.0, kMost},
-      {"weights.speed", w.speed, 0.0, kMost},
-      {"weights.twirling", w.twirling, 0.0, kMost},
-      {"weights.smoothness", w.smoothness, 0.0, kMost},
-      {"weights.prefer_forward", w.prefer_forward, 0.0, kMost},
-      {"weights.oscillation", w.oscillation, 0.0, kMost},
-  });
-}
-
 bool plausible(const Twist2& twist) {
   return twist.finite() && std::abs(twist.v) < 10.0 && std::abs(twist.w) < 20.0;
 }
@@ -105,36 +55,6 @@ Decision refused() {
 }
 
 }  // namespace
-
-const char* to_string(Reason reason) {
-  switch (reason) {
-    case Reason::kFollowing:
-      return "following the path";
-    case Reason::kTight:
-      return "passing a tight place";
-    case Reason::kTurning:
-      return "turning to the path";
-    case Reason::kTurningToGoal:
-      return "turning to the goal's direction";
-    case Reason::kReached:
-      return "goal reached";
-    case Reason::kBraking:
-      return "braking: no way that can be stopped on";
-    case Reason::kBlocked:
-      return "blocked";
-    case Reason::kGivingWay:
-      return "giving way to somebody";
-    case Reason::kTouching:
-      return "an obstacle inside the footprint";
-    case Reason::kRecovering:
-      return "recovering";
-    case Reason::kNoPath:
-      return "no path";
-    case Reason::kInvalidInput:
-      return "invalid input";
-  }
-  return "unknown";
-}
 
 Result<DynamicWindow> DynamicWindow::make(const DynamicWindowConfig& config, cpu::Simd simd) {
   if (const Status status = check(config); !status) return Error{status.error()};

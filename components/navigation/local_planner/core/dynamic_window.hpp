@@ -88,6 +88,8 @@ struct DynamicWindowConfig {
       false;  ///< where whole lethal cells leave no way, their centers decide, at tight_speed
   CriticWeights weights;
 };
+/// Fails with what is out of its bounds.
+Status check(const DynamicWindowConfig& config);
 
 /// Follows a path on a local cost grid [fox1997dynamic, gerkey2008planning]. Grid, path, poses and
 /// people are in one frame (odom). One call a control cycle, 10 to 50 Hz; a call costs some tens of
