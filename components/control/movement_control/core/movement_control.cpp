@@ -221,81 +221,88 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
   return twist;
 }
 
+/// The part of a wish's turn that goes with this `part` of its speed. A base that is still faster
+/// than it may be, or was told to be, rolls on with its speed: so does its turn.
+double MovementControl::turn(const Wish& wish, double part, double most,
+                             const Inputs& inputs) const {
+  const double measured = inputs.measured ? inputs.measured->v : 0.0;
+  const double v = std::abs(last_.v) > std::abs(measured) ? last_.v : measured;
+  if (guards(wish.source) || !(v * wish.twist.v > 0.0)) return wish.twist.w * part;
+  return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)), -most, most);
+}
+
+/// What of a wish the limits leave. One factor for both, so that a slower robot drives the same
+/// arc. What may not move at all is cut instead: a lost pose forbids driving but not turning.
+MovementControl::Limited MovementControl::limited(const Wish& wish, const Bound& bound,
+                                                  const Inputs& inputs) const {
+  const auto share = [](double limit, double wanted) {
+    return std::abs(wanted) > limit && limit > 0.0 ? limit / std::abs(wanted) : 1.0;
+  };
+  const double linear = share(bound.limit.linear, wish.twist.v);
+  const double angular = share(bound.limit.angular, wish.twist.w);
+  Limited is{.factor = std::min(linear, angular)};
+  if (is.factor < 1.0) is.by = linear <= angular ? bound.linear_by : bound.angular_by;
+  is.twist = {wish.twist.v * is.factor, turn(wish, is.factor, bound.limit.angular, inputs)};
+  if (bound.limit.linear == 0.0 && is.twist.v != 0.0) is.twist.v = 0.0, is.by = bound.linear_by;
+  if (bound.limit.angular == 0.0 && is.twist.w != 0.0) is.twist.w = 0.0, is.by = bound.angular_by;
+  return is;
+}
+
+/// A wish, by limits, guard, ramps and whiskers.
+void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound,
+                            Decision& decision) {
+  Limited may = limited(wish, bound, inputs);
+  geometry::Twist2& wanted = may.twist;
+  if (may.by != Limit::kNone) decision.limit = may.by;
+  const double planned = planned_share({wanted.v, wish.twist.w * may.factor}, inputs, wish.source);
+  if (planned < 1.0) {
+    wanted = {
+        slowed(wanted.v * planned, wanted.v, inputs),
+        wanted.w == 0.0 ? 0.0 : turn(wish, may.factor * planned, bound.limit.angular, inputs)};
+    decision.limit = Limit::kObstacle;
+    (wanted.v != 0.0 ? bound.limit.linear : bound.limit.angular) =
+        std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);
+  }
+
+  // What is wished, so that the arc stays, and what is really commanded: while the robot speeds
+  // up into a turn its arc is another one, and what appears it slows down for at once.
+  const auto guard = [&](geometry::Twist2& twist) {
+    if (!guards(wish.source)) return;
+    const double room = guard_.share(twist, inputs.view, inputs.measured);
+    if (room >= 1.0) return;
+    twist = {slowed(twist.v * room, twist.v, inputs), twist.w * room};
+    decision.limit = inputs.view.sees ? Limit::kObstacle : Limit::kBlind;
+    if (twist.v != 0.0) bound.limit.linear = std::abs(twist.v);
+    if (twist.w != 0.0) bound.limit.angular = std::abs(twist.w);
+  };
+  guard(wanted);
+  if (smooth(wish.source) && wanted.v * direction_ < 0.0 &&
+      rolls_against(wanted.v, inputs.measured))
+    wanted.v = 0.0;
+  geometry::Twist2 ramped = ramp(wanted, wish.source, now);
+  if (planned < 1.0) {
+    if (std::abs(ramped.v) > std::abs(wanted.v)) ramped.v = wanted.v;
+    if (wish.twist.v == 0.0 && std::abs(ramped.w) > std::abs(wanted.w)) ramped.w = wanted.w;
+  }
+  if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
+  const geometry::Twist2 uncut = ramped;
+  guard(ramped);
+  if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
+  decision.twist = reflex(ramped, inputs);
+  if (decision.twist != ramped) decision.limit = Limit::kWhisker;
+  // What was cut short speeds up anew.
+  if (decision.twist.v != uncut.v) acceleration_.v = 0.0;
+  if (decision.twist.w != uncut.w) acceleration_.w = 0.0;
+  roll_out_.drive(decision.twist, now);
+}
+
 Decision MovementControl::decide(const Inputs& inputs, Time now) {
   const Wish wish = choose(inputs);
   Bound limits = bound(inputs, wish);
   Decision decision{{}, wish.source, wish.limit};
-
   if (wish.limit == Limit::kNotFinite) ++rejected_;
   if (wish.limit == Limit::kNone) {
-    // One factor for both, so that a slower robot drives the same arc. What may not move at all is
-    // cut instead: a lost pose forbids driving but not turning.
-    const auto share = [](double limit, double wanted) {
-      return std::abs(wanted) > limit && limit > 0.0 ? limit / std::abs(wanted) : 1.0;
-    };
-    const double linear_share = share(limits.limit.linear, wish.twist.v);
-    const double angular_share = share(limits.limit.angular, wish.twist.w);
-    const double factor = std::min(linear_share, angular_share);
-    // A base that is still faster than it may be, or was told to be, rolls on with its speed: so
-    // does its turn.
-    const auto turn = [&](double part) {
-      const double measured = inputs.measured ? inputs.measured->v : 0.0;
-      const double v = std::abs(last_.v) > std::abs(measured) ? last_.v : measured;
-      if (guards(wish.source) || !(v * wish.twist.v > 0.0)) return wish.twist.w * part;
-      return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)),
-                        -limits.limit.angular, limits.limit.angular);
-    };
-    geometry::Twist2 wanted{wish.twist.v * factor, turn(factor)};
-    if (factor < 1.0) {
-      decision.limit = linear_share <= angular_share ? limits.linear_by : limits.angular_by;
-    }
-    if (limits.limit.linear == 0.0 && wanted.v != 0.0) {
-      wanted.v = 0.0;
-      decision.limit = limits.linear_by;
-    }
-    if (limits.limit.angular == 0.0 && wanted.w != 0.0) {
-      wanted.w = 0.0;
-      decision.limit = limits.angular_by;
-    }
-    const double planned = planned_share({wanted.v, wish.twist.w * factor}, inputs, wish.source);
-    if (planned < 1.0) {
-      wanted = {slowed(wanted.v * planned, wanted.v, inputs),
-                wanted.w == 0.0 ? 0.0 : turn(factor * planned)};
-      decision.limit = Limit::kObstacle;
-      (wanted.v != 0.0 ? limits.limit.linear : limits.limit.angular) =
-          std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);
-    }
-
-    // What is wished, so that the arc stays, and what is really commanded: while the robot speeds
-    // up into a turn its arc is another one, and what appears it slows down for at once.
-    const auto guard = [&](geometry::Twist2& twist) {
-      if (!guards(wish.source)) return;
-      const double room = guard_.share(twist, inputs.view, inputs.measured);
-      if (room >= 1.0) return;
-      twist = {slowed(twist.v * room, twist.v, inputs), twist.w * room};
-      decision.limit = inputs.view.sees ? Limit::kObstacle : Limit::kBlind;
-      if (twist.v != 0.0) limits.limit.linear = std::abs(twist.v);
-      if (twist.w != 0.0) limits.limit.angular = std::abs(twist.w);
-    };
-    guard(wanted);
-    if (smooth(wish.source) && wanted.v * direction_ < 0.0 &&
-        rolls_against(wanted.v, inputs.measured))
-      wanted.v = 0.0;
-    geometry::Twist2 ramped = ramp(wanted, wish.source, now);
-    if (planned < 1.0) {
-      if (std::abs(ramped.v) > std::abs(wanted.v)) ramped.v = wanted.v;
-      if (wish.twist.v == 0.0 && std::abs(ramped.w) > std::abs(wanted.w)) ramped.w = wanted.w;
-    }
-    if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
-    const geometry::Twist2 uncut = ramped;
-    guard(ramped);
-    if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
-    decision.twist = reflex(ramped, inputs);
-    if (decision.twist != ramped) decision.limit = Limit::kWhisker;
-    // What was cut short speeds up anew.
-    if (decision.twist.v != uncut.v) acceleration_.v = 0.0;
-    if (decision.twist.w != uncut.w) acceleration_.w = 0.0;
-    roll_out_.drive(decision.twist, now);
+    drive(wish, inputs, now, limits, decision);
   } else {
     acceleration_ = {};
     const geometry::Twist2 rolls = roll_out_.stop(inputs.measured, now);

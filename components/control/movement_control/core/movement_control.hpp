@@ -182,6 +182,11 @@ class MovementControl {
     Limit linear_by = Limit::kSituation;
     Limit angular_by = Limit::kSituation;
   };
+  struct Limited {
+    geometry::Twist2 twist;
+    double factor = 1.0;  ///< of the wish
+    Limit by = Limit::kNone;
+  };
 
   Wish choose(const Inputs& inputs) const;
   Bound bound(const Inputs& inputs, const Wish& wish) const;
@@ -190,6 +195,9 @@ class MovementControl {
   bool guards(Source source) const;
   double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
+  double turn(const Wish& wish, double part, double most, const Inputs& inputs) const;
+  Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
+  void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);
   double slowed(double cut, double before, const Inputs& inputs) const;
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
