@@ -146,18 +146,25 @@ void DynamicWindow::sample(const Input& input, double fastest) {
     rollout_.profile(input.measured.v, last.v, v, speed_ramp, least_steps, profile);
     most_steps = std::max(most_steps, profile.steps);
   }
+  sample_turns(input, reach, most_steps);
+}
+
+/// Turn rates that can be commanded within `reach` [s], each as the base follows it.
+void DynamicWindow::sample_turns(const Input& input, double reach, int steps) {
+  const kinematics::AccelerationLimits& limits = config_.limits;
   const Ramp turn_ramp{limits.angular_acceleration, limits.angular_acceleration,
                        config_.response.latency, config_.response.turn_time_constant,
                        config_.response.angular_acceleration};
   const double turn_reach = limits.angular_acceleration * reach;
-  const double left = std::clamp(last.w + turn_reach, -config_.fastest_turn, config_.fastest_turn);
-  const double right = std::clamp(last.w - turn_reach, -config_.fastest_turn, config_.fastest_turn);
+  const double w = input.last_command.w;
+  const double left = std::clamp(w + turn_reach, -config_.fastest_turn, config_.fastest_turn);
+  const double right = std::clamp(w - turn_reach, -config_.fastest_turn, config_.fastest_turn);
   turns_.resize(static_cast<std::size_t>(config_.turn_samples));
   const double spacing = (left - right) / (config_.turn_samples - 1);
   for (int i = 0; i < config_.turn_samples; ++i) {
-    double w = right + spacing * i;
-    if (std::abs(w) <= 0.5 * spacing) w = 0.0;  // straight on is always among them
-    rollout_.profile(input.measured.w, last.w, w, turn_ramp, most_steps,
+    double target = right + spacing * i;
+    if (std::abs(target) <= 0.5 * spacing) target = 0.0;  // straight on is always among them
+    rollout_.profile(input.measured.w, w, target, turn_ramp, steps,
                      turns_[static_cast<std::size_t>(i)]);
   }
 }

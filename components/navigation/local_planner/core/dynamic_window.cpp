@@ -18,6 +18,7 @@ using geometry::Twist2;
 
 constexpr double kStanding = 0.05;          // [m/s] slower than this the robot stands
 constexpr double kSlowEnoughToTurn = 0.15;  // [m/s] below this a turn in place may begin
+constexpr double kDodgeReach = 1.0;         // [s] of turning faster or slower, while it brakes
 constexpr double kLongestCycle = 0.2;  // [s] a command is ramped for at most this long after a gap
 constexpr double kLookAhead =
     0.5;  // [m] the direction of the path is that to the point this far along
@@ -220,8 +221,8 @@ Decision DynamicWindow::brake(const Input& input) {
       halt(input, v < kStanding ? Reason::kBlocked : Reason::kBraking, config_.braking);
   decision.blocked = true;
   if (v < kSlowEnoughToTurn) return decision;  // it sways, on the spot
-  sample(input, config_.slowest);
-  keep_speed(v, turns_.front().steps);
+  keep_speed(v);
+  sample_turns(input, kDodgeReach, kept_.steps);
   const RolloutStart start{input.pose, input.measured, input.last_command};
   const auto run = [&] {
     rollout_.run(start, {&kept_, 1}, turns_, input.costs, bits_, {&whole_, &narrow_},
@@ -250,12 +251,13 @@ Decision DynamicWindow::brake(const Input& input) {
 
 /// The way that the base may need to stop, as its speed now: told to stand it leans first, and
 /// covers most of it before it gets slower.
-void DynamicWindow::keep_speed(double v, int most_steps) {
+void DynamicWindow::keep_speed(double v) {
   const double step = rollout_.settings().step;
   kept_.target = v;
   kept_.contact = 0;
   kept_.needed = config_.stopping.distance(v) + config_.margin;
-  kept_.steps = std::clamp(static_cast<int>(std::ceil(kept_.needed / (v * step))), 1, most_steps);
+  kept_.steps =
+      std::clamp(static_cast<int>(std::ceil(kept_.needed / (v * step))), 1, Rollout::kMostSteps);
   kept_.values.assign(static_cast<std::size_t>(kept_.steps) + 1, v);
   kept_.way.resize(kept_.values.size());
   for (std::size_t k = 0; k < kept_.way.size(); ++k)

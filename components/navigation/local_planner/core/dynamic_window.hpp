@@ -154,7 +154,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   void stand_in_the_way(const Input& input);
   void find_walkers(const geometry::Pose2& pose, std::span<const MovingDisc> people);
   void find_neighbours(const Input& input);
-  void keep_speed(double v, int most_steps);
+  void keep_speed(double v);
   void load(const Input& input);
 
   // What to do (dynamic_window.cpp).
@@ -187,6 +187,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   bool leaves_window(const Input& input, const geometry::Point2& place) const;
   double obstacle_on_path(const Input& input) const;
   void sample(const Input& input, double fastest);
+  void sample_turns(const Input& input, double reach, int steps);
   void measure_path(const Input& input);
   double way_left(const std::vector<std::uint16_t>& lengths, const Input& input, double x,
                   double y) const;

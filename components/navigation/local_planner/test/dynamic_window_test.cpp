@@ -386,6 +386,17 @@ TEST(Decide, BrakesPastAPostThatATurnLeavesFree) {
   EXPECT_GT(decision.command.w, 0.05) << "away from it";
 }
 
+TEST(Decide, BrakesPastAPostThatOnlyAHardTurnLeavesFree) {
+  // It turns toward the post, and what the dynamic window reaches no longer leads past it.
+  World world(-3, -3, 3, 3);
+  world.add(Box{0.7, -3, 0.8, -0.48});
+  world.finish(0.305);
+  DynamicWindow planner = planner_to(8.0);
+  const Decision decision = planner.decide(world.costs(), {}, {0.61, -0.56}, {0.88, -0.8}, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kBraking);
+  EXPECT_GT(decision.command.w, -0.75) << "away from it";
+}
+
 TEST(Decide, DodgesAPostAndNobodyWhenItBrakesBetweenWalls) {
   // In a corridor of 1.3 m, too near to stop before it. People step aside, and the wall is certain.
   World world(-3, -3, 3, 3);
