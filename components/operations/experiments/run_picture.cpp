@@ -33,6 +33,7 @@ class Picture {
 
   void way(const std::vector<geometry::Point2>& points, const cv::Scalar& color, int thickness) {
     std::vector<cv::Point> line;
+    line.reserve(points.size());
     for (const auto& point : points) line.push_back(fixed(point));
     cv::polylines(image_, line, false, color, thickness, cv::LINE_AA, kShift);
   }
