@@ -457,6 +457,7 @@ const Actions& Guide::step(const Surroundings& surroundings, Time now) {
   if (journey() && goal_id_ != 0) watch_navigation(now);
   if (state_ == State::kGuideActive && goal_id_ != 0) watch_follower(now);
   if ((state_ == State::kGuideActive || follows()) && goal_id_ != 0) watch_obstacle(now);
+  if (state_ == State::kGuideActive) watch_progress(now);
   if (state_ == State::kGuideActive) refresh_journey(now);
   pass_time(now);
   watch_turns(now);

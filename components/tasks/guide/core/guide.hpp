@@ -265,6 +265,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   void start_navigation();
   std::optional<std::uint64_t> own_goal() const;
   void watch_obstacle(Time now);
+  void watch_progress(Time now);
   void watch_turns(Time now);
   void watch_encounter(Time now);
   bool another(const VisitorSighting& visitor) const;
@@ -328,6 +329,8 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   Time pleaded_{};
   std::uint32_t replans_at_plea_ = 0;
   bool pleads_ = false;
+  std::optional<geometry::Point2> stuck_at_;  ///< since then it has not come far from here
+  Time stuck_since_{};
   FollowCheck follow_;
   Trail trail_;                   ///< of the visitor whom the robot follows
   std::uint64_t first_goal_ = 0;  ///< of this following; its goals up to goal_id_ are all ours

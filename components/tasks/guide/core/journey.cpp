@@ -13,7 +13,9 @@ constexpr Time kAskAgainAfter = std::chrono::seconds(2);
 constexpr Time kAskAgainEvery = std::chrono::seconds(5);
 constexpr Time kSentence = std::chrono::seconds(4);  ///< a sentence stays at least so long
 constexpr Time kEtaSettles = std::chrono::seconds(3);
-constexpr double kAlmost = 10.0;  ///< [m]
+constexpr double kAlmost = 10.0;      ///< [m]
+constexpr double kStuckWithin = 3.0;  ///< [m] no farther, and asking to be let through ...
+constexpr Time kStuckFor = std::chrono::minutes(5);  ///< ... for so long, there is no way
 constexpr std::size_t kMostRemembered = 8;
 constexpr double kAhead = 0.5;        ///< [m] who walks before the robot does not fall behind ...
 constexpr double kAheadWithin = 6.0;  ///< [m] ... unless he is gone
@@ -32,6 +34,7 @@ void Guide::depart(Time now) {
   given_again_ = 0;
   unheard_since_.reset();
   blocked_since_.reset();
+  stuck_at_.reset();
   pleads_ = told_eta_ = told_almost_ = false;
   pleaded_ = refreshed_ = {};
   first_eta_ = first_way_ = kNothing;
@@ -332,6 +335,18 @@ void Guide::watch_obstacle(Time now) {
   pleads_ = true;
   replans_at_plea_ = navigation->replans;
   say_on_the_way(Text::kExcuseMe, Tone::kPlease, now);
+}
+
+/// A jam that lasts is no way: the visitor is asked.
+void Guide::watch_progress(Time now) {
+  const auto& pose = surroundings_.pose;
+  if (!pose) return;
+  if (!stuck_at_ || (pose->position() - *stuck_at_).norm() > kStuckWithin) {
+    stuck_at_ = pose->position();
+    stuck_since_ = now;
+  }
+  if (now - stuck_since_ >= kStuckFor && pleaded_ > stuck_since_)
+    fail(Text::kNoWay, Cause::kFailure, now);
 }
 
 void Guide::refresh_journey(Time now) {

@@ -324,6 +324,22 @@ TEST(Guide, FailsWhenTheRobotDoesNotAnswerForLong) {
   EXPECT_EQ(refused.state(), "guide_error");
 }
 
+TEST(Guide, AJamThatLastsIsNoWay) {
+  Rig rig;
+  rig.to_active();
+  rig.around.navigation->blocked = true;
+  rig.wait(200000);
+  rig.around.pose->x += 3.5, rig.wait(250000);
+  EXPECT_EQ(rig.state(), "guide_active") << "it gets on, slowly";
+  rig.around.navigation->blocked = false, rig.wait(1000);
+  rig.around.navigation->blocked = true, rig.around.pose->x += 0.5, rig.wait(60000);
+  EXPECT_EQ(rig.state(), "guide_error");
+  EXPECT_TRUE(rig.offers("yes")) << "another try";
+  Rig free;
+  free.to_active(), free.wait(600000);
+  EXPECT_EQ(free.state(), "guide_active") << "nobody is in the way";
+}
+
 TEST(Guide, SaysWhyItMayNotMove) {
   Rig rig;
   rig.to_active();
