@@ -10,6 +10,7 @@
 
 #include "interaction/finger/core/tap.hpp"
 #include "runtime/guard/port.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 
@@ -115,13 +116,14 @@ Status AttackedRobot::listen() {
                            note([&] { wheels_.push_back(wheels); });
                          }),
        wheels_reader_);
-  keep(observer_->reader(topics::kSimGroundTruth,
-                         [this, note](const auto& message, const auto&) {
-                           const auto& position = message.pose().position();
-                           const Motion motion{Clock::now(), position.x(), position.y(),
-                                               message.v(),  message.w(),  message.contacts()};
-                           note([&] { motions_.push_back(motion); });
-                         }),
+  keep(observer_->reader(
+           topics::kSimGroundTruth,
+           [this, note](const auto& message, const auto&) {
+             const auto pose = wire::to_planar(message.pose());
+             if (!pose) return;
+             const Motion motion{Clock::now(), *pose, message.v(), message.w(), message.contacts()};
+             note([&] { motions_.push_back(motion); });
+           }),
        truth_reader_);
   keep(observer_->reader(topics::kSupervisorStatus,
                          [this, note](const auto& message, const auto&) {

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "foundation/geometry/pose2.hpp"
 #include "idl/topics.hpp"
 #include "operations/command_line/installation.hpp"
 #include "operations/launcher/launcher.hpp"
@@ -38,7 +39,8 @@ class AttackedRobot {
   };
   struct Motion {
     Instant at;
-    double x = 0.0, y = 0.0, v = 0.0, w = 0.0;
+    geometry::Pose2 pose;
+    double v = 0.0, w = 0.0;
     std::uint32_t contacts = 0;
   };
 

@@ -19,7 +19,9 @@ using namespace usher_msgs::msg;
 constexpr double kMinutes = 60.0;
 constexpr double kSpeed = 0.5;
 constexpr double kRadius = 1.0;                   // [m] around this place of the foyer
-constexpr double kCenterX = 3.5, kCenterY = 4.5;  // [m]
+constexpr double kCenterX = 3.9, kCenterY = 3.9;  // [m] more than a metre from anything
+constexpr double kInward = 1.0;                   // [rad/m]
+constexpr double kTurnIn = 1.0;                   // [1/s]
 
 /// Threads that compute as fast as they can.
 class BusyLoops {
@@ -97,17 +99,19 @@ class PeopleAway {
   Result<runtime::Observer::Writer<usher_sim_msgs::msg::PersonGoal>> writer_;
 };
 
-/// Keeps the robot on its circle however long it drives.
+/// Keeps the robot on its circle however long it drives, and whatever slows it for a moment.
 void steer(AttackedRobot& robot) {
-  double distance = kRadius;
+  geometry::Pose2 pose;
   {
     const auto lock = robot.locked();
-    if (!robot.motions().empty()) {
-      const auto& motion = robot.motions().back();
-      distance = std::hypot(motion.x - kCenterX, motion.y - kCenterY);
-    }
+    if (robot.motions().empty()) return;
+    pose = robot.motions().back().pose;
   }
-  robot.hold(kSpeed, std::clamp(kSpeed / kRadius + 0.4 * (distance - kRadius), 0.3, 0.7));
+  const geometry::Point2 out = pose.position() - geometry::Point2(kCenterX, kCenterY);
+  const double inward = std::clamp(kInward * (out.norm() - kRadius), -1.0, 1.0);  // [rad]
+  const double heading = std::atan2(out.x(), -out.y()) + inward;
+  const double error = geometry::shortest_turn(pose.yaw, heading);
+  robot.hold(kSpeed, std::clamp(kSpeed / kRadius + kTurnIn * error, 0.0, 0.8));
 }
 
 }  // namespace
@@ -183,7 +187,7 @@ Result<ResultSheet> run_false_stops_experiment(const ExperimentOptions& options)
         zero = wheels.zero();
       }
       for (const auto& motion : robot.motions()) {
-        if (place) metres += std::hypot(motion.x - place->x, motion.y - place->y);
+        if (place) metres += geometry::distance(place->pose, motion.pose);
         place = motion;
         contacts = std::max(contacts, motion.contacts);
       }

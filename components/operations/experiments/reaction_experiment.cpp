@@ -189,7 +189,7 @@ class Attack {
         last = &motion;
         continue;
       }
-      if (last != nullptr) way += std::hypot(motion.x - last->x, motion.y - last->y);
+      if (last != nullptr) way += geometry::distance(last->pose, motion.pose);
       last = &motion;
     }
     return way / (kStoppingTime * speed);

@@ -265,9 +265,7 @@ Expectation expectation(const Fault& fault, const FaultTargets& targets) {
     case FaultKind::kCrash:
     case FaultKind::kHang:
       if (targets.critical.contains(fault.target) || fault.target == "supervisor") {
-        // The guard process that sends zero for a dead base driver is not simulated.
-        expected.deaf = fault.target == targets.base_driver;
-        expected.zero_within = expected.deaf ? kHeld : 0.2;
+        expected.zero_within = 0.2;
         expected.revoked_within = 0.3;
         expected.words = {fault.target};
       }

@@ -57,7 +57,7 @@ struct Expectation {
   double zero_within = kNever;
   double forward_barred_within = kNever;  ///< [s] likewise, but it may still drive backwards
   double revoked_within = kNever;         ///< [s] after the hit nobody has the right to drive
-  /// The base hears nobody: what it touches meanwhile no software keeps it from.
+  /// The line to the base is cut: what it touches meanwhile no software keeps it from.
   bool deaf = false;
   double lasts = 0.0;              ///< [s] after the hit these hold
   double read_within = 2.5;        ///< [s] after that an operator reads the reason
@@ -83,7 +83,7 @@ struct WindowPlan {
 struct FaultTargets {
   std::vector<std::string> components;
   std::set<std::string> critical;  ///< without which nobody may drive
-  std::string base_driver;         ///< its loss leaves the base deaf
+  std::string base_driver;         ///< its loss leaves the base to the guard process
   std::size_t starts = 0;          ///< {> 0} places where the robot may start
   std::size_t locations = 0;       ///< {> 0} places that it may go to
   bool sees = false;               ///< it has depth cameras

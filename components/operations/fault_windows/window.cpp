@@ -15,6 +15,7 @@
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "operations/fault_windows/injection.hpp"
+#include "operations/fault_windows/simulated_guard.hpp"
 #include "operations/results/result_sheet.hpp"
 #include "wire/conversions.hpp"
 #include "wire/stopping.hpp"
@@ -62,7 +63,8 @@ class Window {
                  [this](const auto& goal) {
                    goal_ = goal;
                    world().publish(topics::kNavigateGoal, goal, Errand::kClient);
-                 }}) {
+                 }}),
+        guard_(world(), setting.robot_of(plan_.seed).targets.base_driver) {
     watch_truth();
     watch_commands();
     watch_words();
@@ -175,6 +177,7 @@ class Window {
   const WindowSetting& setting_;
   WindowPlan plan_;
   Errand errand_;
+  SimulatedGuard guard_;
   WindowJudge judge_;
   std::set<runtime::Guid> foreign_;
   double speed_ = 0.0;

@@ -231,6 +231,14 @@ double MovementControl::turn(const Wish& wish, double part, double most,
   return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)), -most, most);
 }
 
+/// A base that rolls and goes on turning so meets something before it stands, straight on it does
+/// not.
+bool MovementControl::only_straight_stops(double turn, const Inputs& inputs) const {
+  const double v = inputs.measured ? inputs.measured->v : 0.0;
+  return std::abs(v) >= kinematics::RollOut::kStanding && !guard_.stops({v, turn}, inputs.view) &&
+         guard_.stops({v, 0.0}, inputs.view);
+}
+
 /// What of a wish the limits leave. One factor for both, so that a slower robot drives the same
 /// arc. What may not move at all is cut instead: a lost pose forbids driving but not turning.
 MovementControl::Limited MovementControl::limited(const Wish& wish, const Bound& bound,
@@ -256,9 +264,10 @@ void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bo
   if (may.by != Limit::kNone) decision.limit = may.by;
   const double planned = planned_share({wanted.v, wish.twist.w * may.factor}, inputs, wish.source);
   if (planned < 1.0) {
-    wanted = {
-        slowed(wanted.v * planned, wanted.v, inputs),
-        wanted.w == 0.0 ? 0.0 : turn(wish, may.factor * planned, bound.limit.angular, inputs)};
+    const double arc =
+        wanted.w == 0.0 ? 0.0 : turn(wish, may.factor * planned, bound.limit.angular, inputs);
+    wanted = {slowed(wanted.v * planned, wanted.v, inputs),
+              only_straight_stops(arc, inputs) ? 0.0 : arc};
     decision.limit = Limit::kObstacle;
     (wanted.v != 0.0 ? bound.limit.linear : bound.limit.angular) =
         std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);

@@ -408,6 +408,24 @@ TEST_F(Guarded, AHeldBackPlannersRobotStaysOnItsArcWhileItIsFaster) {
   EXPECT_NEAR(control.status().current.w, 0.1, 1e-9);
 }
 
+TEST_F(Guarded, AHeldBackPlannersRobotRollsStraightOnWhereOnlyThatStopsInTime) {
+  // In a door, bending right: the tail would swing into the post.
+  const auto turn_of = [&](bool open) {
+    MovementControl control(parameters);
+    inputs.navigation = inputs.measured = Twist2{0.25, -0.5};
+    inputs.view = {.sees = true};
+    int ms = 0;
+    for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+    points.clear();
+    for (int i = 0; i < 20; ++i) points.emplace_back(-0.3 + 0.01 * i, 0.34);
+    for (int i = -50; i < 50; ++i) points.emplace_back(open ? 2.0 : 0.4, 0.01 * i);
+    inputs.view = {.points = points, .sees = true};
+    return control.decide(inputs, milliseconds(ms += 20)).twist.w;
+  };
+  EXPECT_NEAR(turn_of(true), 0.0, 0.03);
+  EXPECT_LT(turn_of(false), -0.4) << "straight on it meets something, too";
+}
+
 /// Bending left past the wall's end: straight on it would meet the wall before it stands.
 TEST_F(Guarded, ATouchKeepsARollingRobotOnItsArcWhereStraightOnIsAWall) {
   const auto turn_of = [&](double measured, double ahead,

@@ -214,7 +214,8 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
 
 /// Along the arc that stays free for as far as the base may roll, if any with half of the
 /// clearance; of equal ones the one that bends least from now. Where none is free, nobody is dodged
-/// into a wall: people can step aside, a wall cannot.
+/// into a wall: people can step aside, a wall cannot. And then the centers of cells decide: a post
+/// that a cell shows a little too large is no reason to turn into the wall beside it.
 Decision DynamicWindow::brake(const Input& input) {
   const double v = std::abs(input.measured.v);
   Decision decision =
@@ -224,15 +225,23 @@ Decision DynamicWindow::brake(const Input& input) {
   keep_speed(v);
   sample_turns(input, kDodgeReach, kept_.steps);
   const RolloutStart start{input.pose, input.measured, input.last_command};
-  const auto run = [&] {
-    rollout_.run(start, {&kept_, 1}, turns_, input.costs, bits_, {&whole_, &narrow_},
-                 config_.footprint, {});
+  // Whether an arc is free all the way.
+  const auto run = [&](const ContactTests& contacts) {
+    rollout_.run(start, {&kept_, 1}, turns_, input.costs, bits_, contacts, config_.footprint, {});
+    return std::ranges::any_of(rollout_.trajectories(), [&](const Trajectory& trajectory) {
+      return trajectory.free_steps >= kept_.steps;
+    });
   };
-  run();
-  among_people_.clear();
-  for (const Trajectory& trajectory : rollout_.trajectories())
-    among_people_.push_back(trajectory.free_steps);
-  if (*std::ranges::max_element(among_people_) < kept_.steps && leave_out_people(input)) run();
+  const auto note = [&](std::vector<int>& free_steps) {
+    free_steps.clear();
+    for (const Trajectory& trajectory : rollout_.trajectories())
+      free_steps.push_back(trajectory.free_steps);
+  };
+  bool found = run({&whole_, &narrow_});
+  note(among_people_);
+  if (!found && leave_out_people(input)) found = run({&whole_, &narrow_});
+  note(without_people_);
+  if (!found) run({&center_, &whole_});
   const auto turn = [&](const Trajectory& trajectory) {
     return turns_[static_cast<std::size_t>(trajectory.turn)].target;
   };
@@ -241,8 +250,8 @@ Decision DynamicWindow::brake(const Input& input) {
   const auto best =
       std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
         const auto index = static_cast<std::size_t>(&trajectory - rollout_.trajectories().data());
-        return std::tuple(-trajectory.free_steps, -among_people_[index], trajectory.close > 0.0F,
-                          std::abs(turn(trajectory) - along));
+        return std::tuple(-trajectory.free_steps, -without_people_[index], -among_people_[index],
+                          trajectory.close > 0.0F, std::abs(turn(trajectory) - along));
       });
   arc_ = turn(*best) / v;
   decision.command.w = ramped(input, {0.0, turn(*best)}, config_.braking).w;

@@ -209,7 +209,8 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Lane lane_;
   std::vector<MovingDisc> walkers_;
   std::vector<MovingDisc> neighbours_;
-  std::vector<int> among_people_;  ///< free steps of each arc to brake on, people in the way
+  /// Free steps of each arc to brake on, people in the way, and without them.
+  std::vector<int> among_people_, without_people_;
   SpeedProfile kept_;
   std::optional<double> arc_, braked_arc_;    ///< [1/m] that it brakes on, now and a cycle before
   double gave_way_ = 0.0, met_nobody_ = 0.0;  // [s]

@@ -397,6 +397,19 @@ TEST(Decide, BrakesPastAPostThatOnlyAHardTurnLeavesFree) {
   EXPECT_GT(decision.command.w, -0.75) << "away from it";
 }
 
+TEST(Decide, BrakesThroughAGapThatOnlyTheCentersOfCellsLeaveFree) {
+  // Bending right, toward the wall beside it.
+  World world(-3, -3, 3, 3);
+  world.add(Box{0.85, -3, 0.9, -0.3});
+  world.add(Box{0.6, 0.32, 0.9, 3});
+  world.finish(0.305);
+  DynamicWindow planner = planner_to(8.0);
+  const Twist2 rolls{0.8, -0.2};
+  const Decision decision = planner.decide(world.costs(), {}, rolls, rolls, 0.05);
+  EXPECT_EQ(decision.reason, Reason::kBraking);
+  EXPECT_GT(decision.command.w, rolls.w) << "away from the wall";
+}
+
 TEST(Decide, DodgesAPostAndNobodyWhenItBrakesBetweenWalls) {
   // In a corridor of 1.3 m, too near to stop before it. People step aside, and the wall is certain.
   World world(-3, -3, 3, 3);

@@ -82,8 +82,9 @@ TEST(DrawWindow, DrawsFaultsThatBeginAndEndInTheirWindow) {
 
 TEST(ExpectationOfAFault, ForACriticalComponentAndTheSupervisorItselfIsAStopWithinThePromise) {
   for (const FaultKind kind : {FaultKind::kCrash, FaultKind::kHang}) {
-    for (const char* name : {"lms100", "supervisor"}) {
+    for (const char* name : {"lms100", "supervisor", "segway_rmp"}) {
       const auto expected = expectation({kind, name, "", 3.0}, kTargets);
+      EXPECT_FALSE(expected.deaf) << "a guard process stands in for the base's driver";
       EXPECT_EQ(expected.zero_within, 0.2) << name;
       EXPECT_EQ(expected.lasts, 3.0);
       EXPECT_EQ(expected.words, std::vector<std::string>{name});
@@ -107,7 +108,8 @@ TEST(ExpectationOfAFault, ForAFloodIsAForeignWritersWhereOnlyComponentsMayWrite)
 }
 
 TEST(ExpectationOfAFault, ForADeafBaseIsThatItLetsGoByItself) {
-  EXPECT_TRUE(expectation({FaultKind::kCrash, "segway_rmp", "", 3.0}, kTargets).deaf);
+  EXPECT_TRUE(expectation({FaultKind::kBaseLink, "", "commands", 3.0}, kTargets).deaf);
+  EXPECT_FALSE(expectation({FaultKind::kBaseLink, "", "feedback", 3.0}, kTargets).deaf);
   WindowPlan plan;
   plan.faults = {{FaultKind::kBaseLink, "", "commands", 3.0},
                  {FaultKind::kHang, "lms100", "", 3.0},
