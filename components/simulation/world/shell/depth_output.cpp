@@ -104,11 +104,11 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
                                                 "Faces per image that are none (model).");
   face_model_.emplace(faces, seed);
   faces_ = host.output(topics::kSimKinectFaces);
-  kinect_depth_ = host.output(topics::kSimKinectDepth);
-  kinect_color_ = host.output(topics::kSimKinectColor);
+  kinect_shot_.depths = host.output(topics::kSimKinectDepth);
+  kinect_shot_.colors = host.output(topics::kSimKinectColor);
   kinect_info_ = host.output(topics::kSimKinectInfo);
-  rear_depth_ = host.output(topics::kSimRearDepth);
-  rear_color_ = host.output(topics::kSimRearColor);
+  rear_shot_.depths = host.output(topics::kSimRearDepth);
+  rear_shot_.colors = host.output(topics::kSimRearColor);
   rear_info_ = host.output(topics::kSimRearInfo);
   kinect_scan_ = host.output(topics::kSimKinectScan);
   kinect_low_ = host.output(topics::kSimKinectScanLow);
@@ -146,6 +146,7 @@ void DepthOutput::publish_next() {
   if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
   if (!told_ && kind_ == Kind::kPixels) publish_info();
   told_ = true;
+  deliver(kinect_shot_), deliver(rear_shot_);
   const bool rendered = kind_ != Kind::kPixels || images_ / 2 % every_ == 0;
   if (rendered && kinect_next_) publish_kinect();
   if (rendered && !kinect_next_ && has_rear_ && images_ / 2 % kRearEvery == 0) publish_rear();
@@ -170,27 +171,39 @@ void DepthOutput::publish_kinect() {
     publish_faces();
     return;
   }
-  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
-  kinect_.measure(*world_, renderer_.renderer(), depth_);
-  publish_colors(kinect_, kKinectFrame, kinect_color_);
-  const rendering::Lens& lens = kinect_.config().sensor.lens;
-  wire::to_message(stepped_, kKinectFrame, imaging::DepthImage{lens.width, lens.height, depth_},
-                   image_);
-  kinect_depth_.publish(image_);
+  take(kinect_, kKinectFrame, kinect_shot_);
 }
 
-/// Before the depths of the same moment: whoever has those has the colors, too.
-void DepthOutput::publish_colors(const DepthCamera& camera, const char* frame,
-                                 runtime::Output<sensor_msgs::msg::Image>& output) {
-  if (!painter_ || images_ / 2 % colors_every_ != 0) return;
+void DepthOutput::take(DepthCamera& camera, const char* frame, Shot& shot) {
+  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
+  camera.measure(*world_, renderer_.renderer(), depth_);
+  shot.taken = true;
+  shot.painted = paint(camera, frame, shot.color);
+  const rendering::Lens& lens = camera.config().sensor.lens;
+  wire::to_message(stepped_, frame, imaging::DepthImage{lens.width, lens.height, depth_},
+                   shot.depth);
+}
+
+/// The colors before the depths of the same moment: whoever has those has the colors, too.
+void DepthOutput::deliver(Shot& shot) {
+  if (!shot.taken) return;
+  if (shot.painted) shot.colors.publish(shot.color);
+  shot.depths.publish(shot.depth);
+  shot.taken = false;
+}
+
+/// False where this image has no colors.
+bool DepthOutput::paint(const DepthCamera& camera, const char* frame,
+                        sensor_msgs::msg::Image& image) {
+  if (!painter_ || images_ / 2 % colors_every_ != 0) return false;
   const auto people = world_->people();
   gains_.resize(people.size());
   for (std::size_t i = 0; i < people.size(); ++i)
     gains_[i] = camera.gains(*world_, people[i].position);
   const rendering::Lens& lens = camera.config().sensor.lens;
   painter_->paint(camera.truth(), lens, camera.pose(*world_), renderer_.bodies(), gains_, rgb_);
-  wire::to_color_message(stepped_, frame, lens.width, rgb_, image_);
-  output.publish(image_);
+  wire::to_color_message(stepped_, frame, lens.width, rgb_, image);
+  return true;
 }
 
 void DepthOutput::publish_rear() {
@@ -200,13 +213,7 @@ void DepthOutput::publish_rear() {
     publish_people(*rear_people_model_, rear_, "rear_camera_level", rear_people_);
     return;
   }
-  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
-  rear_.measure(*world_, renderer_.renderer(), depth_);
-  publish_colors(rear_, kRearFrame, rear_color_);
-  const rendering::Lens& lens = rear_.config().sensor.lens;
-  wire::to_message(stepped_, kRearFrame, imaging::DepthImage{lens.width, lens.height, depth_},
-                   image_);
-  rear_depth_.publish(image_);
+  take(rear_, kRearFrame, rear_shot_);
 }
 
 void DepthOutput::publish_scan(const std::vector<float>& ranges, const char* frame,

@@ -15,7 +15,8 @@ namespace usher::world {
 
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
 /// that the fitted models make without them, at 30 Hz (rear camera and people 15, faces 10), the
-/// two cameras in turn. Stamps are those of the world's steps.
+/// two cameras in turn. Stamps are those of the world's steps; a rendered image comes a turn later,
+/// as regularly as from a camera, however long its rendering took.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
@@ -35,8 +36,10 @@ class DepthOutput {
   void publish_info();
   void publish_kinect();
   void publish_rear();
-  void publish_colors(const DepthCamera& camera, const char* frame,
-                      runtime::Output<sensor_msgs::msg::Image>& output);
+  struct Shot;
+  void take(DepthCamera& camera, const char* frame, Shot& shot);
+  void deliver(Shot& shot);
+  bool paint(const DepthCamera& camera, const char* frame, sensor_msgs::msg::Image& image);
   void publish_scan(const std::vector<float>& ranges, const char* frame,
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
   void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
@@ -62,14 +65,19 @@ class DepthOutput {
   std::vector<std::uint16_t> depth_;
   std::vector<std::uint8_t> rgb_;
   std::vector<rendering::Gains> gains_;  // for each of the people
-  sensor_msgs::msg::Image image_;
+  /// An image that a camera took and has not delivered yet.
+  struct Shot {
+    bool taken = false, painted = false;
+    sensor_msgs::msg::Image depth, color;
+    runtime::Output<sensor_msgs::msg::Image> depths, colors;
+  };
+  Shot kinect_shot_, rear_shot_;
   DepthScanResult result_;
   sensor_msgs::msg::LaserScan scan_;
   std::vector<ModelledSighting> found_;
   std::vector<ModelledFace> seen_faces_;
   usher_msgs::msg::Faces faces_message_;
   usher_sim_msgs::msg::Sightings people_;
-  runtime::Output<sensor_msgs::msg::Image> kinect_depth_, kinect_color_, rear_depth_, rear_color_;
   runtime::Output<sensor_msgs::msg::CameraInfo> kinect_info_, rear_info_;
   runtime::Output<sensor_msgs::msg::LaserScan> kinect_scan_, kinect_low_, rear_scan_;
   runtime::Output<usher_sim_msgs::msg::Sightings> kinect_people_, rear_people_;
