@@ -16,18 +16,21 @@ namespace usher::operations {
 /// The world must outlive it, and it the world's run. One per base.
 class SimulatedGuard {
  public:
-  /// `driver` is a component of the world.
-  SimulatedGuard(runtime::LockstepWorld& world, std::string driver);
+  /// `driver` is a component of the world; silent for so long {> 0}, it is overruled. Before
+  /// whatever tampers with the line, which begins behind the guard.
+  SimulatedGuard(runtime::LockstepWorld& world, std::string driver, runtime::Guard::Time silence);
   SimulatedGuard(const SimulatedGuard&) = delete;
   SimulatedGuard& operator=(const SimulatedGuard&) = delete;
 
  private:
   runtime::Guard::Time now() const { return world_.now().time_since_epoch(); }
+  void hear();
   void watch();
   void pass();
 
   runtime::LockstepWorld& world_;
   const std::string driver_;
+  const runtime::Guard::Time silence_;
   std::uint64_t life_ = 0;  ///< of the driver, whose guard it is
   std::optional<runtime::Guard> guard_;
 };

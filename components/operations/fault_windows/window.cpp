@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "drivers/segway_rmp/core/device.hpp"
 #include "foundation/grid/sampling.hpp"
 #include "operations/command_line/installation.hpp"
 #include "operations/experiments/errand.hpp"
@@ -64,7 +65,8 @@ class Window {
                    goal_ = goal;
                    world().publish(topics::kNavigateGoal, goal, Errand::kClient);
                  }}),
-        guard_(world(), setting.robot_of(plan_.seed).targets.base_driver) {
+        guard_(world(), setting.robot_of(plan_.seed).targets.base_driver,
+               segway_rmp::kGuardSilence) {
     watch_truth();
     watch_commands();
     watch_words();

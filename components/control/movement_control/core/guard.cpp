@@ -118,9 +118,9 @@ double Guard::planned_share(const geometry::Twist2& twist, const View& view,
   const bool rolls = std::abs(moves.v) >= kinematics::RollOut::kStanding;
   if (twist == geometry::Twist2{} || (twist.v == 0.0 && rolls)) return 1.0;
   const double reach = farthest(twist, moves);
-  const auto seen = view.points.first(view.points.size() - view.guessed);
-  const double contact = std::min(second_contact(parameters_.outline, twist, seen, reach),
-                                  second_contact(parameters_.outline, twist, view.cells, reach));
+  const double contact =
+      std::min(second_contact(parameters_.outline, twist, seen(view).points, reach),
+               second_contact(parameters_.outline, twist, view.cells, reach));
   const bool in_time = twist.v != 0.0 ? parameters_.stopping.distance(std::abs(twist.v)) <=
                                             std::abs(twist.v) * contact - parameters_.stand_off
                                       : parameters_.turn_stop <= contact;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "foundation/geometry/footprint.hpp"
 #include "foundation/geometry/pose2.hpp"
@@ -56,6 +57,11 @@ class Guard {
     std::size_t guessed = 0;                  ///< so many of them, the last, nobody has seen
     std::span<const geometry::Point2> cells;  ///< centers of lethal cells of the local costs
   };
+  /// Without what is guessed.
+  static View seen(View view) {
+    view.points = view.points.first(view.points.size() - std::exchange(view.guessed, 0));
+    return view;
+  }
 
   /// The share {0..1} of a motion that is allowed to who does not look ahead.
   double share(const geometry::Twist2& twist, const View& view,

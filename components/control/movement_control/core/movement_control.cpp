@@ -231,12 +231,13 @@ double MovementControl::turn(const Wish& wish, double part, double most,
   return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)), -most, most);
 }
 
-/// A base that rolls and goes on turning so meets something before it stands, straight on it does
-/// not.
+/// A base that rolls and goes on turning so meets something that was seen before it stands,
+/// straight on it does not.
 bool MovementControl::only_straight_stops(double turn, const Inputs& inputs) const {
   const double v = inputs.measured ? inputs.measured->v : 0.0;
-  return std::abs(v) >= kinematics::RollOut::kStanding && !guard_.stops({v, turn}, inputs.view) &&
-         guard_.stops({v, 0.0}, inputs.view);
+  const Guard::View seen = Guard::seen(inputs.view);
+  return std::abs(v) >= kinematics::RollOut::kStanding && !guard_.stops({v, turn}, seen) &&
+         guard_.stops({v, 0.0}, seen);
 }
 
 /// What of a wish the limits leave. One factor for both, so that a slower robot drives the same
@@ -269,8 +270,8 @@ void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bo
     wanted = {slowed(wanted.v * planned, wanted.v, inputs),
               only_straight_stops(arc, inputs) ? 0.0 : arc};
     decision.limit = Limit::kObstacle;
-    (wanted.v != 0.0 ? bound.limit.linear : bound.limit.angular) =
-        std::abs(wanted.v != 0.0 ? wanted.v : wanted.w);
+    (wish.twist.v != 0.0 ? bound.limit.linear : bound.limit.angular) =
+        std::abs(wish.twist.v != 0.0 ? wanted.v : wanted.w);
   }
 
   // What is wished, so that the arc stays, and what is really commanded: while the robot speeds

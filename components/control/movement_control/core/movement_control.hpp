@@ -184,7 +184,7 @@ class MovementControl {
   };
   struct Limited {
     geometry::Twist2 twist;
-    double factor = 1.0;  ///< of the wish
+    double factor = 1.0;  ///< of the wish; a base that is faster keeps more of its turn
     Limit by = Limit::kNone;
   };
 

@@ -426,6 +426,23 @@ TEST_F(Guarded, AHeldBackPlannersRobotRollsStraightOnWhereOnlyThatStopsInTime) {
   EXPECT_LT(turn_of(false), -0.4) << "straight on it meets something, too";
 }
 
+TEST_F(Guarded, AHeldBackPlannersRobotTurnsOnWhereItsArcStopsInTime) {
+  const auto turn = [&](std::size_t guessed) {
+    MovementControl control(parameters);
+    inputs.navigation = Twist2{0.8, -0.6};  // too fast for the wall, but it is slow still
+    inputs.measured = Twist2{0.25, -0.2};
+    inputs.view = {.points = points, .sees = true, .guessed = guessed};
+    Twist2 twist;
+    for (int ms = 0; ms < 200; ms += 20) twist = control.decide(inputs, milliseconds(ms)).twist;
+    EXPECT_EQ(control.held_back(), 1U);
+    return twist.w;
+  };
+  EXPECT_LT(turn(0), -0.05);
+  for (int i = 0; i < 20; ++i) points.emplace_back(-0.3 + 0.01 * i, 0.32);
+  EXPECT_LT(turn(20), -0.05) << "nobody saw what is beside it";
+  EXPECT_EQ(turn(0), 0.0);
+}
+
 /// Bending left past the wall's end: straight on it would meet the wall before it stands.
 TEST_F(Guarded, ATouchKeepsARollingRobotOnItsArcWhereStraightOnIsAWall) {
   const auto turn_of = [&](double measured, double ahead,

@@ -9,6 +9,9 @@ namespace usher::segway_rmp {
 /// Time on the local monotonic clock.
 using Time = std::chrono::nanoseconds;
 
+/// Silent for so long, the driver is overruled by its guard, where no parameter says otherwise.
+inline constexpr Time kGuardSilence = std::chrono::milliseconds(100);
+
 /// What the base is able to do. The numbers are those of BaseStatus on the wire.
 enum class Mode : std::uint8_t {
   kDisconnected = 0,

@@ -35,7 +35,7 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
       memory_(host, kEmergencyKey),
       balanced_(host, kBalancedKey) {
   const double silence =
-      host.parameters().number("guard_silence", "s", {0.03, 0.15}, 0.1,
+      host.parameters().number("guard_silence", "s", {0.03, 0.15}, runtime::seconds(kGuardSilence),
                                "The guard commands zero when the driver is silent for so long.");
   const auto zero = command({}, Calibration{});
   // Connecting sets the balance mode: a base that was switched off must stay so over a restart, and

@@ -212,10 +212,11 @@ Decision DynamicWindow::halt(const Input& input, Reason reason, double decelerat
   return decision;
 }
 
-/// Along the arc that stays free for as far as the base may roll, if any with half of the
-/// clearance; of equal ones the one that bends least from now. Where none is free, nobody is dodged
-/// into a wall: people can step aside, a wall cannot. And then the centers of cells decide: a post
-/// that a cell shows a little too large is no reason to turn into the wall beside it.
+/// Along the arc that stays free for as far as the base may roll, if any within the lateral
+/// acceleration and with half of the clearance; of equal ones the one that bends least from now.
+/// Where none is free, nobody is dodged into a wall: people can step aside, a wall cannot. And then
+/// the centers of cells decide: a post that a cell shows a little too large is no reason to turn
+/// into the wall beside it.
 Decision DynamicWindow::brake(const Input& input) {
   const double v = std::abs(input.measured.v);
   Decision decision =
@@ -250,8 +251,9 @@ Decision DynamicWindow::brake(const Input& input) {
   const auto best =
       std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
         const auto index = static_cast<std::size_t>(&trajectory - rollout_.trajectories().data());
+        const bool hard = v * std::abs(turn(trajectory)) > config_.lateral_acceleration;
         return std::tuple(-trajectory.free_steps, -without_people_[index], -among_people_[index],
-                          trajectory.close > 0.0F, std::abs(turn(trajectory) - along));
+                          hard, trajectory.close > 0.0F, std::abs(turn(trajectory) - along));
       });
   arc_ = turn(*best) / v;
   decision.command.w = ramped(input, {0.0, turn(*best)}, config_.braking).w;
@@ -537,7 +539,6 @@ Decision DynamicWindow::follow(const Input& input) {
   choose_local_goal(input);
   lane_.choose(path_, input.costs, input.walkers, input.seconds);
   if (gives_way(input)) {
-    drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
     Decision decision = brake(input);
     if (decision.reason == Reason::kBlocked) decision.reason = Reason::kGivingWay;
     return with_obstacle(decision);
@@ -549,11 +550,7 @@ Decision DynamicWindow::follow(const Input& input) {
   double fastest = std::min(config_.pace, config_.stopping.speed(path_.remaining() - lag));
   if (!way_open_) {
     const double room = config_.stopping.speed(obstacle - config_.margin - lag);
-    if (room < config_.slowest) {
-      // The arcs to stop on.
-      drive(input, {&whole_, &roomy_}, config_.slowest, config_.tight_speed);
-      return with_obstacle(brake(input));
-    }
+    if (room < config_.slowest) return with_obstacle(brake(input));
     fastest = std::min(fastest, room);
   }
   if (somebody_beside(input)) fastest = std::min(fastest, config_.careful_speed);

@@ -59,15 +59,16 @@ struct DynamicWindowConfig {
       0.2;  ///< [m] kept from moving discs above the careful speed, a quarter of it below
   double tight_speed =
       0.25;  ///< [m/s] where only the robot's own outline fits, not the whole lethal cells
-  double fastest_turn = 1.0;          ///< [rad/s]
-  double slowest_turn = 0.15;         ///< [rad/s] turning in place
-  double spot_turn = 0.8;             ///< [rad/s] turning in place
-  double tight_turn = 0.15;           ///< [rad/s] turning in place without half of the clearance,
-                                      ///< half as fast again without the whole
-  double lateral_acceleration = 0.8;  ///< [m/s2] bounds speed x turn rate
-  double turn_stopping_time = 0.6;    ///< [s] a turn stops within this time x its rate
-  double braking = 2.0;               ///< [m/s2] slope of the command when it must stop
-  double reverse_speed = 0.0;  ///< [m/s] one sample backward; zero: never, nobody sees behind
+  double fastest_turn = 1.0;   ///< [rad/s]
+  double slowest_turn = 0.15;  ///< [rad/s] turning in place
+  double spot_turn = 0.8;      ///< [rad/s] turning in place
+  double tight_turn = 0.15;    ///< [rad/s] turning in place without half of the clearance,
+                               ///< half as fast again without the whole
+  /// [m/s2] bounds speed x turn rate, but where only a harder turn brakes past something.
+  double lateral_acceleration = 0.8;
+  double turn_stopping_time = 0.6;  ///< [s] a turn stops within this time x its rate
+  double braking = 2.0;             ///< [m/s2] slope of the command when it must stop
+  double reverse_speed = 0.0;       ///< [m/s] one sample backward; zero: never, nobody sees behind
 
   Sampling sampling = Sampling::kDynamicWindow;
   double window = 0.4;          ///< [s] of the dynamic window
@@ -84,8 +85,8 @@ struct DynamicWindowConfig {
       1.2;  ///< [rad] between heading and path from which a moving robot stops to turn
   bool keep_left = false;  ///< to which side it makes room for who comes the other way
   bool unknown_is_lethal = false;
-  bool trust_centers =
-      false;  ///< where whole lethal cells leave no way, their centers decide, at tight_speed
+  bool trust_centers = false;  ///< following, where whole lethal cells leave no way, their centers
+                               ///< decide, at tight_speed
   CriticWeights weights;
 };
 /// Fails with what is out of its bounds.
