@@ -18,8 +18,8 @@ using namespace usher_msgs::msg;
 
 constexpr double kMinutes = 60.0;
 constexpr double kSpeed = 0.5;
-constexpr double kRadius = 1.0;                   // [m] around this place of the foyer
-constexpr double kCenterX = 3.9, kCenterY = 3.9;  // [m] more than a metre from anything
+constexpr double kRadius = 1.0;                   // [m] around this place of the foyer:
+constexpr double kCenterX = 3.9, kCenterY = 3.9;  // [m] a metre from everything on its circle
 constexpr double kInward = 1.0;                   // [rad/m]
 constexpr double kTurnIn = 1.0;                   // [1/s]
 

@@ -108,7 +108,7 @@ class VisitorTracker {
     double stays = 0.0;   ///< [s] near `anchor` and the robot, which stands
     double stands = 0.0;  ///< [s] at the robot without a break
     double unlike = 0.0;  ///< [s] clearly, without a break
-    double alike = 0.0;   ///< [s] seen in the visitor's clothes, likewise
+    double alike = 0.0;   ///< [s] seen in the visitor's clothes, without another between
   };
   struct Look {
     const Person* person = nullptr;

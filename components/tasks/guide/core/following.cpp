@@ -17,6 +17,7 @@ constexpr Time kRests = std::chrono::seconds(5);  ///< then a tone sounds before
 constexpr Time kLooks = std::chrono::seconds(2);  ///< in each direction, for a lost visitor
 constexpr Time kStuck = std::chrono::seconds(4);  ///< on the way to where he was last
 constexpr double kLooksOn = 1.2;                  ///< [rad] to the next one, a camera's view
+constexpr int kLooksInATurn = 6;                  ///< then the way to him may be free again
 
 }  // namespace
 
@@ -37,6 +38,10 @@ bool Guide::choose_following(const std::string& option, Time now) {
   trail_ = {};
   going_to_.reset();
   looks_round_ = false;
+  looks_ = 0;
+  blocked_since_.reset();
+  pleads_ = false;
+  pleaded_ = {};
   unseen_since_.reset();
   not_allowed_since_.reset();
   stands_told_.reset();
@@ -139,7 +144,9 @@ void Guide::go_behind(Time now) {
       actions_.remember = true;
     }
     goal_id_ = 0;
+    blocked_since_.reset();
     looks_round_ = false;
+    looks_ = 0;
     going_to_.reset();
     return;
   }
@@ -160,13 +167,21 @@ void Guide::go_behind(Time now) {
   if (go_to(*place, now)) going_to_ = place->position(), looks_round_ = false;
 }
 
-/// A lost visitor is not where he was last seen: a camera's view farther round after the other.
+/// A lost visitor is not where he was last seen: a camera's view farther round after the other. The
+/// way there is tried again after each turn.
 void Guide::look_round(Time now) {
   const bool stuck = blocked_since_ && now - *blocked_since_ >= kStuck && !looks_round_;
   if (!stuck && (goal_id_ != 0 || now - drove_at_ < kLooks)) return;
+  if (looks_ == kLooksInATurn) {
+    looks_ = 0;
+    going_to_.reset();
+    return;
+  }
   geometry::Pose2 turned = *surroundings_.pose;
   turned.yaw = geometry::normalized(turned.yaw + kLooksOn);
-  if (go_to(turned, now)) looks_round_ = true;
+  if (!go_to(turned, now)) return;
+  looks_round_ = true;
+  ++looks_;
 }
 
 /// False: it has rested, and a tone sounds first.

@@ -336,6 +336,7 @@ class Guide {  // NOLINT(clang-analyzer-optin.performance.Padding): there is one
   std::uint64_t first_goal_ = 0;  ///< of this following; its goals up to goal_id_ are all ours
   std::optional<geometry::Point2> going_to_;
   bool looks_round_ = false;  ///< the newest goal is to turn, in search of him
+  int looks_ = 0;             ///< so many such goals, up to a whole turn
   Time goal_given_at_{};
   Time moved_at_{};       ///< when the newest goal of a following was given
   Time drove_at_{};       ///< when a following last had a goal, or announced one

@@ -102,6 +102,7 @@ void Guide::go_on(Time now) {
   move_at_ = now + parameters_.tone;
   follow_.depart(now);
   stands_told_.reset();
+  stuck_at_.reset();
 }
 
 void Guide::lift_stop() {
@@ -341,6 +342,10 @@ void Guide::watch_obstacle(Time now) {
 void Guide::watch_progress(Time now) {
   const auto& pose = surroundings_.pose;
   if (!pose) return;
+  if (stopped_ || follow_.waits() || surroundings_.permission != Permission::kGiven) {
+    stuck_at_.reset();  // that is no jam
+    return;
+  }
   if (!stuck_at_ || (pose->position() - *stuck_at_).norm() > kStuckWithin) {
     stuck_at_ = pose->position();
     stuck_since_ = now;

@@ -172,8 +172,11 @@ TEST(Guide, LooksRoundWhenTheWayToWhereALeaderWasIsBlocked) {
   EXPECT_EQ(rig.taken(), "goal:pose");
   EXPECT_NEAR(rig.goal_pose->x, 0.0, 1e-9);
   EXPECT_NEAR(rig.goal_pose->yaw, 1.2, 1e-9);
-  for (int i = 0; i < 8; ++i) rig.navigate(GoalState::kFailed), rig.wait(2100);
+  for (int i = 0; i < 5; ++i) rig.navigate(GoalState::kFailed), rig.wait(2100);
   EXPECT_EQ(rig.state(), "follow_me") << "a turn that fails is no way that fails";
+  EXPECT_NEAR(rig.goal_pose->x, 0.0, 1e-9);
+  rig.navigate(GoalState::kSucceeded), rig.wait(2100);
+  EXPECT_NEAR(rig.goal_pose->x, 2.7, 1e-9) << "after a whole turn it tries the way again";
 }
 
 TEST(Guide, BetweenTwoGoalsOfAFollowingNothingIsMissing) {

@@ -335,6 +335,12 @@ TEST(Guide, AJamThatLastsIsNoWay) {
   rig.around.navigation->blocked = true, rig.around.pose->x += 0.5, rig.wait(60000);
   EXPECT_EQ(rig.state(), "guide_error");
   EXPECT_TRUE(rig.offers("yes")) << "another try";
+  Rig stopped;
+  stopped.to_active();
+  stopped.around.navigation->blocked = true, stopped.wait(150000);
+  stopped.around.permission = Permission::kStopped, stopped.wait(60000);
+  stopped.around.permission = Permission::kGiven, stopped.wait(150000);
+  EXPECT_EQ(stopped.state(), "guide_active") << "it was stopped meanwhile";
   Rig free;
   free.to_active(), free.wait(600000);
   EXPECT_EQ(free.state(), "guide_active") << "nobody is in the way";
