@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 /// Silence of command or grant is noticed within this; the base is told again in every cycle.
 constexpr auto kCycle = milliseconds(10);
-constexpr auto kSilence = milliseconds(120);
+constexpr auto kSilence = BaseObedience::Limits{}.command_expiry;
 constexpr auto kReportAge = milliseconds(100);  // an older one tells not how the base rolls
 constexpr const char* kOnLoss = "commands zero to the base";
 constexpr const char* kOdometryKey = "session.odometry";
