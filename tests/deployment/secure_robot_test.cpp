@@ -143,7 +143,7 @@ TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
   wanted.v(0.4);
   const PacketSender sender;
   std::uint64_t tries = 0;
-  // USHER_FORGERIES: so many instead, for an hour on a machine of its own.
+  // USHER_FORGERIES: so many instead; a million take two minutes on a machine of its own.
   const char* const wanted_tries = std::getenv("USHER_FORGERIES");
   const std::uint64_t rounds =
       (wanted_tries != nullptr ? std::strtoull(wanted_tries, nullptr, 10) : 3200) /
