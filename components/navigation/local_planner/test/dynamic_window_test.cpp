@@ -389,7 +389,7 @@ TEST(Decide, BrakesPastAPostThatATurnLeavesFree) {
 TEST(Decide, BrakesPastAPostThatOnlyAHardTurnLeavesFree) {
   // It turns toward the post, and what the dynamic window reaches no longer leads past it.
   World world(-3, -3, 3, 3);
-  world.add(Box{0.7, -3, 0.8, -0.48});
+  world.add(Box{0.6, -3, 0.7, -0.4});
   world.finish(0.305);
   DynamicWindow planner = planner_to(8.0);
   const Decision decision = planner.decide(world.costs(), {}, {0.61, -0.56}, {0.88, -0.8}, 0.05);
