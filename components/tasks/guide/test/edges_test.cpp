@@ -157,10 +157,11 @@ const std::vector<Case>& cases() {
        {kFollowing,
         {[](Rig& r) { r.see_nobody(), r.wait(1500); }, State::kFollowMe, "goal:pose"},
         {[](Rig& r) {
-           r.navigate(GoalState::kSucceeded), r.drive(58000);  // it looks round
+           // It looks round, and tries the way again.
+           r.navigate(GoalState::kSucceeded), r.drive(58000);
            r.taken(), r.drive(2000);
          },
-         State::kEnd, "end"}}},
+         State::kEnd, "goal:pose end"}}},
       {"says what it was like",
        {kFeedback,
         PRESS("rating:5", kFeedback),
