@@ -83,14 +83,34 @@ struct Colors {
   double bias(std::size_t k) const { return off[k] / both; }
 };
 
+/// What the two say of their heights.
+struct Heights {
+  int people = 0, hidden_by_pixels = 0, hidden_by_model = 0, hidden = 0;
+  int measured = 0;
+  double off = 0.0, squares = 0.0;  // of pixels from the true height
+
+  void take(const people_detector::Sighting& pixels, const ModelledSighting& model, double truth) {
+    if (!(pixels.height > 0.0 && model.height > 0.0)) return;
+    ++people;
+    hidden_by_pixels += pixels.head_hidden;
+    hidden_by_model += model.head_hidden;
+    hidden += pixels.head_hidden && model.head_hidden;
+    if (pixels.head_hidden || model.head_hidden) return;
+    ++measured;
+    off += pixels.height - truth, squares += (pixels.height - truth) * (pixels.height - truth);
+  }
+  double bias() const { return off / measured; }
+  double sigma() const { return std::sqrt(squares / measured - bias() * bias()); }
+};
+
 /// Of those found, the one nearest to a place, seen from the same one.
 template <class Findings>
-const imaging::Appearance* nearest(const Findings& findings, const Point2& place, double ahead) {
-  const imaging::Appearance* best = nullptr;
+auto nearest(const Findings& findings, const Point2& place, double ahead) {
+  decltype(findings.data()) best = nullptr;
   double least = kSame;
   for (const auto& one : findings) {
     const double away = (Point2(one.forward + ahead, one.left) - place).norm();
-    if (away < least) least = away, best = &one.appearance;
+    if (away < least) least = away, best = &one;
   }
   return best;
 }
@@ -139,6 +159,7 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
     std::vector<rendering::Gains> gains;
     std::vector<std::uint8_t> rgb;
     Colors upper, legs;
+    Heights heights;
     Found pixels, modelled;
     int images = 0, same = 0, either = 0;
     for (int place = 0; place < kPlaces;) {
@@ -190,8 +211,9 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
           const auto* by_pixels = nearest(dressed, where, pose.forward - 0.2);
           const auto* by_model = nearest(sightings, where, 0.0);
           if (by_pixels == nullptr || by_model == nullptr) continue;
-          upper.take(by_pixels->upper, by_model->upper);
-          legs.take(by_pixels->legs, by_model->legs);
+          upper.take(by_pixels->appearance.upper, by_model->appearance.upper);
+          legs.take(by_pixels->appearance.legs, by_model->appearance.legs);
+          heights.take(*by_pixels, *by_model, person.height);
         }
         std::vector<Point2> truths, others, seen, said;
         for (const Person& person : world->people()) {
@@ -234,6 +256,11 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
       EXPECT_GT(part->agree, (backward && part == &upper ? 8 : 9) * part->both / 10);
       for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(std::abs(part->bias(k)), 2.0);
     }
+    std::printf(
+        "heights: of %d people heads hidden by pixels %d, by the model %d, both %d; of %d "
+        "off by %.3f +- %.3f m\n",
+        heights.people, heights.hidden_by_pixels, heights.hidden_by_model, heights.hidden,
+        heights.measured, heights.bias(), heights.sigma());
     EXPECT_NEAR(modelled.recall(), pixels.recall(), 0.05);
     EXPECT_GT(same, 85 * either / 100);
     EXPECT_NEAR(modelled.bias(), pixels.bias(), 0.05);

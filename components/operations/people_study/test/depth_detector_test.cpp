@@ -115,6 +115,29 @@ TEST(DepthDetector, HeightOfWhoseHeadLeavesTheImageIsNotKnown) {
   EXPECT_EQ(height_at("at 100 cm, camera 5 deg down"), 0.0);
 }
 
+TEST(DepthDetector, SaysWhoseHeadSomebodyNearerHides) {
+  Studio studio;
+  DepthDetector detector = detector_for(studio.intrinsics());
+  const auto farther_one = [&](double left) {
+    people_study::Scene scene = people_study::thesis_scenes().front();
+    scene.bodies.resize(1);
+    rendering::Body& nearer = scene.bodies.front();
+    nearer.pose = {2.0, 0.0, geometry::kPi};
+    scene.bodies.push_back(nearer);
+    scene.bodies.back().pose = {4.0, left, geometry::kPi};
+    const auto shot = studio.take(scene, 3).value();
+    const auto found = detector.find(shot.processed, shot.view).value();
+    EXPECT_EQ(found.size(), 2U) << left;
+    EXPECT_FALSE(found.front().head_hidden) << left;
+    return found.back();
+  };
+  const Sighting beside = farther_one(0.9), behind = farther_one(0.45);
+  EXPECT_FALSE(beside.head_hidden);
+  EXPECT_NEAR(beside.height, 1.7, 0.1);
+  EXPECT_TRUE(behind.head_hidden);
+  EXPECT_LT(behind.height, 1.65);
+}
+
 TEST(DepthDetector, FindsThePeopleOfTheThesisAndNoneOfItsThings) {
   const Score score = score_of(people_study::thesis_scenes());
   EXPECT_GE(score.recall(), 0.98);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "foundation/geometry/angle.hpp"
 #include "foundation/result/bounds.hpp"
@@ -11,19 +10,17 @@ namespace usher::people_detector {
 
 namespace {
 
-constexpr double kHalfBody = 0.25;  // [m]
-constexpr double kHalfHead = 0.12;  // [m]
-constexpr double kClose = 0.7;  // [m] one behind the other: clothes may be taken for the other's
+constexpr double kHalfBody = 0.25, kHalfHead = 0.12;  // [m]
+constexpr double kClose = 0.7;  // [m] one behind the other: height and clothes may be the other's
 
-/// [m] How far behind the other one, who may hide his head.
-std::optional<double> behind(const Sighting& one, const Sighting& other) {
+/// Whether the other one stands close before him.
+bool is_close_behind(const Sighting& one, const Sighting& other) {
   const double range = std::hypot(one.forward, one.left);
   const double nearer = std::hypot(other.forward, other.left);
-  if (!(nearer > 0.0 && nearer < range)) return std::nullopt;
+  if (!(nearer > 0.0 && nearer < range && range - nearer < kClose)) return false;
   const double apart = std::abs(geometry::shortest_turn(std::atan2(other.left, other.forward),
                                                         std::atan2(one.left, one.forward)));
-  if (apart > kHalfBody / nearer + kHalfHead / range) return std::nullopt;
-  return range - nearer;
+  return apart < kHalfBody / nearer + kHalfHead / range;
 }
 
 }  // namespace
@@ -51,18 +48,15 @@ void place_sightings(std::span<const Sighting> sightings, const geometry::Pose2&
   for (const Sighting& one : sightings) {
     const geometry::Point2 seen(one.forward, one.left);
     const double range = seen.norm();
-    bool headless = false, covered = false;
-    for (const Sighting& other : sightings) {
-      const auto way = behind(one, other);
-      headless = headless || way;
-      covered = covered || (way && *way < kClose);
-    }
+    const bool mixed = std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& other) {
+      return is_close_behind(one, other);
+    });
     observations.push_back({odom_T_foot * seen,
                             covariance_along(odom_T_foot.yaw + std::atan2(one.left, one.forward),
                                              errors.along + errors.along_growth * range,
                                              errors.across + errors.across_growth * range),
-                            headless ? 0.0 : one.height,
-                            covered ? imaging::Appearance{} : one.appearance});
+                            mixed ? 0.0 : one.height,
+                            mixed ? imaging::Appearance{} : one.appearance, one.head_hidden});
   }
 }
 

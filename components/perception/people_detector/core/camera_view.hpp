@@ -29,8 +29,8 @@ struct SightingErrors {
 };
 Status check(const SightingErrors& errors);
 
-/// Sightings as observations in odom; `observations` is cleared first. Whose head somebody nearer
-/// may hide has no height: what is seen of him is none. Whoever is close behind has no colors.
+/// Sightings as observations in odom; `observations` is cleared first. Whoever is close behind
+/// another one has neither height nor colors: they may be the other's.
 void place_sightings(std::span<const Sighting> sightings, const geometry::Pose2& odom_T_foot,
                      const SightingErrors& errors, std::vector<Observation>& observations);
 

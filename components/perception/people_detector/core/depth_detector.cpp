@@ -93,11 +93,9 @@ Sighting DepthDetector::settle(const Vote& best, float score) const {
     forward += weight * static_cast<double>(one.forward);
   }
   left /= weights, forward /= weights;
-  return {forward,
-          left,
-          windows_.top({static_cast<float>(forward - kBodyDepth), static_cast<float>(left), 0.0F}),
-          static_cast<double>(score),
-          {}};
+  const Windows::Top top =
+      windows_.top({static_cast<float>(forward - kBodyDepth), static_cast<float>(left), 0.0F});
+  return {forward, left, top.height, static_cast<double>(score), {}, top.head_hidden};
 }
 
 Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage& image,

@@ -17,6 +17,7 @@ struct Sighting {
   double height = 0.0;             ///< [m] of the highest visible point; 0: it leaves the image
   double score = 0.0;              ///< log odds, over the threshold
   imaging::Appearance appearance;  ///< not known without a color image
+  bool head_hidden = false;        ///< something nearer may hide a head over the highest point
 };
 
 struct DetectorConfig {

@@ -44,6 +44,22 @@ imaging::Appearances seen_by(Source source, const imaging::Appearance& appearanc
   return seen;
 }
 
+/// [m] By which one of a height is higher than another one; by which at least, of whom less is
+/// seen.
+double higher(double height, bool hidden, double than) {
+  return hidden ? std::max(0.0, height - than) : height - than;
+}
+
+void learn_height(Track& track, const Observation& seen) {
+  if (!(seen.height > 0.0)) return;
+  if (seen.head_hidden) {
+    track.at_least = std::max(track.at_least, seen.height);
+    return;
+  }
+  track.heights = std::min(track.heights + 1, kHeights);
+  track.height += (seen.height - track.height) / track.heights;
+}
+
 bool usable(const Observation& one) {
   const Eigen::Matrix2d& c = one.covariance;
   return one.position.allFinite() && std::isfinite(one.height) && c.allFinite() && c(0, 0) > 0.0 &&
@@ -106,8 +122,9 @@ double Tracker::cost(const Track& track, const Observation& observation, const G
   double distance = away.dot(spread.inverse() * away);
   const bool watched = now_ - track.last_seen() <= kWatched;
   if (observation.height > 0.0 && track.height > 0.0) {
-    const double higher = (observation.height - track.height) / config_.height_sigma;
-    distance += watched ? std::min(kSitsDown, higher * higher) : higher * higher;
+    const double unlike =
+        higher(observation.height, observation.head_hidden, track.height) / config_.height_sigma;
+    distance += watched ? std::min(kSitsDown, unlike * unlike) : unlike * unlike;
   }
   double colors = 0.0;
   if (observation.appearance.known()) {
@@ -130,10 +147,7 @@ void Tracker::correct(Track& track, const Observation& observation, const Gain& 
   track.state += gain * (observation.position - look * track.state);
   const Eigen::Matrix4d updated = track.covariance - gain * (look * track.covariance);
   track.covariance = 0.5 * (updated + updated.transpose());
-  if (observation.height > 0.0) {
-    track.heights = std::min(track.heights + 1, kHeights);
-    track.height += (observation.height - track.height) / track.heights;
-  }
+  learn_height(track, observation);
   if (const auto camera = static_cast<std::size_t>(source); camera < track.appearances.size())
     imaging::learn(track.appearances[camera], observation.appearance);
   if (source != Source::kLaser) ++track.sightings;
@@ -151,8 +165,7 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   const double strayed = kFirstSpeed * (now_ - time);
   track.covariance.topLeftCorner<2, 2>() += strayed * strayed * Eigen::Matrix2d::Identity();
   track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
-  track.height = observation.height;
-  track.heights = observation.height > 0.0;
+  learn_height(track, observation);
   track.appearances = seen_by(source, observation.appearance);
   track.born = time;
   track.seen.fill(kNever);
@@ -173,16 +186,21 @@ double Tracker::unlikeness(const Track& hidden, const Track& track) const {
   const double away = (hidden.position() - track.position()).norm() / (config_.reach + range);
   if (away > 1.0) return kForbidden;
   double unlike = kReach * away * away + cost_of_colors(colors);
-  if (!measured) return unlike < kAnother ? unlike : kForbidden;
-  const double noise = config_.height_sigma * config_.height_sigma;
-  const double spread = 2.0 * kPosture * kPosture + noise / track.heights + noise / hidden.heights;
-  const double higher = hidden.height - track.height;
-  unlike += higher * higher / spread;
+  if (hidden.heights > 0) {
+    const double noise = config_.height_sigma * config_.height_sigma;
+    const double spread =
+        2.0 * kPosture * kPosture + noise / std::max(1, track.heights) + noise / hidden.heights;
+    const double taller =
+        higher(measured ? track.height : track.at_least, !measured, hidden.height);
+    unlike += taller * taller / spread;
+  }
   return unlike < kAnother ? unlike : kForbidden;
 }
 
-/// He may be either of two.
+/// He may be either of two, or anybody as long as his head is hidden.
 bool Tracker::is_doubtful(std::size_t newcomer) const {
+  const Track& track = tracks_[newcomers_[newcomer]];
+  if (track.heights == 0 && track.at_least > 0.0 && !hidden_.empty()) return true;
   double least = kForbidden, second = kForbidden;
   for (std::size_t i = 0; i < hidden_.size(); ++i) {
     const double unlike = costs_[newcomer * hidden_.size() + i];
@@ -219,6 +237,7 @@ void Tracker::recognize() {
     track.born = hidden.born;
     if (hidden.heights > track.heights)
       track.height = hidden.height, track.heights = hidden.heights;
+    track.at_least = std::max(track.at_least, hidden.at_least);
     for (std::size_t camera = 0; camera < track.appearances.size(); ++camera)
       if (!track.appearances[camera].known())
         track.appearances[camera] = hidden.appearances[camera];

@@ -24,6 +24,7 @@ struct Observation {
   Eigen::Matrix2d covariance = 0.0064 * Eigen::Matrix2d::Identity();  ///< [m^2] of the position
   double height = 0.0;             ///< [m] of the highest point; 0: not known
   imaging::Appearance appearance;  ///< only a camera with a color image knows it
+  bool head_hidden = false;        ///< who is seen is at least so high
 };
 
 /// The covariance of a position that is `along` uncertain on the line of sight, at `bearing` [rad],
@@ -36,6 +37,7 @@ struct Track {
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
   double height = 0.0;                  ///< [m] 0: not known
   int heights = 0;                      ///< {0..10} sightings behind it
+  double at_least = 0.0;                ///< [m] highest point while the head was hidden
   double born = 0.0;                    ///< [s]
   std::array<double, kSources> seen{};  ///< [s] last time by each source; -infinity: never
   geometry::Point2 birthplace = geometry::Point2::Zero();

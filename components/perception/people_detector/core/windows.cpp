@@ -155,19 +155,21 @@ void Windows::mirror(const Inputs& inputs, Inputs& mirrored) {
   }
 }
 
-double Windows::top(const Candidate& candidate) const {
+Windows::Top Windows::top(const Candidate& candidate) const {
   const auto forward = static_cast<double>(candidate.forward);
   const auto left = static_cast<double>(candidate.left);
   constexpr double kHighest = kLowest + kCellHeight * kUp, kRowStep = 0.02;  // [m]
   constexpr double kBeside = 0.24, kColumnStep = 0.04;                       // [m]
-  bool above = false;  // nothing, as the image shows
+  constexpr double kHalfHead = 0.12, kHead = 0.35;                           // [m]
+  bool above = false;                    // nothing, as the image shows
+  double hidden = kHighest + 2 * kHead;  // [m] the lowest place of a head before which something is
   for (int row_number = 0; row_number * kRowStep < kHighest; ++row_number) {
     const double height = kHighest - row_number * kRowStep;
     const double below = view_.height - height;
     const double depth = forward * cos_down_ + below * sin_down_;
     if (depth < kAtLeast) continue;
     const double y = (below * cos_down_ - forward * sin_down_) / depth;
-    int seen = 0, looked = 0;
+    int seen = 0, looked = 0, nearer = 0;
     for (int column_number = 0; column_number <= 12; ++column_number) {
       const double aside = column_number * kColumnStep - kBeside;
       const double x = -(left + aside) / depth;
@@ -180,12 +182,16 @@ double Windows::top(const Candidate& candidate) const {
           thinned_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                    static_cast<std::size_t>(column)];
       ++looked;
-      seen += pixel != 0 && std::abs(1e-3 * pixel - depth) < kTopDepth;
+      if (pixel == 0) continue;
+      const double behind = 1e-3 * pixel - depth;
+      seen += std::abs(behind) < kTopDepth;
+      nearer += behind <= -kTopDepth && std::abs(aside) < kHalfHead;
     }
-    if (seen >= 2) return above ? height : 0.0;
+    if (seen >= 2) return above ? Top{height, hidden - height < kHead} : Top{};
     above = above || looked >= 2;
+    if (nearer >= 2) hidden = height;
   }
-  return 0.0;
+  return {};
 }
 
 }  // namespace usher::people_detector

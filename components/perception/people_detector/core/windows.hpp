@@ -56,8 +56,11 @@ class Windows {
   void describe(const Candidate& candidate, Inputs& inputs) const;
   /// The same window with left and right exchanged.
   static void mirror(const Inputs& inputs, Inputs& mirrored);
-  /// [m] the highest surface of a window; 0 when there is none.
-  double top(const Candidate& candidate) const;
+  struct Top {
+    double height = 0.0;  ///< [m] of the highest surface; 0: it leaves the image, or none is there
+    bool head_hidden = false;  ///< something nearer hides where a head may be above it
+  };
+  Top top(const Candidate& candidate) const;
 
  private:
   void thin(const imaging::DepthImage& image);

@@ -55,8 +55,8 @@ void PeopleDetectorSimComponent::look(Camera& camera, const Sightings& message, 
   }
   found_.clear();
   for (const auto& one : message.sightings())
-    found_.push_back(
-        {one.forward(), one.left(), one.height(), 0.0, wire::from_message(one.appearance())});
+    found_.push_back({one.forward(), one.left(), one.height(), 0.0,
+                      wire::from_message(one.appearance()), one.head_hidden()});
   following_.see(camera.source, stamp, found_, *odom_T_base, inverse(*odom_T_base) * odom_T_foot);
 }
 

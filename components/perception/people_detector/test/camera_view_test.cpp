@@ -45,18 +45,20 @@ TEST(PlaceSightings, TurnsPlaceAndUncertaintyIntoOdom) {
   EXPECT_LT(placed[1].covariance(0, 1), 0.0) << "seen to the upper left";
 }
 
-TEST(PlaceSightings, MeasureNobodyWhomAnotherOneHides) {
+TEST(PlaceSightings, MeasureNobodyCloseBehindAnotherOne) {
   imaging::Appearance red;
   red.upper = {{50.0, 40.0, 20.0}, 1};
-  const std::vector<Sighting> seen{{2.0, 0.0, 1.6, 3.0, red},   // before the others
-                                   {4.0, 0.1, 1.4, 3.0, red},   // behind him
-                                   {2.5, 0.2, 1.5, 3.0, red},   // close behind him
-                                   {4.0, 1.5, 1.7, 3.0, red}};  // beside them
+  const std::vector<Sighting> seen{{2.0, 0.0, 1.6, 3.0, red},        // before the others
+                                   {4.0, 0.1, 1.4, 3.0, red, true},  // behind him
+                                   {2.5, 0.2, 1.5, 3.0, red},        // close behind him
+                                   {4.0, 1.5, 1.7, 3.0, red}};       // beside them
   std::vector<Observation> placed;
   place_sightings(seen, {}, {}, placed);
   ASSERT_EQ(placed.size(), 4U);
   EXPECT_EQ(placed[0].height, 1.6);
-  EXPECT_EQ(placed[1].height, 0.0);
+  EXPECT_FALSE(placed[0].head_hidden);
+  EXPECT_EQ(placed[1].height, 1.4);
+  EXPECT_TRUE(placed[1].head_hidden);
   EXPECT_TRUE(placed[1].appearance.known()) << "by what is seen beside him";
   EXPECT_EQ(placed[2].height, 0.0);
   EXPECT_FALSE(placed[2].appearance.known());

@@ -115,6 +115,44 @@ TEST(Tracker, KnowsWhoComesOutByPlaceAndHeight) {
   EXPECT_NE(who_comes_out({3.0, 2.5}, 0.0, Source::kLaser), 1U) << "legs elsewhere may be anyone's";
 }
 
+Observation half_hidden(double x, double y, double at_least) {
+  Observation one = at(x, y, at_least);
+  one.head_hidden = true;
+  return one;
+}
+
+TEST(Tracker, WhoseHeadIsHiddenMayBeTallerAndKeepsTheHeight) {
+  Tracker tracker({});
+  double time = 0.0;
+  const auto see = [&](const Observation& one, int images) {
+    for (int i = 0; i < images; ++i, time += kPeriod)
+      tracker.update(time, Source::kKinect, std::vector{one});
+  };
+  see(at(3.0, 0.0, 1.75), 20);
+  see(half_hidden(3.0, 0.0, 1.4), 20);
+  ASSERT_EQ(tracker.people().size(), 1U);
+  EXPECT_NEAR(tracker.people()[0].height, 1.75, 1e-9);
+  for (int i = 0; i < 20; ++i, time += kPeriod) tracker.update(time, Source::kKinect, {});
+  see(half_hidden(3.0, 0.0, 2.0), 20);
+  EXPECT_EQ(tracker.people().size(), 2U) << "he is not so tall";
+}
+
+TEST(Tracker, WaitsForTheHeadOfWhoComesOut) {
+  for (const double height : {1.7, 1.5}) {
+    Tracker tracker({});
+    double time = 0.0;
+    for (; time < 3.0; time += kPeriod)
+      tracker.update(time, Source::kKinect, std::vector{at(3.0, 0.7 * (time - 3.0))});
+    for (; time < 6.0; time += kPeriod) tracker.update(time, Source::kKinect, {});
+    for (int i = 0; i < 5; ++i, time += kPeriod)
+      tracker.update(time, Source::kKinect, std::vector{half_hidden(3.0, 2.5, 1.3)});
+    EXPECT_EQ(tracker.people().size(), 1U) << "who he is, is not known yet";
+    for (int i = 0; i < 10; ++i, time += kPeriod)
+      tracker.update(time, Source::kKinect, std::vector{at(3.0, 2.5, height)});
+    EXPECT_EQ(tracker.people().size(), height == 1.7 ? 1U : 2U);
+  }
+}
+
 TEST(Tracker, OfTwoWhoAreHiddenTakesTheOneOfThatHeight) {
   Tracker tracker({});
   double time = 0.0;

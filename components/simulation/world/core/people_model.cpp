@@ -84,7 +84,7 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
       visible.area += area;
       if (share > kUpperFrom && share < kUpperTo) visible.upper += area;
       if (share > kLegsFrom && share < kLegsTo && is_upright(person)) visible.legs += area;
-      visible.top = std::min(height + 0.5 * kSlice, movers_[static_cast<std::size_t>(who)].top);
+      visible.top = height + 0.5 * kSlice;
     }
   }
 }
@@ -134,8 +134,13 @@ void PeopleModel::find(const World& world, const DepthCamera& camera, bool color
     if (random_.uniform() >= found) continue;
     const Point2 sight = place.normalized();
     const Point2 seen = place + along * sight + across * Point2(-sight.y(), sight.x());
-    const bool cut = !in_view(place.x() - ahead_, movers_[i].top);
-    sightings.push_back({seen.x(), seen.y(), cut ? 0.0 : std::max(0.1, visible.top + higher)});
+    const double top = movers_[i].top;
+    const bool cut = !in_view(place.x() - ahead_, top);
+    // The highest slice that a ray can meet stands for all that is above it.
+    const bool hidden = visible.top < kSlice * std::floor(top / kSlice + 0.5) - 0.5 * kSlice;
+    sightings.push_back(
+        {seen.x(), seen.y(), cut ? 0.0 : std::max(0.1, (hidden ? visible.top : top) + higher)});
+    sightings.back().head_hidden = !cut && hidden;
     if (!colors) continue;
     const auto gains = camera.gains(world, people[i].position);
     const rendering::Clothes& clothes = people[i].clothes;

@@ -37,6 +37,7 @@ struct ModelledSighting {
   double forward = 0.0, left = 0.0;  ///< [m]
   double height = 0.0;               ///< [m] of the highest visible point; 0: it leaves the image
   imaging::Appearance appearance{};  ///< the colors of the clothes
+  bool head_hidden = false;          ///< something nearer may hide a head over the highest point
 };
 
 class PeopleModel {

@@ -265,6 +265,7 @@ void DepthOutput::publish_people(PeopleModel& model, const DepthCamera& camera, 
     sighting.left(found_[i].left);
     sighting.height(found_[i].height);
     sighting.appearance(wire::to_message(found_[i].appearance));
+    sighting.head_hidden(found_[i].head_hidden);
   }
   output.publish(people_);
 }
