@@ -65,6 +65,8 @@ TEST(WrongUsage, SaysWhatWasMeant) {
               HasSubstr("'staus'; see usher --help; did you mean status?"));
   EXPECT_THAT(errors_of({"stop", "--emergancy"}, 2), HasSubstr("did you mean --emergency?"));
   EXPECT_THAT(errors_of({"experiment", "gude"}, 2), HasSubstr("did you mean guide?"));
+  EXPECT_THAT(errors_of({"experiment", "guide", "--windows", "3"}, 2),
+              HasSubstr("guide takes no --windows; besides --out it takes --seeds, --only"));
   EXPECT_THAT(errors_of({"experiment", "guide", "--seed", "3"}, 2),
               HasSubstr("did you mean --seeds?"));
   // Not every build has the benchmark that is meant.

@@ -29,6 +29,7 @@ struct Experiment {
   const char* text;
   /// The error says why it could not run; a sheet that does not pass is a result.
   std::function<Result<ResultSheet>(const ExperimentOptions&)> run;
+  std::vector<std::string> takes;  ///< options, besides --out
 };
 
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
