@@ -14,7 +14,10 @@ using Words = std::vector<std::string>;
 
 class Launch : public testing::Test {
  protected:
-  Launch() { ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1); }
+  Launch() {
+    ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+    ::setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
+  }
 
   std::string manifest(const std::string& change = "") const {
     return folder_.file("deploy/robot.yaml", "extends: " + std::string(USHER_SOURCE_DIR) +

@@ -85,6 +85,7 @@ RunningRobot::RunningRobot(std::uint32_t domain, bool secure, const std::string&
                            const std::string& more)
     : domain_(domain) {
   ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+  ::setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
   manifest_ = folder_.file("deploy/robot.yaml",
                            "extends: " + std::string(USHER_SOURCE_DIR) + "/deploy/" + base +
                                "\ndomain: " + std::to_string(domain_) + "\n" + more);

@@ -26,6 +26,7 @@ TwoHosts::TwoHosts(TwoNetworks& networks, const Folder& folder, const Options& o
   nuc_ = launch(networks.a(), "nuc");
   tablet_ = launch(networks.b(), "tablet");
   ::setenv("XDG_RUNTIME_DIR", (folder.path() + "/nuc").c_str(), 1);
+  ::setenv("XDG_STATE_HOME", (folder.path() + "/nuc").c_str(), 1);
   TwoNetworks::within(networks.a(), [&] { observe(options); });
 }
 
@@ -44,6 +45,7 @@ std::unique_ptr<Process> TwoHosts::launch(const std::string& network,
   const std::string directory = folder_.path() + "/" + host;
   std::filesystem::create_directories(directory);
   ::setenv("XDG_RUNTIME_DIR", directory.c_str(), 1);
+  ::setenv("XDG_STATE_HOME", directory.c_str(), 1);
   return TwoNetworks::start(network, {usher_program(), "launch", manifest_, "--host", host});
 }
 

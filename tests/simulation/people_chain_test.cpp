@@ -261,6 +261,10 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
         "off by %.3f +- %.3f m\n",
         heights.people, heights.hidden_by_pixels, heights.hidden_by_model, heights.hidden,
         heights.measured, heights.bias(), heights.sigma());
+    ASSERT_GT(heights.measured, 0);
+    EXPECT_LT(std::abs(heights.bias()), 0.06);
+    EXPECT_LT(heights.sigma(), 0.1);
+    EXPECT_NEAR(heights.hidden_by_model, heights.hidden_by_pixels, 0.05 * heights.people);
     EXPECT_NEAR(modelled.recall(), pixels.recall(), 0.05);
     EXPECT_GT(same, 85 * either / 100);
     EXPECT_NEAR(modelled.bias(), pixels.bias(), 0.05);

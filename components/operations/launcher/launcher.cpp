@@ -108,13 +108,22 @@ bool directory_of_mine(const std::string& path) {
   return lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();
 }
 
-/// Where this user's deployments keep their locks and, by default, their run directories.
+/// Where this user's deployments keep their locks, until a boot.
 std::string runtime_directory() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   if (runtime != nullptr && *runtime != '\0') return std::string(runtime) + "/usher";
   const std::string user = std::to_string(geteuid());
   if (directory_of_mine("/run/user/" + user)) return "/run/user/" + user + "/usher";
   return "/tmp/usher-" + user;
+}
+
+/// Where what they remember outlives a boot; without a home it cannot.
+std::string state_directory() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && *state != '\0') return std::string(state) + "/usher";
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && *home != '\0') return std::string(home) + "/.local/state/usher";
+  return runtime_directory();
 }
 
 /// Makes it for this user alone. Where anybody may write beside it (/tmp), one that was there and
@@ -182,7 +191,7 @@ bool written_since_boot(const std::string& lock_file) {
 }  // namespace
 
 std::string default_run_directory(std::uint32_t domain, const std::string& host) {
-  return runtime_directory() + "/domain-" + std::to_string(domain) +
+  return state_directory() + "/domain-" + std::to_string(domain) +
          (host.empty() ? "" : "-" + host);
 }
 

@@ -142,7 +142,9 @@ class Launcher {
   bool disk_full_ = false;  ///< said
 };
 
-/// Where a deployment runs on this machine by default: one place for each user and DDS domain, in
+/// Where a deployment runs on this machine by default: one place for each user and DDS domain that
+/// a boot leaves, so that what is latched stays so: in XDG_STATE_HOME/usher, else in
+/// HOME/.local/state/usher, and where there is no home beside the locks. Those are in
 /// XDG_RUNTIME_DIR/usher, else in /run/user/UID/usher, else in /tmp/usher-UID, which the launcher
 /// takes only when it belongs to this user alone.
 std::string default_run_directory(std::uint32_t domain, const std::string& host);

@@ -43,7 +43,6 @@ Guard::Guard(const Parameters& parameters)
          parameters.stand_off >= 0.0);
 }
 
-/// The share at which no point of the outline moves faster.
 double Guard::creeping(const geometry::Twist2& twist, double speed) const {
   const double fastest =
       std::abs(twist.v) + std::abs(twist.w) * parameters_.outline.circumscribed_radius();

@@ -63,6 +63,8 @@ class Guard {
     return view;
   }
 
+  /// The share {0..1} of a motion at which no point of the outline is faster than `speed` [m/s].
+  double creeping(const geometry::Twist2& twist, double speed) const;
   /// The share {0..1} of a motion that is allowed to who does not look ahead.
   double share(const geometry::Twist2& twist, const View& view,
                const std::optional<geometry::Twist2>& measured) const;
@@ -82,7 +84,6 @@ class Guard {
   double way(const geometry::Twist2& twist, const View& view) const;
 
  private:
-  double creeping(const geometry::Twist2& twist, double speed) const;
   double stoppable(const geometry::Twist2& twist, double contact, const geometry::Twist2& measured,
                    double stand_off) const;
   double kept_off(const geometry::Twist2& twist, double contact,

@@ -115,6 +115,11 @@ MovementControl::Wish MovementControl::choose(const Inputs& inputs) const {
   return wish;
 }
 
+/// The planner's costs take for free what no beam tells of.
+bool MovementControl::blind(const Wish& wish, const Inputs& inputs) const {
+  return parameters_.guarded && wish.source == Source::kNavigation && !inputs.view.sees;
+}
+
 MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& wish) const {
   Bound bound;
   bound.limit = inputs.situation == Situation::kOpen       ? parameters_.open
@@ -141,9 +146,7 @@ MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& 
     } else if (inputs.localization == Localization::kLost) {
       tighten(parameters_.localization_lost, Limit::kLocalizationLost);
     }
-    // The planner's costs take for free what no beam tells of.
-    if (parameters_.guarded && !inputs.view.sees)
-      tighten({parameters_.guard.blind, bound.limit.angular}, Limit::kBlind);
+    if (blind(wish, inputs)) tighten({parameters_.guard.blind, bound.limit.angular}, Limit::kBlind);
   }
   const double factor = inputs.enables ? inputs.enables->speed_factor : 1.0;
   if (!(factor >= 1.0)) {  // NaN is the careful case
@@ -251,6 +254,10 @@ MovementControl::Limited MovementControl::limited(const Wish& wish, const Bound&
   const double angular = share(bound.limit.angular, wish.twist.w);
   Limited is{.factor = std::min(linear, angular)};
   if (is.factor < 1.0) is.by = linear <= angular ? bound.linear_by : bound.angular_by;
+  if (blind(wish, inputs)) {
+    const double creeps = guard_.creeping(wish.twist, parameters_.guard.blind);
+    if (creeps < is.factor) is.factor = creeps, is.by = Limit::kBlind;
+  }
   is.twist = {wish.twist.v * is.factor, turn(wish, is.factor, bound.limit.angular, inputs)};
   if (bound.limit.linear == 0.0 && is.twist.v != 0.0) is.twist.v = 0.0, is.by = bound.linear_by;
   if (bound.limit.angular == 0.0 && is.twist.w != 0.0) is.twist.w = 0.0, is.by = bound.angular_by;

@@ -193,6 +193,7 @@ class MovementControl {
   geometry::Twist2 ramp(const geometry::Twist2& wanted, Source source, Time now);
   bool smooth(Source source) const;
   bool guards(Source source) const;
+  bool blind(const Wish& wish, const Inputs& inputs) const;
   double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   double turn(const Wish& wish, double part, double most, const Inputs& inputs) const;

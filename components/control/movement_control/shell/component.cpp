@@ -213,7 +213,7 @@ std::optional<geometry::Twist2> MovementControlComponent::measured() const {
 }
 
 /// While MARVIN leans forward to speed up, most beams that look ahead may end on the floor; what is
-/// near they still meet. Whoever does not lean has no excuse.
+/// near they still meet. Whoever does not lean forward has no excuse.
 bool MovementControlComponent::sees() const {
   const Time now = host_.now().time_since_epoch();
   const bool leans = leaned_at_ && now - *leaned_at_ < kLeanedAge;
@@ -267,7 +267,7 @@ Inputs MovementControlComponent::gather() {
   if (const auto* base = base_.fresh()) {
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
     inputs.motors_off = base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
-    if (std::abs(base->pitch()) > kLeans) leaned_at_ = host_.now().time_since_epoch();
+    if (base->pitch() > kLeans) leaned_at_ = host_.now().time_since_epoch();
   }
   inputs.measured = measured();
   double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot

@@ -497,12 +497,16 @@ TEST_F(Guarded, WithoutAScanItCreeps) {
 
 // A jacket over the front half of the laser: its costs are free there.
 TEST_F(Guarded, ANavigationThatSeesNothingAheadCreeps) {
+  const double corner = parameters.guard.outline.circumscribed_radius();
+  for (const Twist2& wish : {Twist2{0.8, 0.3}, Twist2{0.0, 0.8}, Twist2{0.09, -0.3}}) {
+    inputs.navigation = wish;
+    inputs.view = {};
+    const Decision decision = settled(inputs, parameters);
+    EXPECT_NEAR(decision.twist.v + std::abs(decision.twist.w) * corner, 0.1, 1e-9);
+    EXPECT_NEAR(decision.twist.w * wish.v, wish.w * decision.twist.v, 1e-9) << "on its arc";
+    EXPECT_EQ(decision.limit, Limit::kBlind);
+  }
   inputs.navigation = Twist2{0.8, 0.3};
-  inputs.view = {};
-  const Decision decision = settled(inputs, parameters);
-  EXPECT_NEAR(decision.twist.v, 0.1, 1e-9);
-  EXPECT_NEAR(decision.twist.w, 0.3 / 8.0, 1e-9) << "on its arc";
-  EXPECT_EQ(decision.limit, Limit::kBlind);
   inputs.view = {.sees = true};
   EXPECT_EQ(settled(inputs, parameters).twist, (Twist2{0.8, 0.3}));
 }

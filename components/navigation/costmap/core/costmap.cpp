@@ -188,9 +188,15 @@ void Costmap::set_people(std::span<const geometry::Point2> people) {
   touch(social_.set(people, raster_));
 }
 
-void Costmap::forget() {
+void Costmap::forget(double blind) {
+  CellRect kept;
+  if (base_ && blind > 0.0) {
+    const grid::Cell low = raster_.cell_at(base_->x - blind, base_->y - blind);
+    const grid::Cell high = raster_.cell_at(base_->x + blind, base_->y + blind);
+    kept = {low.x, low.y, high.x + 1, high.y + 1};
+  }
   for (ObstacleLayer& layer : layers_) {
-    if (layer.config().min_raytrace_range <= 0.0) touch(layer.forget());
+    if (layer.config().min_raytrace_range <= 0.0) touch(layer.forget(kept));
   }
 }
 

@@ -76,9 +76,10 @@ class Costmap {
   Status replace(LayerId layer, std::span<const geometry::Point2> points, double stamp);
   /// Who gets room, in the costmap's frame, in the place of those before.
   void set_people(std::span<const geometry::Point2> people);
-  /// Forgets what the sensors saw and would see again (a recovery). People stay, and layers that
-  /// are not cleared nearby (min_raytrace_range): their sensor looks over what lies there.
-  void forget();
+  /// Forgets what the sensors saw and would see again (a recovery). People stay, obstacles nearer
+  /// to the robot than `blind` [m] (in x and y of the costmap), and layers that are not cleared
+  /// nearby (min_raytrace_range): their sensor looks over what lies there.
+  void forget(double blind = 0.0);
 
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
   /// observations' stamps; only persistence depends on it. The reference stays valid as long as the

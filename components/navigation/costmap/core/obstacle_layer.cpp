@@ -272,12 +272,18 @@ CellRect ObstacleLayer::expire(double now) {
   return touched;
 }
 
-CellRect ObstacleLayer::forget() {
-  const CellRect wiped = seen_;
-  for (int y = wiped.y0; y < wiped.y1; ++y)
-    std::fill(states_.row(y) + wiped.x0, states_.row(y) + wiped.x1, kUnseen);
-  seen_ = {};
-  has_deadline_ = false;
+CellRect ObstacleLayer::forget(const CellRect& kept) {
+  const CellRect wiped = seen_, inside = kept.within(seen_);
+  for (int y = wiped.y0; y < wiped.y1; ++y) {
+    const bool crosses = !inside.empty() && y >= inside.y0 && y < inside.y1;
+    std::uint8_t* const row = states_.row(y);
+    for (int x = wiped.x0; x < wiped.x1; ++x) {
+      const bool stays = crosses && x >= inside.x0 && x < inside.x1 && row[x] == kSeenOccupied;
+      if (!stays) row[x] = kUnseen;
+    }
+  }
+  seen_ = inside.empty() ? CellRect{} : inside;
+  has_deadline_ = has_deadline_ && !seen_.empty();
   return wiped;
 }
 

@@ -77,8 +77,8 @@ class ObstacleLayer {
 
   /// Forgets obstacles whose persistence is over at `now` (finite). Returns the changed rectangle.
   CellRect expire(double now);
-  /// Forgets everything. Returns the changed rectangle.
-  CellRect forget();
+  /// Forgets everything but obstacles in `kept`. Returns the changed rectangle.
+  CellRect forget(const CellRect& kept = {});
   /// Marks cells of one row as seen free.
   void set_free(int y, int x0, int x1);
 

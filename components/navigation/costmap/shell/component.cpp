@@ -84,6 +84,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                         "Obstacles that are not seen again are forgotten; 0 = never.");
   local_persistence_ = parameters.number("local_persistence", "s", {0, 600}, 60.0,
                                          "The same in the window around the robot.");
+  blind_range_ = parameters.number(
+      "blind_range", "m", {0, 2}, 0.6,
+      "Nearer than this to the axle no sensor may see again what it saw: a recovery keeps it.");
   ultrasonic_settings_.name = "ultrasonic";
   ultrasonic_settings_.max_obstacle_range = parameters.number(
       "ultrasonic_obstacle_range", "m", {0.2, 6}, 2.5, "Farther ultrasonic echoes mark nothing.");
@@ -149,8 +152,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                         [this](const auto& request, const auto&) {
                           if (request.id() == last_request_) return;
                           last_request_ = request.id();
-                          if (local_.costs) local_.costs->forget();
-                          if (global_.costs) global_.costs->forget();
+                          if (local_.costs) local_.costs->forget(blind_range_);
+                          if (global_.costs) global_.costs->forget(blind_range_);
                         });
   local_costs_ = host.output(topics::kLocalCosts);
   global_costs_ = host.output(topics::kGlobalCosts);
@@ -253,20 +256,25 @@ void CostmapComponent::add_layers(Map& map) {
   map.whiskers = add(whiskers);
 }
 
+void CostmapComponent::refuse_map(const std::string& reason) {
+  ++rejected_maps_;
+  refused_map_ = "map refused: " + reason;
+  report();
+}
+
 void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   const auto map = wire::from_message(message);
   if (!map) {
-    ++rejected_maps_;
-    host_.health().set(HealthState::kDegraded, "map refused: " + map.error());
+    refuse_map(map.error());
     return;
   }
   auto costs = Costmap::make(config(false, map->geometry()));
   const Status usable = costs ? costs->set_static_map(*map) : Status(Error{costs.error()});
   if (!usable) {
-    ++rejected_maps_;
-    host_.health().set(HealthState::kDegraded, "map refused: " + usable.error());
+    refuse_map(usable.error());
     return;
   }
+  refused_map_.clear();
   static_costs_.emplace(std::move(costs).value());
   static_costs_->update(0.0);
   global_.costs.emplace(make(false, map->geometry()));
@@ -480,6 +488,8 @@ void CostmapComponent::publish_global() {
 void CostmapComponent::report() {
   if (!scan_.fresh()) {
     host_.health().set(HealthState::kDegraded, "no scan");
+  } else if (!refused_map_.empty()) {
+    host_.health().set(HealthState::kDegraded, refused_map_);
   } else if (!global_.static_known) {
     host_.health().set(HealthState::kDegraded, "no map");
   } else if (!transforms_.lookup(frames::kMap, frames::kBaseFootprint, local_.newest)) {

@@ -43,6 +43,7 @@ class CostmapComponent final : public runtime::Component {
   void read_depth_settings(runtime::Parameters& parameters);
   void read_depth();
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
+  void refuse_map(const std::string& reason);
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
                  const runtime::SampleInfo& info, Beams& beams, Costmap::LayerId Map::*layer);
   void place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
@@ -68,7 +69,7 @@ class CostmapComponent final : public runtime::Component {
   geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
-  double depth_blind_range_ = 0.0, rear_blind_range_ = 0.0;
+  double blind_range_ = 0.0, depth_blind_range_ = 0.0, rear_blind_range_ = 0.0;
   double low_thickness_ = 0.0, low_persistence_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;
@@ -84,6 +85,7 @@ class CostmapComponent final : public runtime::Component {
   std::uint64_t& invalid_ranges_;
   std::uint64_t& sensors_outside_;
   std::uint64_t& rejected_maps_;
+  std::string refused_map_;  ///< why; empty: the newest map was none that was refused
   Map local_, global_;
   std::optional<grid::OccupancyGrid> waiting_map_;  ///< for the window, until its place is known
   std::optional<Costmap> static_costs_;             ///< of the map alone, like global_

@@ -122,6 +122,18 @@ TEST_F(Component, SaysThatThereIsNoMap) {
   EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost) << "what the laser sees counts all the same";
 }
 
+TEST_F(Component, SaysWhyAMapIsRefusedUntilThereIsABetterOne) {
+  auto message = wire::to_message(host.now(), frames::kMap, map);
+  message.info().resolution(0.0F);
+  host.publish(topics::kMap, message);
+  run(1500);
+  EXPECT_TRUE(reason().starts_with("map refused: ")) << reason();
+  EXPECT_EQ(host.counter("map: rejected"), 1U);
+  give_map();
+  run(500);
+  EXPECT_EQ(reason(), "");
+}
+
 TEST_F(Component, SaysThatTheRobotIsNotLocalized) {
   give_map();
   run(1000, true, false);

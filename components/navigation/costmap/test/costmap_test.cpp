@@ -270,6 +270,20 @@ TEST(Costmap, ForgetsNothingThatNoSensorWouldSeeAgain) {
   EXPECT_EQ(costmap.cost_at({1.52, 0.02}), kLethalCost) << "the camera looks over it";
 }
 
+TEST(Costmap, ForgetsNothingThatIsTooNearToBeSeenAgain) {
+  Costmap costmap = Costmap::make(rolling_config()).value();
+  const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
+  see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
+  ASSERT_TRUE(costmap.move_to({0.5, 0.02, 0.0}).ok());
+  costmap.forget(0.6);
+  costmap.update(0.2);
+  EXPECT_EQ(costmap.cost_at({1.02, 0.02}), kLethalCost);
+  ASSERT_TRUE(costmap.move_to({0.3, 0.02, 0.0}).ok());
+  costmap.forget(0.6);
+  costmap.update(0.3);
+  EXPECT_NE(costmap.cost_at({1.02, 0.02}), kLethalCost) << "far enough away again";
+}
+
 TEST(Costmap, KeepsMappedGlassForALayerThatMayNotOverruleTheMap) {
   Costmap costmap = Costmap::make(rolling_config()).value();
   ObstacleLayerConfig config = layer_config("laser");

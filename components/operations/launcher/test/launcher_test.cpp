@@ -26,6 +26,7 @@ class Launching : public testing::Test {
  protected:
   Launching() {
     ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+    ::setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
     options_ = {"", folder_.path() + "/bin", folder_.path() + "/run"};
     deployment_.manifest.path = "m.yaml";
     deployment_.manifest.domain = 7;
@@ -340,11 +341,20 @@ TEST_F(Launching, KeepsItsFilesWhereNobodyElseCanPutAny) {
   EXPECT_EQ(facts.st_mode & 0777, 0700U);
   ASSERT_EQ(::chmod((runtime + "/usher").c_str(), 0777), 0);
   EXPECT_THAT(refusal(), HasSubstr("others may write there"));
+}
+
+TEST(RunDirectory, OutlivesABootWhereTheUserHasAHome) {
+  ::setenv("XDG_STATE_HOME", "/state", 1);
+  ::setenv("HOME", "/home/ann", 1);
+  EXPECT_EQ(default_run_directory(7, "nuc"), "/state/usher/domain-7-nuc");
+  ::unsetenv("XDG_STATE_HOME");
+  EXPECT_EQ(default_run_directory(7, ""), "/home/ann/.local/state/usher/domain-7");
+  ::unsetenv("HOME");
   ::unsetenv("XDG_RUNTIME_DIR");
   const std::string user = std::to_string(::geteuid());
-  const std::string found = default_run_directory(7, "nuc");
-  EXPECT_THAT(found, testing::AnyOf("/run/user/" + user + "/usher/domain-7-nuc",
-                                    "/tmp/usher-" + user + "/domain-7-nuc"));
+  EXPECT_THAT(default_run_directory(7, "nuc"),
+              testing::AnyOf("/run/user/" + user + "/usher/domain-7-nuc",
+                             "/tmp/usher-" + user + "/domain-7-nuc"));
 }
 
 TEST_F(Launching, NamesTheDomainsWhereALauncherLives) {

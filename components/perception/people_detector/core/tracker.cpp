@@ -50,6 +50,13 @@ double higher(double height, bool hidden, double than) {
   return hidden ? std::max(0.0, height - than) : height - than;
 }
 
+/// [m] By which somebody new is taller than somebody hidden, or must be.
+double taller(const Track& track, const Track& hidden) {
+  if (track.heights > 0 && hidden.heights > 0) return track.height - hidden.height;
+  if (hidden.heights > 0) return std::max(0.0, track.at_least - hidden.height);
+  return track.heights > 0 ? std::min(0.0, track.height - hidden.at_least) : 0.0;
+}
+
 void learn_height(Track& track, const Observation& seen) {
   if (!(seen.height > 0.0)) return;
   if (seen.head_hidden) {
@@ -175,6 +182,13 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   tracks_.push_back(track);
 }
 
+/// From where he was hidden to where somebody new turned up.
+bool Tracker::may_have_walked(const Track& hidden, const Track& track) const {
+  return hidden.last_seen() < track.born &&
+         (hidden.position() - track.position()).norm() <
+             config_.reach + config_.walk * (now_ - hidden.last_seen());
+}
+
 /// How little somebody new is like somebody hidden, who may be: near enough to have walked here
 /// since, of the same height and in the same clothes. Of whom neither height nor clothes are known
 /// only the place speaks.
@@ -186,21 +200,21 @@ double Tracker::unlikeness(const Track& hidden, const Track& track) const {
   const double away = (hidden.position() - track.position()).norm() / (config_.reach + range);
   if (away > 1.0) return kForbidden;
   double unlike = kReach * away * away + cost_of_colors(colors);
-  if (hidden.heights > 0) {
-    const double noise = config_.height_sigma * config_.height_sigma;
-    const double spread =
-        2.0 * kPosture * kPosture + noise / std::max(1, track.heights) + noise / hidden.heights;
-    const double taller =
-        higher(measured ? track.height : track.at_least, !measured, hidden.height);
-    unlike += taller * taller / spread;
-  }
+  const double noise = config_.height_sigma * config_.height_sigma;
+  const double spread = 2.0 * kPosture * kPosture + noise / std::max(1, track.heights) +
+                        noise / std::max(1, hidden.heights);
+  const double by = taller(track, hidden);
+  unlike += by * by / spread;
   return unlike < kAnother ? unlike : kForbidden;
 }
 
-/// He may be either of two, or anybody as long as his head is hidden.
+/// He may be either of two; while his head is hidden, anybody who may have walked here.
 bool Tracker::is_doubtful(std::size_t newcomer) const {
   const Track& track = tracks_[newcomers_[newcomer]];
-  if (track.heights == 0 && track.at_least > 0.0 && !hidden_.empty()) return true;
+  if (track.heights == 0 && track.at_least > 0.0) {
+    return std::any_of(hidden_.begin(), hidden_.end(),
+                       [&](std::size_t i) { return may_have_walked(tracks_[i], track); });
+  }
   double least = kForbidden, second = kForbidden;
   for (std::size_t i = 0; i < hidden_.size(); ++i) {
     const double unlike = costs_[newcomer * hidden_.size() + i];

@@ -98,6 +98,7 @@ class Tracker {
   void correct(Track& track, const Observation& observation, const Gain& look, Source source);
   void add(const Observation& observation, Source source, double time);
   double unlikeness(const Track& hidden, const Track& track) const;
+  bool may_have_walked(const Track& hidden, const Track& track) const;
   bool is_doubtful(std::size_t newcomer) const;
   void recognize();
   void forget();

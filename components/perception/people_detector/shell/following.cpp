@@ -123,6 +123,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       rejected_(host.health().counter("scans: rejected")),
       late_(host.health().counter("images: late")),
       rejected_faces_(host.health().counter("faces: rejected")),
+      rejected_maps_(host.health().counter("maps: rejected")),
       transforms_(host) {
   auto legs = LegFinder::make(leg_parameters(host.parameters()));
   if (!legs) host.fault(legs.error());
@@ -146,12 +147,12 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
 
 void Following::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   const auto map = wire::from_message(message);
-  if (!map) {
-    ++rejected_;
-    host_.health().set(HealthState::kDegraded, "map refused: " + map.error());
-    return;
-  }
-  legs_->set_map(*map);
+  refused_map_ = map ? "" : "map refused: " + map.error();
+  if (map)
+    legs_->set_map(*map);
+  else
+    ++rejected_maps_;
+  report();
 }
 
 void Following::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan) {
@@ -181,6 +182,7 @@ void Following::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time st
   if (*legs_trouble_ != '\0') {
     tracker_->update(in_seconds(stamp), Source::kLaser, {});
   } else {
+    looked_[static_cast<std::size_t>(Source::kLaser)] = host_.now();
     const geometry::Pose2 odom_T_scan = odom_T_base * *base_T_scan;
     const ScanView view{scan.angle_min(), scan.angle_increment(), scan.ranges()};
     tracker_->update(in_seconds(stamp), Source::kLaser,
@@ -260,8 +262,8 @@ void Following::note(runtime::Time stamp, const geometry::Pose2& odom_T_base) {
   motion_ = Motion{stamp, odom_T_base, passed < kLongest ? twist : geometry::Twist2{}};
 }
 
-bool Following::looks(Source camera) const {
-  const auto& looked = looked_[static_cast<std::size_t>(camera)];
+bool Following::looks(Source source) const {
+  const auto& looked = looked_[static_cast<std::size_t>(source)];
   return looked && host_.now() - *looked <= kLooks;
 }
 
@@ -301,7 +303,7 @@ void Following::publish_ahead() {
                                    motion_->twist, ahead_);
   usher_msgs::msg::PersonAhead message;
   message.header(wire::header(published_, frames::kBaseFootprint));
-  message.clear(!person);
+  message.clear(!person && (looks(Source::kLaser) || looks(Source::kKinect)));
   message.distance(person ? static_cast<float>(person->distance)
                           : std::numeric_limits<float>::infinity());
   if (person) {
@@ -314,6 +316,8 @@ void Following::publish_ahead() {
 void Following::report() {
   if (scan_.fresh() == nullptr) {
     host_.health().set(HealthState::kDegraded, "no scan");
+  } else if (!refused_map_.empty()) {
+    host_.health().set(HealthState::kDegraded, refused_map_);
   } else if (*legs_trouble_ != '\0') {
     host_.health().set(HealthState::kDegraded, legs_trouble_);
   } else if (std::string trouble = trouble_(); !trouble.empty()) {

@@ -44,7 +44,7 @@ class Following {
   std::optional<geometry::Pose2> localization() const;
   bool followed(const geometry::Point2& in_odom) const;
   void note(runtime::Time stamp, const geometry::Pose2& odom_T_base);
-  bool looks(Source camera) const;
+  bool looks(Source source) const;
   void publish();
   void publish_frames();
   void publish_ahead();
@@ -68,6 +68,7 @@ class Following {
   std::vector<Observation> observations_;
   std::vector<Sighting> faced_;
   const char* legs_trouble_ = "";
+  std::string refused_map_;  ///< why; empty: the newest map was none that was refused
   runtime::Time last_scan_{}, newest_{}, published_{}, framed_{};
   std::array<std::optional<runtime::Time>, kSources>
       looked_{};  ///< when people were last looked for
@@ -76,6 +77,7 @@ class Following {
   std::uint64_t& rejected_;
   std::uint64_t& late_;
   std::uint64_t& rejected_faces_;
+  std::uint64_t& rejected_maps_;
 
   wire::TransformInput transforms_;
   runtime::Input<nav_msgs::msg::OccupancyGrid> map_;

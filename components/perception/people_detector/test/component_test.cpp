@@ -104,6 +104,29 @@ TEST_F(Component, WithoutMapOrPoseItKnowsNobodyAndSaysWhy) {
   EXPECT_EQ(host.heartbeat().reason(), "robot not localized");
 }
 
+TEST_F(Component, DoesNotSayThatNobodyIsInTheWayWhereItDoesNotLook) {
+  run(1.0, crossing);
+  ASSERT_TRUE(host.last(topics::kPersonAhead));
+  EXPECT_FALSE(host.last(topics::kPersonAhead)->clear()) << "no map, no camera";
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  localize();
+  run(0.5, standing);
+  EXPECT_TRUE(host.last(topics::kPersonAhead)->clear());
+}
+
+TEST_F(Component, SaysWhyAMapIsRefusedUntilThereIsABetterOne) {
+  localize();
+  auto message = wire::to_message(host.now(), frames::kMap, room_map());
+  message.info().resolution(0.0F);
+  host.publish(topics::kMap, message);
+  run(1.0, crossing);
+  EXPECT_TRUE(host.heartbeat().reason().starts_with("map refused: ")) << host.heartbeat().reason();
+  EXPECT_EQ(host.counter("maps: rejected"), 1U);
+  host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
+  run(1.0, crossing);
+  EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
 TEST_F(Component, TakesNoWallForLegsByAnOldPose) {
   host.publish(topics::kMap, wire::to_message(host.now(), frames::kMap, room_map()));
   localize();
