@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace usher::supervisor {
 
@@ -284,6 +285,11 @@ std::string_view Supervisor::refusal(Time now) const {
   return faults_.active(Cause::kBaseFallsShort) ? text(Cause::kBaseFallsShort) : std::string_view();
 }
 
+double Supervisor::charge() const {
+  const bool heard = base_ && !faults_.active(Cause::kBaseUnheard);
+  return heard ? base_->battery_percent : std::numeric_limits<double>::quiet_NaN();
+}
+
 void Supervisor::explain(Time now) {
   if (const Fault* latched = faults_.latched()) {
     reason_.assign(text(latched->cause)).append(": ").append(latched->component);
@@ -361,7 +367,7 @@ SupervisorStatus Supervisor::status() const {
   SupervisorStatus status;
   status.timeout_movement = table_.timeout(names.movement);
   status.timeout_interaction = table_.timeout(names.interaction);
-  status.timeout_power = table_.timeout(names.power);
+  status.timeout_power = parameters_.base_age;
   status.process_rate = parameters_.process_rate;
   status.camera_angle_default = parameters_.camera_angle_default;
   status.camera_angle_interaction = parameters_.camera_angle_interaction;
@@ -371,10 +377,10 @@ SupervisorStatus Supervisor::status() const {
   status.navigation = navigation_;
   status.ok_movement = able(names.movement);
   status.ok_interaction = able(names.interaction);
-  status.ok_power = able(names.power);
+  status.ok_power = charge() > 0.0;
   status.connected_movement = connected(names.movement);
   status.connected_interaction = connected(names.interaction);
-  status.connected_power = connected(names.power);
+  status.connected_power = !std::isnan(charge());
   status.connected_gui = connected(names.gui);
   status.connected_navigation = connected(names.navigation);
   status.enables = decision_.enables;

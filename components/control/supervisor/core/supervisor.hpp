@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,7 +34,6 @@ struct WatchedTopic {
 struct Names {
   std::string movement = "movement_control";  ///< the one that may write drive/command
   std::string interaction = "interaction_control";
-  std::string power = "power_board";
   std::string gui = "tablet";
   std::string navigation = "navigator";
   std::string base = "segway_rmp";  ///< the driver, blamed for what the base does
@@ -106,6 +106,7 @@ struct BaseReport {
   std::uint64_t epoch = 0;    ///< the highest that it ever heard
   Time age{};                 ///< {>= 0} of the measurement when it arrived
   std::string refusal;        ///< why it does not drive what it is told; empty when it does
+  double battery_percent = std::numeric_limits<double>::quiet_NaN();  ///< {0..100, NaN unknown}
 };
 
 /// What is to be published, at 50 Hz and after each event.
@@ -130,6 +131,7 @@ struct CommandWriter {
 };
 
 /// Appendix A.3 of the thesis, without its topic names, and what an operator wants to know besides.
+/// The power that A.3 speaks of is here the base's battery: nothing else tells of any.
 struct SupervisorStatus {
   Time timeout_movement{};
   Time timeout_interaction{};
@@ -143,10 +145,10 @@ struct SupervisorStatus {
   GoalState navigation = GoalState::kIdle;
   bool ok_movement = false;
   bool ok_interaction = false;
-  bool ok_power = false;
+  bool ok_power = false;  ///< the battery is not empty
   bool connected_movement = false;
   bool connected_interaction = false;
-  bool connected_power = false;
+  bool connected_power = false;  ///< its charge is heard
   bool connected_gui = false;
   bool connected_navigation = false;
   Enables enables;
@@ -241,6 +243,8 @@ class Supervisor {
   void note_faults(Time now);
   void note_base(Time now);
   bool base_heard(Time now) const { return base_ && now - base_at_ < parameters_.base_age; }
+  /// [%] Of the base's battery, as of the last step; NaN while nobody tells.
+  double charge() const;
   bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
   void grant(bool able);
   void explain(Time now);

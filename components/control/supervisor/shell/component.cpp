@@ -120,8 +120,6 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   watch_topics(manifest, p.topics);
   p.names.interaction = parameters.text("interaction_name", p.names.interaction,
                                         "The component that poses the robot.");
-  p.names.power =
-      parameters.text("power_name", p.names.power, "The component that reads the power board.");
   p.names.gui =
       parameters.text("gui_name", p.names.gui, "The component with the visitor's screen.");
   p.names.navigation =
@@ -204,7 +202,8 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                                    {message.v(), message.w()},
                                    message.epoch(),
                                    host_.now() - info.effective,
-                                   refusal_of(message)},
+                                   refusal_of(message),
+                                   message.battery_percent()},
                                   now());
                      });
   movement_ = host.input(

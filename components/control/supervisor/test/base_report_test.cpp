@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "control/supervisor/test/robot.hpp"
 
@@ -20,6 +21,23 @@ TEST(Supervisor, NobodyDrivesABaseThatWasNeverHeard) {
   robot.base_unheard = false;
   robot.run(400);
   EXPECT_TRUE(robot.granted());
+}
+
+TEST(Supervisor, TellsOfThePowerWhatTheBaseSaysOfItsBattery) {
+  Robot robot = ready();
+  const auto power = [&](double battery_percent) {
+    robot.base.battery_percent = battery_percent;
+    robot.run(200);
+    const SupervisorStatus status = robot.supervisor.status();
+    return std::pair(status.connected_power, status.ok_power);
+  };
+  EXPECT_EQ(power(80.0), std::pair(true, true));
+  EXPECT_EQ(power(0.0), std::pair(true, false));
+  EXPECT_EQ(power(std::numeric_limits<double>::quiet_NaN()), std::pair(false, false));
+  robot.base_unheard = true;
+  EXPECT_EQ(power(80.0), std::pair(false, false));
+  robot.base_unheard = false;
+  EXPECT_EQ(power(80.0), std::pair(true, true));
 }
 
 TEST(Supervisor, ClearsABaseOutOfItsEmergency) {

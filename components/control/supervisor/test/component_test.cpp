@@ -128,6 +128,25 @@ TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
   EXPECT_GE(host.written(topics::kDriveGrant).size(), 20U) << "silence is no answer";
 }
 
+TEST_F(Component, TellsOfThePowerWhatTheBaseSaysOfItsBattery) {
+  const auto hear = [&](float battery_percent) {
+    usher_msgs::msg::BaseStatus base;
+    base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+    base.battery_percent(battery_percent);
+    for (int i = 0; i < 10; ++i) {
+      base.header(wire::header(host.now(), ""));
+      host.publish(topics::kBaseStatus, base);
+      host.run_for(milliseconds(20));
+    }
+    return host.last(topics::kSupervisorStatus).value();
+  };
+  EXPECT_TRUE(hear(80.0F).ok_power());
+  EXPECT_TRUE(hear(0.0F).connected_power());
+  EXPECT_FALSE(hear(0.0F).ok_power());
+  host.run_for(milliseconds(400));
+  EXPECT_FALSE(host.last(topics::kSupervisorStatus)->connected_power()) << "the base is silent";
+}
+
 TEST(BaseDriver, IsWhoeverWritesItsStatusInTheManifest) {
   for (const auto& [name, type] :
        {std::pair{"p3dx", "p3dx"}, {"segway_rmp", "segway_rmp_sim"}, {"wheels", "p3dx_sim"}}) {

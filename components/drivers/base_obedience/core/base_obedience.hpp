@@ -118,7 +118,7 @@ class BaseObedience {
   Time grant_life_{};       ///< of the present grant
   bool withdrawn_ = false;  ///< the present epoch was ended by its grantor
   WriterId holder_ = kNobody;
-  std::optional<Time> granted_at_;  ///< arrival of the newest renewal
+  std::optional<Time> granted_at_;  ///< writing of the newest renewal
   WriterId grantor_ = kNobody;
   std::optional<Time> grantor_at_;  ///< when the grantor was last heard
   std::optional<Time> dispute_at_;  ///< when a second grantor was last heard

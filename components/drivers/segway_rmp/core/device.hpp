@@ -28,11 +28,11 @@ struct SegwayFeedback {
   double pitch_rate = 0.0;      ///< [rad/s]
   double roll = 0.0;            ///< [rad]
   double roll_rate = 0.0;       ///< [rad/s]
-  double yaw_rate = 0.0;        ///< [rad/s] positive left
+  double yaw_rate = 0.0;        ///< [rad/s] as the base says; some drivers negate it
   double left_velocity = 0.0;   ///< [m/s] of the wheel, relative to the body
   double right_velocity = 0.0;  ///< [m/s]
-  /// [m] Of the odometers, from where they stood when this driver first heard them, relative to the
-  /// body: a base that leans forward over standing wheels counts backward. They never jump or wrap.
+  /// [m] Of the odometers, relative to the body: a base that leans forward over standing wheels
+  /// counts backward. The first is the base's own count; from there on they never jump or wrap.
   double left_travel = 0.0;
   double right_travel = 0.0;
   double left_torque = 0.0;                                           ///< [Nm]

@@ -69,7 +69,7 @@ std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time n
     return output_;
   }
   if (asks_first()) {
-    output_ = command({}, parameters_.calibration);
+    output_ = standstill();
     return output_;
   }
   if (configured()) {

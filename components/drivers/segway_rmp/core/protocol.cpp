@@ -107,7 +107,7 @@ std::optional<SegwayFeedback> FeedbackAssembler::take(const Packet& packet, Time
     case kIdVelocity:
       feedback_.left_velocity = packet.signed_slot(0) / calibration_.counts_per_speed;
       feedback_.right_velocity = packet.signed_slot(1) / calibration_.counts_per_speed;
-      feedback_.yaw_rate = packet.signed_slot(2) * rate * calibration_.yaw_rate_sign;
+      feedback_.yaw_rate = packet.signed_slot(2) * rate;
       has_ |= kHasVelocity;
       break;
     case kIdWheels:

@@ -9,16 +9,16 @@
 
 namespace usher::segway_rmp {
 
-/// Counts per unit of an RMP200. What the sources disagree about is to be calibrated on the robot.
+/// Counts per unit of an RMP200. What the sources disagree about, all of it in commands, is to be
+/// calibrated on the robot.
 struct Calibration {
-  double command_counts_per_speed = 147.0 / 0.44704;  ///< [1/(m/s)] 147 per mile per hour
+  double command_counts_per_speed = 147.0 / 0.44704;  ///< [1/(m/s)] 147 per mph; others: 332
   double command_counts_per_turn_rate = 447.0;        ///< [1/(rad/s)] sources: 326, 333, 447
   double command_turn_sign = 1.0;                     ///< {1, -1} positive turns left
   double counts_per_speed = 332.0;                    ///< [1/(m/s)] of the feedback
   double counts_per_degree = 7.8;                     ///< angles and rates
   double counts_per_meter = 33215.0;
   double counts_per_torque = 1094.0;  ///< [1/Nm]
-  double yaw_rate_sign = 1.0;         ///< {1, -1} positive left
   double battery_empty = 66.0;        ///< [V]
   double battery_full = 78.0;         ///< [V]
 };

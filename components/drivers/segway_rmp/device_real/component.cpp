@@ -7,6 +7,21 @@ namespace {
 constexpr auto kCycle = std::chrono::milliseconds(10);
 constexpr const char* kEmergencyKey = "emergency";
 constexpr const char* kBalancedKey = "session.balanced";  // a boot starts with a base that is off
+
+Calibration read_calibration(runtime::Parameters& parameters) {
+  Calibration c;
+  c.command_counts_per_speed =
+      parameters.number("robot.segway.speed_counts", "-", {300, 360}, c.command_counts_per_speed,
+                        "Of a commanded velocity, for each m/s.");
+  c.command_counts_per_turn_rate =
+      parameters.number("robot.segway.turn_counts", "-", {250, 600}, c.command_counts_per_turn_rate,
+                        "Of a commanded turn rate, for each rad/s.");
+  const bool reversed = parameters.flag("robot.segway.turn_reversed", c.command_turn_sign < 0.0,
+                                        "Whether the base takes positive counts for a turn right.");
+  c.command_turn_sign = reversed ? -1.0 : 1.0;
+  return c;
+}
+
 }  // namespace
 
 Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parameters) {
@@ -20,6 +35,7 @@ Link::Parameters SegwayRmpComponent::read_parameters(runtime::Parameters& parame
   p.gain_schedule =
       static_cast<std::uint16_t>(parameters.integer("gain_schedule", "-", {0, 2}, p.gain_schedule,
                                                     "Of the balancing: 0 light, 1 tall, 2 heavy."));
+  p.calibration = read_calibration(parameters);
   return p;
 }
 
@@ -37,7 +53,7 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
   const double silence =
       host.parameters().number("guard_silence", "s", {0.03, 0.15}, runtime::seconds(kGuardSilence),
                                "The guard commands zero when the driver is silent for so long.");
-  const auto zero = command({}, Calibration{});
+  const auto zero = line_.link().standstill();
   // Connecting sets the balance mode: a base that was switched off must stay so over a restart, and
   // one that balanced is asked first, because it may have gone off while no driver ran.
   if (!memory_.found().empty()) line_.link().emergency_stop();

@@ -1,4 +1,9 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
 
 #include "drivers/segway_rmp/core/emulated_base.hpp"
 #include "drivers/segway_rmp/device_real/component.hpp"
@@ -9,7 +14,12 @@ namespace {
 
 using std::chrono::milliseconds;
 using namespace usher_msgs::msg::BaseStatus_Constants;
+using testing::HasSubstr;
 using Wish = EmulatedBase::Wish;
+
+runtime::ComponentFactory driver() {
+  return runtime::component_factory<SegwayRmpComponent>("segway_rmp");
+}
 
 /// A base that does at once what it is ordered.
 class Device final : public runtime::LockstepDevice {
@@ -67,7 +77,7 @@ class DeviceReal : public testing::Test {
     host.publish(topics::kBaseRequest, message, client);
   }
   std::shared_ptr<Device> device = std::make_shared<Device>();
-  runtime::TestHost host{runtime::component_factory<SegwayRmpComponent>("segway_rmp"), "", device};
+  runtime::TestHost host{driver(), "", device};
   test::RightToDrive right{host};
   std::uint64_t id = 0;
 };
@@ -80,6 +90,52 @@ TEST_F(DeviceReal, ConfiguresTheBaseAndDrivesWhatIsGranted) {
   EXPECT_NEAR(device->twist.v, 0.5, 0.01);
   EXPECT_NEAR(host.last(topics::kOdom)->twist().twist().linear().x(), 0.5, 0.02);
   EXPECT_GT(host.last(topics::kOdom)->pose().pose().position().x(), 0.2);
+}
+
+/// What a base that counts as Segways do by default is ordered, and what odometry makes of that,
+/// of 0.5 m/s and 0.4 rad/s.
+std::pair<geometry::Twist2, geometry::Twist2> ordered_and_measured(const std::string& parameters) {
+  const auto device = std::make_shared<Device>();
+  runtime::TestHost host{driver(), parameters, device};
+  test::RightToDrive right{host};
+  right.v = 0.5;
+  right.w = 0.4;
+  right.run(2000);
+  return {device->twist, wire::from_message(host.last(topics::kOdom)->twist().twist()).value()};
+}
+
+TEST(SegwayCalibration, ReachesWhatTheBaseIsOrderedAndWhatItThenMeasures) {
+  const double speed_counts = Calibration{}.command_counts_per_speed;
+  const double turn_counts = Calibration{}.command_counts_per_turn_rate;
+  const struct {
+    const char* parameters;
+    geometry::Twist2 expected;
+  } cases[] = {{"", {0.5, 0.4}},
+               {"robot.segway.speed_counts: 350", {0.5 * 350 / speed_counts, 0.4}},
+               {"robot.segway.turn_counts: 333", {0.5, 0.4 * 333 / turn_counts}},
+               {"robot.segway.turn_reversed: true", {0.5, -0.4}}};
+  for (const auto& [parameters, expected] : cases) {
+    SCOPED_TRACE(parameters);
+    const auto [ordered, measured] = ordered_and_measured(parameters);
+    EXPECT_NEAR(ordered.v, expected.v, 0.003);
+    EXPECT_NEAR(ordered.w, expected.w, 0.003);
+    EXPECT_NEAR(measured.v, expected.v, 0.006);
+    EXPECT_NEAR(measured.w, expected.w, 0.015);
+  }
+}
+
+TEST(SegwayCalibration, RefusesWhatNoSegwayCounts) {
+  const auto error = [](const char* parameters) {
+    return runtime::TestHost::try_make(driver(), parameters).error();
+  };
+  EXPECT_THAT(error("robot.segway.turn_counts: 7.8"),
+              HasSubstr("robot.segway.turn_counts must be in [250, 600], got 7.8"));
+  EXPECT_THAT(error("robot.segway.turn_counts: -447"),
+              HasSubstr("robot.segway.turn_counts must be in [250, 600], got -447"));
+  EXPECT_THAT(error("robot.segway.speed_counts: 147"),
+              HasSubstr("robot.segway.speed_counts must be in [300, 360], got 147"));
+  EXPECT_THAT(error("robot.segway.turn_reversed: -1"),
+              HasSubstr("robot.segway.turn_reversed must be true or false, got \"-1\""));
 }
 
 TEST_F(DeviceReal, StandsWhenCommandOrGrantFallSilent) {

@@ -74,6 +74,17 @@ TEST(UsbPacket, ClipsAndRefusesNonsense) {
   }
 }
 
+TEST(UsbPacket, CountsACommandAsTheBaseIsCalibrated) {
+  Calibration other;
+  other.command_counts_per_speed = 332.0;
+  other.command_counts_per_turn_rate = 333.0;
+  EXPECT_EQ(hex(command({1.0, 0.6}, Calibration{})).substr(27, 11), "01 49 01 0C");
+  EXPECT_EQ(hex(command({1.0, 0.6}, other)).substr(27, 11), "01 4C 00 C8");
+  other.command_turn_sign = -1.0;
+  EXPECT_EQ(hex(command({1.0, 0.6}, other)).substr(27, 11), "01 4C FF 38");
+  EXPECT_EQ(command({}, other), command({}, Calibration{})) << "zero is zero";
+}
+
 TEST(UsbPacket, DecodesWhatItEncodes) {
   Random random(1);
   Bytes stream;
