@@ -10,8 +10,10 @@ using runtime::HealthState;
 using std::chrono::milliseconds;
 
 constexpr auto kTick = milliseconds(5);
-constexpr auto kSilence = milliseconds(300);  // a read that takes longer hangs
+constexpr auto kSilence = milliseconds(300);  // no read of a Kinect that is well takes longer
+constexpr auto kHang = milliseconds(5000);    // a read that ends later never does
 constexpr auto kAgain = milliseconds(1000);   // a Kinect that is not there is looked for
+constexpr auto kOnItsWay = milliseconds(33);  // exposure and transfer of an image, a period (ours)
 
 }  // namespace
 
@@ -24,7 +26,7 @@ void KinectComponent::Job::run() {
 }
 
 Status KinectComponent::Job::fetch() {
-  if (live) return live->read(read, color);
+  if (live) return fetch_live();
   auto frame = recording->read(index);
   if (!frame) return Error{frame.error()};
   read = std::move(frame).value();
@@ -32,6 +34,13 @@ Status KinectComponent::Job::fetch() {
   auto colors = recording->read_color(index);
   if (!colors) return Error{colors.error()};
   color = std::move(colors).value();
+  return {};
+}
+
+Status KinectComponent::Job::fetch_live() {
+  const auto done = live->read(read, color);
+  if (!done) return Error{done.error()};
+  stamps = *done;
   return {};
 }
 
@@ -73,8 +82,7 @@ KinectComponent::KinectComponent(runtime::Host& host, runtime::Duration reading)
     if (!job_->recording && !job_->live) open();
     start_reading();
     take_frame();
-    if (live_ && reading_ && host_.now() - read_at_ > kSilence)
-      host_.health().set(HealthState::kDegraded, "the Kinect is silent: a read takes over 0.3 s");
+    if (live_ && reading_) watch_reading();
   });
 }
 
@@ -112,7 +120,22 @@ void KinectComponent::start_reading() {
       [this] {
         reading_ = false;
         ready_ = true;
+        arrived_ = host_.now();
       });
+}
+
+/// libfreenect's read waits without a limit and cannot be broken off: only another process reads
+/// on. The host waits for the job even at its end, so that the launcher ends it, for its silence.
+void KinectComponent::watch_reading() {
+  const auto lasts = host_.now() - read_at_;
+  if (lasts > kHang) host_.fault("the Kinect hangs: a read takes over 5 s");
+  if (lasts > kSilence)
+    host_.health().set(HealthState::kDegraded, "the Kinect is silent: a read takes over 0.3 s");
+}
+
+/// When what was read last was measured: an image of before the read began may have waited for it.
+runtime::Time KinectComponent::measured() {
+  return runtime::Time(clock_.stamp(job_->stamps, arrived_.time_since_epoch())) - kOnItsWay;
 }
 
 /// Publishes the frame that was read, when its time has come.
@@ -128,10 +151,10 @@ void KinectComponent::take_frame() {
     ++rejected_;
     host_.health().set(HealthState::kDegraded, job_->error);
     if (live_) again_ = host_.now() + kAgain;
+    clock_.reset();
     return;
   }
-  // A read waits for two images; what it delivers was measured when it began rather than now.
-  const runtime::Time stamp = live_ ? read_at_ : host_.now();
+  const runtime::Time stamp = live_ ? measured() : host_.now();
   // Whoever has the depths of a moment has its colors, too.
   if (!job_->color.rgb.empty()) publisher_.publish(stamp, job_->color);
   publisher_.publish(stamp, job_->rectified);

@@ -28,13 +28,17 @@ class KinectComponent final : public runtime::Component {
     std::size_t index = 0;
     Frame read, rectified;
     ColorFrame color;  ///< empty: none
+    Stamps stamps;     ///< of a live one's images
     std::string error;
     void run();
     Status fetch();
+    Status fetch_live();
   };
   void open();
   void start_reading();
+  void watch_reading();
   void take_frame();
+  runtime::Time measured();
 
   runtime::Host& host_;
   runtime::Duration reading_time_;
@@ -47,7 +51,9 @@ class KinectComponent final : public runtime::Component {
   std::shared_ptr<Job> job_ = std::make_shared<Job>();
   runtime::Time started_{};
   runtime::Time read_at_{};  ///< when the newest read began
+  runtime::Time arrived_{};  ///< when the newest read ended
   runtime::Time again_{};    ///< not before, after an error of a live one
+  DeviceClock clock_;        ///< of a live one
   bool reading_ = false, ready_ = false;
   std::uint64_t& rejected_;
   runtime::Timer timer_;

@@ -15,13 +15,13 @@ constexpr std::size_t kPixels = std::size_t{640} * 480;
 
 LiveKinect::~LiveKinect() { freenect_sync_stop(); }
 
-Status LiveKinect::read(Frame& depth, ColorFrame& color) {
+Result<Stamps> LiveKinect::read(Frame& depth, ColorFrame& color) {
   void* depths = nullptr;
   void* colors = nullptr;
-  std::uint32_t stamp = 0;
+  Stamps stamps;
   const auto format = values_ == Values::kRaw11 ? FREENECT_DEPTH_11BIT : FREENECT_DEPTH_REGISTERED;
-  if (freenect_sync_get_depth(&depths, &stamp, 0, format) != 0 ||
-      freenect_sync_get_video(&colors, &stamp, 0, FREENECT_VIDEO_RGB) != 0)
+  if (freenect_sync_get_depth(&depths, &stamps.depth, 0, format) != 0 ||
+      freenect_sync_get_video(&colors, &stamps.color, 0, FREENECT_VIDEO_RGB) != 0)
     return Error{"no Kinect v1 at the USB, or it may not be opened (udev rules of libfreenect)"};
   const auto* values = static_cast<const std::uint16_t*>(depths);
   depth.width = kWidth;
@@ -34,7 +34,7 @@ Status LiveKinect::read(Frame& depth, ColorFrame& color) {
   color.width = kWidth;
   color.height = kHeight;
   color.rgb.assign(rgb, rgb + 3 * kPixels);
-  return {};
+  return stamps;
 }
 
 }  // namespace usher::kinect

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/kinect/core/device_clock.hpp"
 #include "drivers/kinect/core/recording.hpp"
 
 namespace usher::kinect {
@@ -15,8 +16,10 @@ class LiveKinect {
   LiveKinect(const LiveKinect&) = delete;
   LiveKinect& operator=(const LiveKinect&) = delete;
 
-  /// The next pair of images; blocks, usually for 33 ms. The error says that there is no Kinect.
-  Status read(Frame& depth, ColorFrame& color);
+  /// The newest pair of images that nobody has read, or the next one; blocks, usually for up to
+  /// 33 ms, and for ever when the device falls silent or is unplugged. The error says that there is
+  /// no Kinect.
+  Result<Stamps> read(Frame& depth, ColorFrame& color);
 
  private:
   Values values_;

@@ -26,7 +26,7 @@ struct Reading {
   std::array<float, kSonars>
       ranges{};  ///< [m] right to left; +infinity: no echo, NaN: sensor fault
   Whiskers whiskers;
-  double tilt = 0.0;     ///< [rad] of the camera, up is positive
+  double tilt = 0.0;     ///< [rad] where the tilt servo stands, on its way, too; up is positive
   bool measured = true;  ///< ranges and tilt are of the stamp; else of the reading before
 };
 

@@ -43,7 +43,7 @@ class Link {
     });
   }
 
-  /// Where the camera shall look, [rad] up is positive; clipped to the limit, ignored when not
+  /// Where the tilt servo shall go, [rad] up is positive; clipped to the limit, ignored when not
   /// finite. Sent when it changes and after the board restarted.
   void set_tilt(double tilt);
 

@@ -25,7 +25,7 @@ struct Sensors {
   std::uint32_t time_ms = 0;                       ///< of the board, since its start
   std::array<std::uint16_t, kSonars> ranges_mm{};  ///< 0 sensor fault, FFFF no echo
   std::uint8_t whisker_mask = 0;                   ///< a bit per switch, 1 is pressed
-  std::int16_t tilt = 0;                           ///< [0.1 deg]
+  std::int16_t tilt = 0;                           ///< [0.1 deg] where the servo stands
   std::uint8_t status = 0;
 };
 
@@ -53,7 +53,7 @@ struct BoardMessage {
 std::optional<BoardMessage> parse(std::span<const std::uint8_t> content);
 
 // Frames to the board.
-/// [0.1 deg]; the board clips it to its limits.
+/// [0.1 deg] where the servo shall go; the board clips it to its limits.
 Frame set_tilt(std::uint8_t sequence, std::int16_t tilt);
 Frame set_config(std::uint8_t sequence, std::uint8_t key, std::int32_t value);
 

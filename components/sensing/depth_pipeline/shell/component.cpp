@@ -15,9 +15,10 @@ using std::chrono::milliseconds;
 
 constexpr auto kImageAge = milliseconds(300);
 constexpr auto kTiltAge = milliseconds(500);
+constexpr auto kFuture = milliseconds(20);
+constexpr auto kAnswer = milliseconds(200);  // an order's way to the servo, and two readings
 constexpr auto kPitchGap = milliseconds(100);
 constexpr auto kTurn = milliseconds(2000);  // no turn of the servo takes longer
-constexpr double kStill = 0.01;             // [rad] between readings of the servo, or images
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
 
 /// base_footprint_T_camera of the optical frame (x right, y down, z forward).
@@ -37,6 +38,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       config_(read_pipeline(host.parameters())),
       tilt_(host),
       pitch_(host, kNoScans, [this] { process_waiting(); }),
+      refused_tilts_(host.health().counter("kinect/tilt: refused")),
       rejected_(host.health().counter("images: rejected")),
       without_pitch_(host.health().counter("images: without pitch")),
       without_tilt_(host.health().counter("images: without tilt")),
@@ -75,7 +77,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       topics::kKinectTilt,
       {.max_age = kTiltAge,
        .on_loss = "trusts the last reading; leaves the Kinect's images out, degraded, when there "
-                  "is none or the camera was turning"},
+                  "is none, or the camera was turning or is ordered to"},
       [this](const auto& tilt, const auto&) { take_tilt(tilt); });
   kinect_.info = host.input(topics::kKinectInfo, {},
                             [this](const auto& info, const auto&) { take_info(kinect_, info); });
@@ -121,18 +123,35 @@ void DepthPipelineComponent::process_waiting() {
 }
 
 void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) {
-  if (!std::isfinite(tilt.servo())) return;
-  servo_before_ = servo_;
-  servo_ = tilt.servo();
+  const runtime::Time stamp = wire::from_message(tilt.header().stamp());
+  // One from the future would make all later ones old.
+  if (stamp - host_.now() > kFuture || !servo_.add(stamp.time_since_epoch(), tilt.servo()))
+    ++refused_tilts_;
 }
 
-/// While the servo moves nobody knows the angle of an image well enough. When its readings end in
-/// the move it is not known where it came to rest: no image is better than a whole floor of
-/// obstacles, which the costmap would keep.
-bool DepthPipelineComponent::moving() const { return std::abs(*servo_ - *servo_before_) > kStill; }
+/// A turn that was ordered begins before any reading shows it: after the newest of them nobody
+/// knows the tilt until they have had the time to.
+bool DepthPipelineComponent::may_turn(runtime::Time stamp) const {
+  const auto& order = tilt_.order();
+  const runtime::Time read(servo_.newest_stamp());
+  return order && stamp >= order->since && stamp > read && read < order->since + kAnswer &&
+         std::abs(order->servo - servo_.newest()) > TiltHistory::kStill;
+}
 
-double DepthPipelineComponent::angle_of(const Camera& camera) const {
-  return camera.mount.backward ? rear_angle_ : tilt_.servo().angle_of(*servo_);
+/// [rad] The camera's on the body at the time of an image; nothing, and the image is withheld,
+/// where nobody knows it well enough. When the readings end in a turn it is not known where it came
+/// to rest: no image is better than a whole floor of obstacles, which the costmap would keep.
+std::optional<double> DepthPipelineComponent::angle_at(Camera& camera, runtime::Time stamp) {
+  if (camera.mount.backward) return rear_angle_;
+  if (!servo_.reaches(stamp.time_since_epoch())) {
+    withhold(camera, without_tilt_, "no kinect/tilt says where it looks");
+    return std::nullopt;
+  }
+  const auto servo = servo_.at(stamp.time_since_epoch());
+  if (servo && !may_turn(stamp)) return tilt_.servo().angle_of(*servo);
+  withhold(camera, while_turning_,
+           servo_reading_.fresh() ? "it turns" : "kinect/tilt ended while it turned");
+  return std::nullopt;
 }
 
 void DepthPipelineComponent::take_image(Camera& camera) {
@@ -168,7 +187,8 @@ std::string DepthPipelineComponent::trouble(const Camera& camera) const {
   const std::string name = std::string(camera.name) + ": ";
   if (camera.images.fresh() == nullptr) return name + "no depth image";
   if (!camera.refused.empty()) return name + camera.refused;
-  const bool turns = !camera.mount.backward && servo_before_ && moving() && servo_reading_.fresh();
+  const bool turns =
+      !camera.mount.backward && servo_reading_.fresh() && (servo_.turns() || may_turn(host_.now()));
   if (host_.now() - *camera.due <= (turns ? kTurn : kImageAge)) return {};
   return name + camera.withheld;
 }
@@ -190,29 +210,21 @@ bool DepthPipelineComponent::process(Camera& camera, const Image& image) {
   const runtime::Time stamp = wire::from_message(image.header().stamp());
   const auto pitch = pitch_.at(stamp);
   if (!pitch) return false;
-  if (!camera.mount.backward && !servo_before_) {
-    withhold(camera, without_tilt_, "no kinect/tilt says where it looks");
-    return true;
-  }
-  if (!camera.mount.backward && moving()) {
-    withhold(camera, while_turning_,
-             servo_reading_.fresh() ? "it turns" : "kinect/tilt ended while it turned");
-    return true;
-  }
+  const auto angle = angle_at(camera, stamp);
+  if (!angle) return true;
   const auto depth = wire::depth_image(image, far_, camera.depth);
   if (!depth || !camera.pipeline) {
     refuse(camera, depth ? "no camera_info" : depth.error());
     return true;
   }
   Mount mount = camera.mount;
-  const double angle = angle_of(camera);
-  if (!mount.backward) mount.z += mount_slope_ * angle;
+  if (!mount.backward) mount.z += mount_slope_ * *angle;
   if (std::chrono::abs(stamp - camera.rated) > kImageAge ||
-      std::abs(angle - camera.rated_at) > kStill)
+      std::abs(*angle - camera.rated_at) > TiltHistory::kStill)
     camera.pipeline->forget_frames();
   camera.rated = stamp;
-  camera.rated_at = angle;
-  const auto view = camera.pipeline->process(*depth, camera_pose(mount, angle, pitch->angle));
+  camera.rated_at = *angle;
+  const auto view = camera.pipeline->process(*depth, camera_pose(mount, *angle, pitch->angle));
   if (!view) {
     refuse(camera, view.error());
     return true;

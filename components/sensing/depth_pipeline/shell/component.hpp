@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sensing/depth_pipeline/core/tilt_history.hpp"
 #include "sensing/depth_pipeline/shell/parameters.hpp"
 #include "sensing/depth_pipeline/shell/scan_output.hpp"
 #include "sensing/depth_pipeline/shell/tilt_control.hpp"
@@ -54,8 +55,8 @@ class DepthPipelineComponent final : public runtime::Component {
   void refuse(Camera& camera, const std::string& reason);
   void withhold(Camera& camera, std::uint64_t& counter, const std::string& reason);
   void publish(Camera& camera, const DepthView& view, runtime::Time stamp);
-  double angle_of(const Camera& camera) const;
-  bool moving() const;
+  std::optional<double> angle_at(Camera& camera, runtime::Time stamp);
+  bool may_turn(runtime::Time stamp) const;
   std::string trouble(const Camera& camera) const;
   void report();
 
@@ -66,8 +67,9 @@ class DepthPipelineComponent final : public runtime::Component {
   double mount_slope_ = 0.0;
   double rear_angle_ = 0.0;
   double far_ = 12.0;
-  std::optional<double> servo_, servo_before_;  // [rad] the two newest readings
+  TiltHistory servo_;
   runtime::Time pitch_came_{};
+  std::uint64_t& refused_tilts_;
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
   std::uint64_t& without_tilt_;

@@ -1,5 +1,8 @@
 #include "sensing/depth_pipeline/shell/tilt_control.hpp"
 
+#include <cmath>
+
+#include "sensing/depth_pipeline/core/tilt_history.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 #include "wire/tilt_servo.hpp"
@@ -57,7 +60,10 @@ TiltControl::TiltControl(runtime::Host& host) : host_(host) {
 void TiltControl::command() {
   usher_msgs::msg::CameraTilt message;
   message.header(wire::header(host_.now(), frames::kBaseLink));
-  message.servo(host_.now() < held_until_ ? held_ : wanted_);
+  const double servo = host_.now() < held_until_ ? held_ : wanted_;
+  if (!order_ || std::abs(servo - order_->servo) > TiltHistory::kStill)
+    order_ = Order{servo, host_.now()};
+  message.servo(servo);
   command_.publish(message);
 }
 

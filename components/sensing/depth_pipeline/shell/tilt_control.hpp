@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "foundation/kinematics/tilt_servo.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
@@ -14,6 +16,13 @@ class TiltControl {
 
   const kinematics::TiltServo& servo() const { return servo_; }
 
+  struct Order {
+    double servo = 0.0;   ///< [rad] where it shall go
+    runtime::Time since;  ///< when it was first sent there
+  };
+  /// The newest order that makes a turn; nothing before the first.
+  const std::optional<Order>& order() const { return order_; }
+
  private:
   void command();
 
@@ -22,6 +31,7 @@ class TiltControl {
   double wanted_ = 0.0;  // [rad] servo
   double held_ = 0.0;
   runtime::Time held_until_{};
+  std::optional<Order> order_;
   runtime::Input<usher_msgs::msg::SupervisorStatus> state_;
   runtime::Input<usher_msgs::msg::CameraTilt> request_;
   runtime::Output<usher_msgs::msg::CameraTilt> command_;

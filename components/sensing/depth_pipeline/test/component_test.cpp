@@ -65,11 +65,12 @@ class DepthPipelineComponentTest : public testing::Test {
     host_.publish(topics::kKinectInfo,
                   wire::to_message(host_.now(), "kinect_depth_optical", scene_.camera));
   }
-  void show(double pitch = 0.0) {
+  void show(double pitch = 0.0, milliseconds age = {}) {
     auto depth = scene_.draw(camera_pose({}, servo_, pitch));
     depth.back() = ++shown_;  // noise: no two images are the same
     sensor_msgs::msg::Image image;
-    wire::to_message(host_.now(), "kinect_depth_optical", view_of(scene_.camera, depth), image);
+    wire::to_message(host_.now() - age, "kinect_depth_optical", view_of(scene_.camera, depth),
+                     image);
     host_.publish(topics::kKinectDepth, image);
   }
   /// Both cameras at their rates, each with one image again and again, but for the noise of a pixel
@@ -89,6 +90,11 @@ class DepthPipelineComponentTest : public testing::Test {
       }
       live(30);
     }
+  }
+  void order(double servo) {
+    usher_msgs::msg::CameraTilt request;
+    request.servo(servo);
+    host_.publish(topics::kKinectTiltRequest, request);
   }
   std::string reason() { return host_.heartbeat().reason(); }
   std::size_t left() { return host_.written(topics::kKinectScan).size(); }
@@ -401,6 +407,90 @@ TEST_F(DepthPipelineComponentTest, LeavesOutImagesWhileTheCameraTurns) {
   live(30);
   EXPECT_EQ(host_.written(topics::kKinectScan).size(), 1U);
   EXPECT_EQ(host_.counter("images: camera turning"), 1U);
+}
+
+TEST_F(DepthPipelineComponentTest, LosesNoImageOfACameraThatStands) {
+  tell_camera();
+  live(100);
+  for (int i = 0; i < 10; ++i) {
+    order(servo_);
+    stream(90);
+  }
+  EXPECT_EQ(left(), 30U);
+  EXPECT_EQ(host_.counter("images: camera turning"), 0U);
+  EXPECT_EQ(host_.counter("images: without tilt"), 0U);
+}
+
+TEST_F(DepthPipelineComponentTest, LeavesOutAnImageOfATurnThatNoReadingShowsYet) {
+  tell_camera();
+  live(110);  // the servo was read 10 ms ago
+  order(0.1);
+  live(20);
+  servo_ = -0.06;
+  show();
+  live(10);
+  servo_ = 0.1;
+  live(110);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_EQ(host_.counter("images: camera turning"), 1U);
+  stream(300);
+  EXPECT_GE(left(), 9U) << "it stands where it was ordered to";
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, GoesOnWithAServoThatDoesNotGoWhereItIsOrderedTo) {
+  tell_camera();
+  live(100);
+  for (int i = 0; i < 4; ++i) {
+    order(0.3);
+    stream(300);
+  }
+  EXPECT_GE(left(), 30U);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(DepthPipelineComponentTest, TrustsNoTiltOfBeforeATurnThatItOrdered) {
+  tell_camera();
+  live(100);
+  with_tilt_ = false;
+  stream(600);
+  order(0.1);
+  live(10);
+  host_.clear();
+  stream(600);
+  EXPECT_EQ(left(), 0U);
+  EXPECT_EQ(reason(), "Kinect: kinect/tilt ended while it turned");
+}
+
+TEST_F(DepthPipelineComponentTest, JudgesALateImageWithTheTiltOfItsTime) {
+  tell_camera();
+  live(160);
+  servo_ = 0.1;  // read at 200 ms for the first time
+  live(140);
+  show(0.0, milliseconds(115));
+  live(110);
+  EXPECT_EQ(left(), 0U) << "of the turn, though it stands again";
+  EXPECT_EQ(host_.counter("images: camera turning"), 1U);
+  servo_ = -0.0873;
+  show(0.0, milliseconds(275));
+  live(10);
+  ASSERT_EQ(left(), 1U) << "of before the turn";
+  const auto& scan = host_.last(topics::kKinectScan);
+  const auto near = std::count_if(scan->ranges().begin(), scan->ranges().end(),
+                                  [](float range) { return range < 1.9F; });
+  EXPECT_EQ(near, 0) << "the floor is none of its obstacles";
+}
+
+TEST_F(DepthPipelineComponentTest, RefusesAndCountsATiltFromTheFuture) {
+  tell_camera();
+  live(100);
+  usher_msgs::msg::CameraTilt tilt;
+  tilt.header(wire::header(host_.now() + milliseconds(2000), "base_link"));
+  tilt.servo(0.1);
+  host_.publish(topics::kKinectTilt, tilt);
+  stream(1200);
+  EXPECT_EQ(host_.counter("kinect/tilt: refused"), 1U);
+  EXPECT_EQ(left(), 40U);
 }
 
 TEST_F(DepthPipelineComponentTest, RefusesImagesThatDoNotFit) {
