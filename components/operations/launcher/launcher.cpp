@@ -191,8 +191,7 @@ bool written_since_boot(const std::string& lock_file) {
 }  // namespace
 
 std::string default_run_directory(std::uint32_t domain, const std::string& host) {
-  return state_directory() + "/domain-" + std::to_string(domain) +
-         (host.empty() ? "" : "-" + host);
+  return state_directory() + "/domain-" + std::to_string(domain) + (host.empty() ? "" : "-" + host);
 }
 
 std::vector<std::string> operator_files(std::uint32_t domain) {
