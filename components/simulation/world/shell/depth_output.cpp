@@ -146,7 +146,7 @@ void DepthOutput::publish_next() {
   if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
   if (!told_ && kind_ == Kind::kPixels) publish_info();
   told_ = true;
-  deliver(kinect_shot_), deliver(rear_shot_);
+  deliver(kinect_next_ ? kinect_shot_ : rear_shot_);
   const bool rendered = kind_ != Kind::kPixels || images_ / 2 % every_ == 0;
   if (rendered && kinect_next_) publish_kinect();
   if (rendered && !kinect_next_ && has_rear_ && images_ / 2 % kRearEvery == 0) publish_rear();

@@ -15,8 +15,8 @@ namespace usher::world {
 
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
 /// that the fitted models make without them, at 30 Hz (rear camera and people 15, faces 10), the
-/// two cameras in turn. Stamps are those of the world's steps; a rendered image comes a turn later,
-/// as regularly as from a camera, however long its rendering took.
+/// two cameras in turn. Stamps are those of the world's steps; a rendered image comes two turns
+/// later, as regularly as from a camera, however long its rendering took.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
