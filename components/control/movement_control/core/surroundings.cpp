@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kMostPoints = 4096, kMostRemembered = 1024;
 constexpr double kApart = 0.005;    // [m] between the points of a wall's rest: no corner fits in
 constexpr double kBehind = 0.1;     // [m] a beam that ends so much nearer hides what is behind
+constexpr double kUnsure = 0.02;    // [m] of where something remembered is, beside a beam
 constexpr double kSurface = 0.1;    // [m] two beams' ends on one surface are no farther apart
 constexpr double kWall = 0.4;       // [m] of a wall is looked at to continue it
 constexpr double kLeastWall = 0.1;  // [m]
@@ -63,20 +64,31 @@ bool Surroundings::hidden(const ScanView& scan, const Remembered& each, Time now
   if (way_ - each.way > parameters_.longest_way || turn_ - each.turn > parameters_.longest_turn)
     return false;
   const Point2 seen = geometry::inverse(parameters_.base_T_sensor) * each.point;
-  const double beam =
-      std::round((std::atan2(seen.y(), seen.x()) - scan.angle_min) / scan.angle_increment);
-  if (!(beam >= 0.0 && beam < static_cast<double>(scan.ranges.size())))
-    return now - each.seen <= parameters_.longest;
-  const double range = scan.ranges[static_cast<std::size_t>(beam)];
-  if (std::isnan(range)) return true;
-  return range < seen.norm() - kBehind;
+  const double distance = seen.norm();
+  const double angle = std::atan2(seen.y(), seen.x()) - scan.angle_min;
+  const double beam = std::round(angle / scan.angle_increment);
+  const auto count = static_cast<double>(scan.ranges.size());
+  if (!(beam >= 0.0 && beam < count)) return now - each.seen <= parameters_.longest;
+  const double width = std::atan2(kUnsure, distance);
+  const auto beam_at = [&](double at) {
+    return static_cast<std::size_t>(
+        std::clamp(std::round(at / scan.angle_increment), 0.0, count - 1.0));
+  };
+  const auto beams = scan.ranges.subspan(beam_at(angle - width),
+                                         beam_at(angle + width) - beam_at(angle - width) + 1);
+  return std::ranges::any_of(
+      beams, [&](float range) { return std::isnan(range) || range < distance - kBehind; });
 }
 
 void Surroundings::remember(const ScanView& scan, Time now) {
+  std::erase_if(hidden_, [&](const Remembered& each) { return !hidden(scan, each, now); });
   for (const Remembered& each : near_) {
+    if (!hidden(scan, each, now)) continue;
+    std::erase_if(hidden_, [&](const Remembered& older) {
+      return (older.point - each.point).squaredNorm() < kApart * kApart;
+    });
     if (hidden_.size() < kMostRemembered) hidden_.push_back(each);
   }
-  std::erase_if(hidden_, [&](const Remembered& each) { return !hidden(scan, each, now); });
   near_.clear();
   for (const Point2& point : points_) {
     if (point.norm() <= parameters_.near && near_.size() < kMostRemembered)

@@ -37,7 +37,7 @@ class Surroundings {
     double near = 1.0;                        ///< [m] {> 0} from the axle's middle: is remembered
     double longest_way = 1.5;                 ///< [m] {> 0} driven since a point was seen
     double longest_turn = 3.2;                ///< [rad] {> 0} turned since
-    Time longest = std::chrono::seconds(10);  ///< {> 0} since a point beyond the ends was seen
+    Time longest = std::chrono::seconds(30);  ///< {> 0} since a point beyond the ends was seen
     double continued = 0.8;  ///< [m] {>= 0} so far goes on a wall that leaves the view
   };
 

@@ -99,6 +99,29 @@ TEST_F(Walled, RemembersWhatComesTooNearToMeasure) {
   EXPECT_LT(nearest({0.4, 0.0}), 0.02) << "however long it stands";
 }
 
+TEST_F(Walled, KeepsTheEdgeOfWhatIsTooNearToMeasure) {
+  walls = {{1, 0, 1.2}};
+  blind_within = 0.5;
+  look();
+  drive({0.4, 0.0}, 2.0);
+  auto ranges = scan();
+  std::fill_n(ranges.begin(), kBeams / 2, kInfinity);  // to the right of y = 0 there is no wall
+  for (int i = 0; i < 100; ++i) surroundings.take({ranges, kAngleMin, kIncrement}, now);
+  EXPECT_LT(nearest({0.4, -0.015}), 0.005) << "a beam may pass so near beside it";
+  EXPECT_GT(nearest({0.4, -0.06}), 0.03);
+}
+
+TEST_F(Walled, RemembersAWallThatIsSeenNowAndThenOnce) {
+  walls = {{1, 0, 0.9}};
+  drive({}, 2.0);
+  const auto seen = surroundings.points().size();
+  for (int i = 0; i < 50; ++i) {
+    blind_within = i % 2 == 0 ? 5.0 : 0.0;
+    look();
+  }
+  EXPECT_LT(surroundings.points().size(), 2 * seen);
+}
+
 TEST_F(Walled, ForgetsWhatHasGone) {
   walls = {{1, 0, 1.2}};
   blind_within = 0.5;
@@ -115,7 +138,10 @@ TEST_F(Walled, ForgetsWhatItHasLeftAndAfterAWhileWhatIsBehind) {
   walls.clear();  // what is behind the view is not seen to have gone
   look();
   EXPECT_LT(nearest({-0.1, 0.5}), 0.03);
-  surroundings.move(Twist2{}, now += seconds(11));
+  surroundings.move(Twist2{}, now += seconds(25));
+  look();
+  EXPECT_LT(nearest({-0.1, 0.5}), 0.03);
+  surroundings.move(Twist2{}, now += seconds(6));
   look();
   EXPECT_TRUE(surroundings.points().empty());
 

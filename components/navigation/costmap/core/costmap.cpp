@@ -225,7 +225,7 @@ const grid::Grid<std::uint8_t>& Costmap::update(double now) {
 void Costmap::clear_footprint() {
   if (!base_) return;
   const PolygonRaster footprint(footprint_.corners(), *base_, window_geometry(raster_));
-  footprint.for_each_span([&](const CellSpan& span) {
+  footprint.for_each_inner_span([&](const CellSpan& span) {
     for (ObstacleLayer& layer : layers_) {
       if (!layer.config().footprint_clearing) continue;
       layer.set_free(span.y, span.x0, span.x1);

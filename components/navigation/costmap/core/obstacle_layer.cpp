@@ -14,6 +14,7 @@ constexpr double kFarthestStamp = 1e12;          // [s]
 constexpr double kLongestPersistence = 86400.0;  // [s]
 constexpr int kLongestRay = 32767;               // [cells]
 constexpr double kThickest = 1.0;                // [m]
+constexpr double kUnsure = 0.02;                 // [m] of where an echo was, beside a beam
 
 std::uint32_t milliseconds(double seconds) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(seconds * 1000.0)));
@@ -21,6 +22,11 @@ std::uint32_t milliseconds(double seconds) {
 
 std::int32_t elapsed(std::uint32_t now, std::uint32_t then) {
   return static_cast<std::int32_t>(now - then);
+}
+
+/// The window's cell of a point in cells of the endless raster.
+grid::Cell cell_of(const geometry::Point2& point, const Raster& raster) {
+  return {floor_to_int(point.x()) - raster.first_x, floor_to_int(point.y()) - raster.first_y};
 }
 
 std::string meters(double value) { return std::to_string(value) + " m"; }
@@ -64,10 +70,12 @@ Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution
 ObstacleLayer::ObstacleLayer(ObstacleLayerConfig config, const Raster& raster)
     : config_(std::move(config)),
       states_({raster.width, raster.height, raster.resolution, 0.0, 0.0}, kUnseen),
-      marked_at_(config_.persistence > 0.0 ? states_.size() : 0) {}
+      marked_at_(config_.persistence > 0.0 ? states_.size() : 0),
+      spots_(states_.size()) {}
 
 void ObstacleLayer::shift(int dx, int dy) {
   shift_cells(states_.values(), states_.width(), states_.height(), dx, dy, kUnseen);
+  shift_cells(spots_, states_.width(), states_.height(), dx, dy, Spot{});
   if (!marked_at_.empty()) {
     shift_cells(marked_at_, states_.width(), states_.height(), dx, dy, std::uint32_t{0});
   }
@@ -97,7 +105,11 @@ Result<CellRect> ObstacleLayer::observe(const RangeObservation& observation, con
   }
   CellRect touched = clear_and_collect(observation, raster);
   const std::uint32_t time = milliseconds(observation.stamp);
-  for (const std::uint32_t index : marks_) mark(index, time);
+  restore(observation, raster);
+  for (const Mark& echo : marks_) {
+    spots_[echo.index] = echo.spot;
+    mark(echo.index, time);
+  }
   seen_ = seen_.united(touched);
   return touched;
 }
@@ -116,6 +128,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   if (!clears) ++sensors_outside_;
 
   const int behind = static_cast<int>(std::lround(config_.thickness / raster.resolution));
+  lost_.clear();
   marks_.clear();
   marks_.reserve(observation.ranges.size() * static_cast<std::size_t>(1 + behind));
   CellBounds touched;
@@ -131,18 +144,15 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
       invalid_ranges_ += range <= 0.0F || !directed ? 1 : 0;  // the others say: nothing is known
       continue;
     }
-    const auto cell_along = [&](double distance) -> grid::Cell {
-      return {floor_to_int(x + distance * scale * dx) - raster.first_x,
-              floor_to_int(y + distance * scale * dy) - raster.first_y};
+    const auto along = [&](double distance) -> geometry::Point2 {
+      return {x + distance * scale * dx, y + distance * scale * dy};
     };
     const bool through = range > config_.max_raytrace_range;
-    const grid::Cell end = cell_along(through ? config_.max_raytrace_range : range);
+    const grid::Cell end = cell_of(along(through ? config_.max_raytrace_range : range), raster);
     if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
-      const grid::Cell hit = through ? cell_along(range) : end;
-      if (collect(hit)) touched.include(hit);
-      for (int step = 1; step <= behind; ++step) {
-        const grid::Cell more = cell_along(range + step * raster.resolution);
-        if (collect(more)) touched.include(more);
+      for (int step = 0; step <= behind; ++step) {
+        const geometry::Point2 hit = along(range + step * raster.resolution);
+        if (collect(hit, raster)) touched.include(cell_of(hit, raster));
       }
     }
     if (!clears || (end == previous && through == previous_through)) continue;
@@ -160,12 +170,71 @@ bool ObstacleLayer::measures(float range) const {  // false for NaN
          (range < std::numeric_limits<float>::infinity() || config_.infinity_clears);
 }
 
-/// Notes an echo to be marked; false when there is nothing new to mark.
-bool ObstacleLayer::collect(grid::Cell hit) {
-  if (!states_.geometry().contains(hit)) return false;
-  const auto index = static_cast<std::uint32_t>(states_.geometry().index(hit));
-  if (!marks_.empty() && marks_.back() == index) return false;
-  marks_.push_back(index);
+/// Notes an echo to be marked, in cells of the endless raster; false when its cell is noted. Of the
+/// echoes in a cell the last has its spot.
+bool ObstacleLayer::collect(const geometry::Point2& hit, const Raster& raster) {
+  const grid::Cell cell = cell_of(hit, raster);
+  if (!states_.geometry().contains(cell)) return false;
+  const auto index = static_cast<std::uint32_t>(states_.geometry().index(cell));
+  const auto share = [](double value) {
+    return static_cast<std::uint8_t>((value - floor_to_int(value)) * 256.0);
+  };
+  const Spot spot{share(hit.x()), share(hit.y())};
+  if (!marks_.empty() && marks_.back().index == index) {
+    marks_.back().spot = spot;
+    return false;
+  }
+  marks_.push_back({index, spot});
+  return true;
+}
+
+/// Marks again what the lines crossed and no beam passed: a line is a row of cells, a beam has a
+/// place in them.
+void ObstacleLayer::restore(const RangeObservation& observation, const Raster& raster) {
+  const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
+  for (const std::uint32_t index : lost_) {
+    const auto at = [&](int first, int cell, std::uint8_t share) {
+      return (first + cell + (share + 0.5) / 256.0) * raster.resolution;
+    };
+    const int width = states_.width();
+    const auto cell = static_cast<int>(index);
+    const geometry::Point2 echo(
+        raster.anchor_x + at(raster.first_x, cell % width, spots_[index].x),
+        raster.anchor_y + at(raster.first_y, cell / width, spots_[index].y));
+    if (!passed(observation, sensor_T_window * echo, 0.5 * raster.resolution))
+      states_[index] = kSeenOccupied;
+  }
+}
+
+/// Whether all beams beside a point, in the sensor's frame, end behind it by `margin` [m] or more.
+bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::Point2& point,
+                           double margin) const {
+  const auto& directions = observation.directions;
+  const auto beside = [&](std::size_t beam) {  // [m] counter-clockwise of it
+    return directions[beam].x() * point.y() - directions[beam].y() * point.x();
+  };
+  const double far = point.norm() + margin;
+  const auto ends_behind = [&](std::size_t beam) {
+    return measures(observation.ranges[beam]) && observation.ranges[beam] >= far;
+  };
+  std::size_t nearest = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t beam = 0; beam < directions.size(); ++beam) {
+    const double along = directions[beam].dot(point);
+    if (along > most) most = along, nearest = beam;
+  }
+  const std::size_t last = directions.size() - 1;
+  const auto reaches = [&](std::size_t beam) { return std::abs(beside(beam)) <= kUnsure; };
+  if ((nearest == 0 || nearest == last) && !reaches(nearest)) return false;
+  if (!ends_behind(nearest)) return false;
+  for (std::size_t beam = nearest; beam-- > 0;) {
+    if (beam + 1 < nearest && !reaches(beam)) break;
+    if (!ends_behind(beam)) return false;
+  }
+  for (std::size_t beam = nearest + 1; beam <= last; ++beam) {
+    if (beam > nearest + 1 && !reaches(beam)) break;
+    if (!ends_behind(beam)) return false;
+  }
   return true;
 }
 
@@ -212,7 +281,10 @@ void ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool throug
   std::int64_t position = half + first * slope;
 #pragma GCC unroll 4
   for (std::int64_t left = count - first; left > 0; --left) {
-    cell[(position >> 32) * side] = kSeenFree;
+    std::uint8_t& state = cell[(position >> 32) * side];
+    if (state == kSeenOccupied)
+      lost_.push_back(static_cast<std::uint32_t>(&state - states_.data()));
+    state = kSeenFree;
     cell += step;
     position += slope;
   }

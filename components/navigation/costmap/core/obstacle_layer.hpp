@@ -93,9 +93,21 @@ class ObstacleLayer {
   std::uint64_t sensors_outside() const { return sensors_outside_; }
 
  private:
+  /// Where in its cell an echo was, in shares of 1/256 of its sides.
+  struct Spot {
+    std::uint8_t x = 128, y = 128;
+  };
+  struct Mark {
+    std::uint32_t index;
+    Spot spot;
+  };
+
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
   bool measures(float range) const;
-  bool collect(grid::Cell hit);
+  bool collect(const geometry::Point2& hit, const Raster& raster);
+  void restore(const RangeObservation& observation, const Raster& raster);
+  bool passed(const RangeObservation& observation, const geometry::Point2& point,
+              double margin) const;
   int first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const;
   void trace(grid::Cell from, grid::Cell to, int first, bool through);
   void mark(std::size_t index, std::uint32_t time);
@@ -103,8 +115,10 @@ class ObstacleLayer {
   ObstacleLayerConfig config_;
   grid::Grid<std::uint8_t> states_;
   std::vector<std::uint32_t>
-      marked_at_;                     // [ms, wraps] of occupied cells; empty without persistence
-  std::vector<std::uint32_t> marks_;  // cells of this scan's echoes
+      marked_at_;                    // [ms, wraps] of occupied cells; empty without persistence
+  std::vector<Spot> spots_;          // of occupied cells
+  std::vector<Mark> marks_;          // this scan's echoes
+  std::vector<std::uint32_t> lost_;  // occupied cells that this scan's lines crossed
   CellRect seen_;
   bool has_deadline_ = false;
   std::uint32_t deadline_ = 0;  // [ms, wraps] no obstacle expires before

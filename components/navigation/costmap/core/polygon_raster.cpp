@@ -97,6 +97,24 @@ std::size_t PolygonRaster::row_spans(int y, std::array<CellSpan, kMaxSpans>& spa
   return merged;
 }
 
+// A convex polygon holds a square that lies between its sides on the lower and on the upper line.
+CellSpan PolygonRaster::inner_span(int y) const {
+  double left = 0.0, right = static_cast<double>(width_);
+  for (const double line : {static_cast<double>(y), y + 1.0}) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < corners_; ++i) {
+      const double from = y_[i] - line, to = y_[i + 1] - line;
+      if ((from > 0.0 && to > 0.0) || (from < 0.0 && to < 0.0)) continue;
+      const double share = from == to ? 0.0 : from / (from - to);
+      const double crossing = x_[i] + share * (x_[i + 1] - x_[i]);
+      low = std::min(low, crossing), high = std::max(high, crossing);
+    }
+    left = std::max(left, low), right = std::min(right, high);
+  }
+  if (!(left < right)) return {y, 0, 0};
+  return {y, static_cast<int>(std::ceil(left)), static_cast<int>(std::floor(right))};
+}
+
 FootprintReading footprint_reading(const grid::Grid<std::uint8_t>& costs,
                                    std::span<const Point2> footprint, const geometry::Pose2& pose) {
   FootprintReading reading;

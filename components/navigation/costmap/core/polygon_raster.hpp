@@ -44,12 +44,21 @@ class PolygonRaster {
       for (std::size_t i = 0; i < count; ++i) visit(spans[i]);
     }
   }
+  /// Calls `visit(CellSpan)` for the cells of each row that lie wholly inside of a convex polygon.
+  template <class Visit>
+  void for_each_inner_span(Visit&& visit) const {
+    for (int y = first_row_; y < end_row_; ++y) {
+      const CellSpan span = inner_span(y);
+      if (span.x0 < span.x1) visit(span);
+    }
+  }
 
  private:
   // Every edge gives at most one run, every pair of crossings another.
   static constexpr std::size_t kMaxSpans = kMaxCorners + kMaxCorners / 2;
 
   std::size_t row_spans(int y, std::array<CellSpan, kMaxSpans>& spans) const;
+  CellSpan inner_span(int y) const;
 
   std::array<double, kMaxCorners + 1> x_;  // corners in cells, the first repeated at the end
   std::array<double, kMaxCorners + 1> y_;

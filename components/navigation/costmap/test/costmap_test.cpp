@@ -321,6 +321,18 @@ TEST(Costmap, HasNoObstacleWhereTheRobotStands) {
   EXPECT_EQ(costmap.footprint_at({1.02, 0.02, 0.0}), (FootprintReading{kFreeCost, false, false}));
 }
 
+// A post beside the robot does not vanish since the robot's outline is in a part of its cell.
+TEST(Costmap, KeepsWhatTheRobotCoversAPartOf) {
+  Costmap costmap = Costmap::make(rolling_config()).value();
+  const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
+  see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
+  const double front = costmap.footprint().corners()[0].x();
+  const Pose2 before{1.02 - front - 0.005, 0.02, 0.0};
+  ASSERT_TRUE(costmap.move_to(before).ok());
+  costmap.update(0.0);
+  EXPECT_EQ(costmap.footprint_at(before).highest_cost, kLethalCost);
+}
+
 TEST(Costmap, TakesTheUnknownForFreeOrNot) {
   for (const Inflation::Unseen unseen : {Inflation::Unseen::kFree, Inflation::Unseen::kUnknown}) {
     CostmapConfig config = rolling_config();

@@ -85,6 +85,47 @@ TEST(ObstacleLayer, ForgetsAnObstacleThatItSeesThrough) {
   EXPECT_EQ(state(layer, 50), kSeenOccupied);
 }
 
+TEST(ObstacleLayer, KeepsAnEchoUntilTheBeamsBesideItPassToo) {
+  const auto fan = beam_directions(-0.02, 0.02, 3);
+  const auto look = [&](ObstacleLayer& layer, std::vector<float> ranges) {
+    ASSERT_TRUE(layer.observe({kSensor, fan, ranges, 0.0}, raster()).ok());
+  };
+  ObstacleLayer layer(config(), raster());
+  look(layer, {kNan, 1.0F, kNan});
+  for (const float hidden : {kNan, 1.01F}) {  // too near to measure, or the echo's own surface
+    look(layer, {2.0F, 2.0F, hidden});
+    EXPECT_EQ(state(layer, 40), kSeenOccupied) << hidden;
+    EXPECT_EQ(state(layer, 39), kSeenFree);
+    look(layer, {2.0F, hidden, 2.0F});
+    EXPECT_EQ(state(layer, 40), kSeenOccupied) << hidden;
+  }
+  look(layer, {2.0F, 2.0F, 2.0F});
+  EXPECT_EQ(state(layer, 40), kSeenFree);
+}
+
+TEST(ObstacleLayer, KeepsAnEchoThatALinePassesBeside) {
+  ObstacleLayer layer(config(), raster());
+  see(layer, 1.0F);
+  const std::vector<float> far = {2.0F};
+  for (const double beside : {1.047, 1.022}) {  // of one row of cells
+    ASSERT_TRUE(layer.observe({{1.02, beside, 0.0}, kAhead, far, 0.0}, raster()).ok());
+    EXPECT_EQ(state(layer, 40), beside > 1.04 ? kSeenOccupied : kSeenFree);
+  }
+}
+
+TEST(ObstacleLayer, CarriesWhereAnEchoWasWithTheWindow) {
+  ObstacleLayer layer(config(), raster());
+  see(layer, 1.0F);
+  layer.shift(10, 5);
+  Raster moved = raster();
+  moved.first_x = 10, moved.first_y = 5;
+  const std::vector<float> far = {2.0F};
+  ASSERT_TRUE(layer.observe({{1.02, 1.047, 0.0}, kAhead, far, 0.0}, moved).ok());
+  EXPECT_EQ(state(layer, 30, 15), kSeenOccupied);
+  ASSERT_TRUE(layer.observe({{1.02, 1.003, 0.0}, kAhead, far, 0.0}, moved).ok());
+  EXPECT_EQ(state(layer, 30, 15), kSeenFree);
+}
+
 TEST(ObstacleLayer, KeepsWhatLiesBehindAnEcho) {
   ObstacleLayer layer(config(), raster());
   see(layer, 1.5F);

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "foundation/geometry/footprint.hpp"
 #include "foundation/random/random.hpp"
 #include "navigation/costmap/core/costs.hpp"
 
@@ -140,6 +141,36 @@ TEST(FootprintReading, ReportsCostUnknownAndOutside) {
             (FootprintReading{0, false, true}));
   EXPECT_EQ(footprint_reading(costs, footprint, {std::nan(""), 1.0, 0.0}),
             (FootprintReading{0, false, true}));
+}
+
+TEST(PolygonRaster, TheInnerCellsAreThoseWhoseCornersAreAllInside) {
+  Random random(5);
+  const grid::GridGeometry geometry{24, 20, 0.05, -0.6, -0.5};
+  std::size_t inner = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto footprint =
+        geometry::Footprint::rectangle(random.uniform(0.05, 0.9), random.uniform(0.05, 0.9));
+    const Pose2 pose{random.uniform(-0.6, 0.6), random.uniform(-0.5, 0.5), random.uniform(-4, 4)};
+    grid::Grid<std::uint8_t> cells(geometry, 0);
+    PolygonRaster(footprint.corners(), pose, geometry).for_each_inner_span([&](const CellSpan& s) {
+      for (int x = s.x0; x < s.x1; ++x) ++cells.at({x, s.y});
+    });
+    for (int y = 0; y < geometry.height; ++y) {
+      for (int x = 0; x < geometry.width; ++x) {
+        int inside = 0;
+        for (const int dx : {0, 1}) {
+          for (const int dy : {0, 1}) {
+            const Point2 corner(geometry.origin_x + (x + dx) * geometry.resolution,
+                                geometry.origin_y + (y + dy) * geometry.resolution);
+            inside += footprint.distance(geometry::inverse(pose) * corner) <= 0.0 ? 1 : 0;
+          }
+        }
+        ASSERT_EQ(cells.at({x, y}), inside == 4 ? 1 : 0) << x << ' ' << y << " of polygon " << i;
+        inner += inside == 4 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(inner, 10000U);
 }
 
 }  // namespace

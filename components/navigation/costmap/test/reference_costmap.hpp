@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -59,11 +61,26 @@ class ReferenceCostmap {
     const auto measures = [&](float range) {
       return range > 0.0F && (std::isfinite(range) || layer.config.infinity_clears);
     };
+    const auto spot_along = [&](std::size_t beam, double distance) -> geometry::Point2 {
+      const double dx = c * scan.directions[beam].x() - s * scan.directions[beam].y();
+      const double dy = s * scan.directions[beam].x() + c * scan.directions[beam].y();
+      const auto rounded = [](double value) {
+        return (std::floor((value - std::floor(value)) * 256.0) + 0.5) / 256.0;
+      };
+      return {rounded(x + distance * scale * dx), rounded(y + distance * scale * dy)};
+    };
+    std::vector<std::pair<Key, Seen>> before;
+    std::ranges::copy_if(layer.cells, std::back_inserter(before),
+                         [](const auto& entry) { return entry.second.state == kSeenOccupied; });
     for (std::size_t i = 0; in_window(origin) && i < scan.ranges.size(); ++i) {
       if (!measures(scan.ranges[i])) continue;
       const bool through = scan.ranges[i] > layer.config.max_raytrace_range;
       const Key end = along(i, through ? layer.config.max_raytrace_range : scan.ranges[i]);
       clear(layer, origin, end, through);
+    }
+    for (const auto& [key, seen] : before) {
+      const bool crossed = layer.cells.at(key).state == kSeenFree;
+      if (crossed && !passed(scan, place_of(key, seen), measures)) layer.cells[key] = seen;
     }
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
       const float range = scan.ranges[i];
@@ -71,7 +88,8 @@ class ReferenceCostmap {
       if (range < layer.config.min_obstacle_range || range > layer.config.max_obstacle_range)
         continue;
       const Key hit = along(i, range);
-      if (in_window(hit)) layer.cells[hit] = {kSeenOccupied, scan.stamp};
+      const geometry::Point2 spot = spot_along(i, range);
+      if (in_window(hit)) layer.cells[hit] = {kSeenOccupied, scan.stamp, spot.x(), spot.y()};
     }
   }
 
@@ -101,9 +119,11 @@ class ReferenceCostmap {
     if (base_) {
       PolygonRaster(footprint_.corners(), *base_, master.geometry())
           .for_each_span([&](const CellSpan& span) {
-            for (Layer& layer : layers_) {
-              for (int x = span.x0; layer.config.footprint_clearing && x < span.x1; ++x) {
-                layer.cells[{first_x_ + x, first_y_ + span.y}] = {kSeenFree, now};
+            for (int x = span.x0; x < span.x1; ++x) {
+              if (!under_robot(master.geometry(), {x, span.y})) continue;
+              for (Layer& layer : layers_) {
+                if (layer.config.footprint_clearing)
+                  layer.cells[{first_x_ + x, first_y_ + span.y}] = {kSeenFree, now};
               }
             }
           });
@@ -155,8 +175,9 @@ class ReferenceCostmap {
 
   using Key = std::pair<int, int>;  // cell number in the endless raster
   struct Seen {
-    std::uint8_t state;
-    double stamp;
+    std::uint8_t state = kUnseen;
+    double stamp = 0.0;
+    double x = 0.5, y = 0.5;  // of the echo, from the cell's corner [cells]
   };
   struct Layer {
     ObstacleLayerConfig config;
@@ -170,6 +191,51 @@ class ReferenceCostmap {
     return key.first >= first_x_ && key.second >= first_y_ &&
            key.first < first_x_ + config_.window.width &&
            key.second < first_y_ + config_.window.height;
+  }
+
+  geometry::Point2 place_of(Key key, const Seen& seen) const {
+    const double resolution = config_.window.resolution;
+    return {anchor_x_ + (key.first + seen.x) * resolution,
+            anchor_y_ + (key.second + seen.y) * resolution};
+  }
+
+  // Whether the beams to both sides of the place end behind it, and all within 2 cm of it.
+  template <class Measures>
+  bool passed(const RangeObservation& scan, const geometry::Point2& place,
+              Measures measures) const {
+    const geometry::Point2 point = geometry::inverse(scan.sensor) * place;
+    const auto count = static_cast<int>(scan.directions.size());
+    const auto direction = [&](int beam) {
+      return scan.directions[static_cast<std::size_t>(beam)];
+    };
+    const auto near = [&](int beam) {
+      const geometry::Point2& d = direction(beam);
+      return std::abs(d.x() * point.y() - d.y() * point.x()) <= 0.02;
+    };
+    int nearest = 0;
+    for (int beam = 1; beam < count; ++beam) {
+      if (direction(beam).dot(point) > direction(nearest).dot(point)) nearest = beam;
+    }
+    if ((nearest == 0 || nearest == count - 1) && !near(nearest)) return false;
+    int first = std::max(nearest - 1, 0), last = std::min(nearest + 1, count - 1);
+    while (first > 0 && first < nearest && near(first - 1)) --first;
+    while (last < count - 1 && last > nearest && near(last + 1)) ++last;
+    for (int beam = first; beam <= last; ++beam) {
+      const float range = scan.ranges[static_cast<std::size_t>(beam)];
+      if (!measures(range) || range < point.norm() + 0.5 * config_.window.resolution) return false;
+    }
+    return true;
+  }
+
+  bool under_robot(const grid::GridGeometry& grid, grid::Cell cell) const {
+    for (const int dx : {0, 1}) {
+      for (const int dy : {0, 1}) {
+        const geometry::Point2 corner(grid.origin_x + (cell.x + dx) * grid.resolution,
+                                      grid.origin_y + (cell.y + dy) * grid.resolution);
+        if (footprint_.distance(geometry::inverse(*base_) * corner) > 0.0) return false;
+      }
+    }
+    return true;
   }
 
   void clear(Layer& layer, Key from, Key to, bool through) {
