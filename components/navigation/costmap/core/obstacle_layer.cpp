@@ -14,7 +14,8 @@ constexpr double kFarthestStamp = 1e12;          // [s]
 constexpr double kLongestPersistence = 86400.0;  // [s]
 constexpr int kLongestRay = 32767;               // [cells]
 constexpr double kThickest = 1.0;                // [m]
-constexpr double kUnsure = 0.02;                 // [m] of where an echo was, beside a beam
+constexpr double kBeside = 0.01;                 // [m] a beam so near tells of a place
+constexpr double kHidden = 0.1;  // [m] a beam that ends so much nearer tells nothing of it
 
 std::uint32_t milliseconds(double seconds) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(seconds * 1000.0)));
@@ -22,11 +23,6 @@ std::uint32_t milliseconds(double seconds) {
 
 std::int32_t elapsed(std::uint32_t now, std::uint32_t then) {
   return static_cast<std::int32_t>(now - then);
-}
-
-/// The window's cell of a point in cells of the endless raster.
-grid::Cell cell_of(const geometry::Point2& point, const Raster& raster) {
-  return {floor_to_int(point.x()) - raster.first_x, floor_to_int(point.y()) - raster.first_y};
 }
 
 std::string meters(double value) { return std::to_string(value) + " m"; }
@@ -70,12 +66,10 @@ Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution
 ObstacleLayer::ObstacleLayer(ObstacleLayerConfig config, const Raster& raster)
     : config_(std::move(config)),
       states_({raster.width, raster.height, raster.resolution, 0.0, 0.0}, kUnseen),
-      marked_at_(config_.persistence > 0.0 ? states_.size() : 0),
-      spots_(states_.size()) {}
+      marked_at_(config_.persistence > 0.0 ? states_.size() : 0) {}
 
 void ObstacleLayer::shift(int dx, int dy) {
   shift_cells(states_.values(), states_.width(), states_.height(), dx, dy, kUnseen);
-  shift_cells(spots_, states_.width(), states_.height(), dx, dy, Spot{});
   if (!marked_at_.empty()) {
     shift_cells(marked_at_, states_.width(), states_.height(), dx, dy, std::uint32_t{0});
   }
@@ -105,11 +99,8 @@ Result<CellRect> ObstacleLayer::observe(const RangeObservation& observation, con
   }
   CellRect touched = clear_and_collect(observation, raster);
   const std::uint32_t time = milliseconds(observation.stamp);
-  restore(observation, raster);
-  for (const Mark& echo : marks_) {
-    spots_[echo.index] = echo.spot;
-    mark(echo.index, time);
-  }
+  if (config_.clears_only_what_all_beams_pass) restore(observation, raster);
+  for (const std::uint32_t index : marks_) mark(index, time);
   seen_ = seen_.united(touched);
   return touched;
 }
@@ -144,15 +135,16 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
       invalid_ranges_ += range <= 0.0F || !directed ? 1 : 0;  // the others say: nothing is known
       continue;
     }
-    const auto along = [&](double distance) -> geometry::Point2 {
-      return {x + distance * scale * dx, y + distance * scale * dy};
+    const auto cell_along = [&](double distance) -> grid::Cell {
+      return {floor_to_int(x + distance * scale * dx) - raster.first_x,
+              floor_to_int(y + distance * scale * dy) - raster.first_y};
     };
     const bool through = range > config_.max_raytrace_range;
-    const grid::Cell end = cell_of(along(through ? config_.max_raytrace_range : range), raster);
+    const grid::Cell end = cell_along(through ? config_.max_raytrace_range : range);
     if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
       for (int step = 0; step <= behind; ++step) {
-        const geometry::Point2 hit = along(range + step * raster.resolution);
-        if (collect(hit, raster)) touched.include(cell_of(hit, raster));
+        const grid::Cell hit = cell_along(range + step * raster.resolution);
+        if (collect(hit)) touched.include(hit);
       }
     }
     if (!clears || (end == previous && through == previous_through)) continue;
@@ -170,52 +162,40 @@ bool ObstacleLayer::measures(float range) const {  // false for NaN
          (range < std::numeric_limits<float>::infinity() || config_.infinity_clears);
 }
 
-/// Notes an echo to be marked, in cells of the endless raster; false when its cell is noted. Of the
-/// echoes in a cell the last has its spot.
-bool ObstacleLayer::collect(const geometry::Point2& hit, const Raster& raster) {
-  const grid::Cell cell = cell_of(hit, raster);
-  if (!states_.geometry().contains(cell)) return false;
-  const auto index = static_cast<std::uint32_t>(states_.geometry().index(cell));
-  const auto share = [](double value) {
-    return static_cast<std::uint8_t>((value - floor_to_int(value)) * 256.0);
-  };
-  const Spot spot{share(hit.x()), share(hit.y())};
-  if (!marks_.empty() && marks_.back().index == index) {
-    marks_.back().spot = spot;
-    return false;
-  }
-  marks_.push_back({index, spot});
+/// Notes an echo to be marked; false when there is nothing new to mark.
+bool ObstacleLayer::collect(grid::Cell hit) {
+  if (!states_.geometry().contains(hit)) return false;
+  const auto index = static_cast<std::uint32_t>(states_.geometry().index(hit));
+  if (!marks_.empty() && marks_.back() == index) return false;
+  marks_.push_back(index);
   return true;
 }
 
-/// Marks again what the lines crossed and no beam passed: a line is a row of cells, a beam has a
-/// place in them.
+/// Marks again what the lines crossed and not all beams passed.
 void ObstacleLayer::restore(const RangeObservation& observation, const Raster& raster) {
   const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
   for (const std::uint32_t index : lost_) {
-    const auto at = [&](int first, int cell, std::uint8_t share) {
-      return (first + cell + (share + 0.5) / 256.0) * raster.resolution;
-    };
-    const int width = states_.width();
     const auto cell = static_cast<int>(index);
-    const geometry::Point2 echo(
-        raster.anchor_x + at(raster.first_x, cell % width, spots_[index].x),
-        raster.anchor_y + at(raster.first_y, cell / width, spots_[index].y));
-    if (!passed(observation, sensor_T_window * echo, 0.5 * raster.resolution))
-      states_[index] = kSeenOccupied;
+    const int x = raster.first_x + cell % states_.width();
+    const int y = raster.first_y + cell / states_.width();
+    const geometry::Point2 center(raster.anchor_x + (x + 0.5) * raster.resolution,
+                                  raster.anchor_y + (y + 0.5) * raster.resolution);
+    if (!passed(observation, sensor_T_window * center)) states_[index] = kSeenOccupied;
   }
 }
 
-/// Whether all beams beside a point, in the sensor's frame, end behind it by `margin` [m] or more.
-bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::Point2& point,
-                           double margin) const {
+/// Whether the nearest beams on both sides of a point, in the sensor's frame, and all within
+/// kBeside of it tell that nothing is there.
+bool ObstacleLayer::passed(const RangeObservation& observation,
+                           const geometry::Point2& point) const {
   const auto& directions = observation.directions;
-  const auto beside = [&](std::size_t beam) {  // [m] counter-clockwise of it
-    return directions[beam].x() * point.y() - directions[beam].y() * point.x();
+  const double least = point.norm() - kHidden;
+  const auto tells = [&](std::size_t beam) {
+    return measures(observation.ranges[beam]) && observation.ranges[beam] >= least;
   };
-  const double far = point.norm() + margin;
-  const auto ends_behind = [&](std::size_t beam) {
-    return measures(observation.ranges[beam]) && observation.ranges[beam] >= far;
+  const auto beside = [&](std::size_t beam) {
+    const geometry::Point2& direction = directions[beam];
+    return std::abs(direction.x() * point.y() - direction.y() * point.x()) <= kBeside;
   };
   std::size_t nearest = 0;
   double most = -std::numeric_limits<double>::infinity();
@@ -223,17 +203,12 @@ bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::
     const double along = directions[beam].dot(point);
     if (along > most) most = along, nearest = beam;
   }
-  const std::size_t last = directions.size() - 1;
-  const auto reaches = [&](std::size_t beam) { return std::abs(beside(beam)) <= kUnsure; };
-  if ((nearest == 0 || nearest == last) && !reaches(nearest)) return false;
-  if (!ends_behind(nearest)) return false;
-  for (std::size_t beam = nearest; beam-- > 0;) {
-    if (beam + 1 < nearest && !reaches(beam)) break;
-    if (!ends_behind(beam)) return false;
-  }
-  for (std::size_t beam = nearest + 1; beam <= last; ++beam) {
-    if (beam > nearest + 1 && !reaches(beam)) break;
-    if (!ends_behind(beam)) return false;
+  std::size_t first = nearest - (nearest > 0 ? 1 : 0);
+  std::size_t last = std::min(nearest + 1, directions.size() - 1);
+  while (first > 0 && beside(first - 1)) --first;
+  while (last + 1 < directions.size() && beside(last + 1)) ++last;
+  for (std::size_t beam = first; beam <= last; ++beam) {
+    if (!tells(beam)) return false;
   }
   return true;
 }

@@ -42,6 +42,10 @@ struct ObstacleLayerConfig {
       true;  ///< no echo clears up to max_raytrace_range, else it is no measurement
   double persistence =
       0.0;  ///< [s] an obstacle not seen again is forgotten after this time; 0: never
+  /// What a line of this scan crosses stays an obstacle while a beam beside its cell's center tells
+  /// nothing of it. For a scanner with beams close together, which is blind near it: what stands
+  /// there fills a part of its cell only, and the beams that miss it by a hair cross the rest.
+  bool clears_only_what_all_beams_pass = false;
   bool footprint_clearing = true;  ///< where the robot stands there is no obstacle
   /// What this layer saw free hides an obstacle of the static map (thesis 5.2.1). Switch it off for
   /// a sensor that sees through mapped obstacles, for example a laser behind mapped glass.
@@ -93,21 +97,11 @@ class ObstacleLayer {
   std::uint64_t sensors_outside() const { return sensors_outside_; }
 
  private:
-  /// Where in its cell an echo was, in shares of 1/256 of its sides.
-  struct Spot {
-    std::uint8_t x = 128, y = 128;
-  };
-  struct Mark {
-    std::uint32_t index;
-    Spot spot;
-  };
-
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
   bool measures(float range) const;
-  bool collect(const geometry::Point2& hit, const Raster& raster);
+  bool collect(grid::Cell hit);
   void restore(const RangeObservation& observation, const Raster& raster);
-  bool passed(const RangeObservation& observation, const geometry::Point2& point,
-              double margin) const;
+  bool passed(const RangeObservation& observation, const geometry::Point2& point) const;
   int first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const;
   void trace(grid::Cell from, grid::Cell to, int first, bool through);
   void mark(std::size_t index, std::uint32_t time);
@@ -115,10 +109,9 @@ class ObstacleLayer {
   ObstacleLayerConfig config_;
   grid::Grid<std::uint8_t> states_;
   std::vector<std::uint32_t>
-      marked_at_;                    // [ms, wraps] of occupied cells; empty without persistence
-  std::vector<Spot> spots_;          // of occupied cells
-  std::vector<Mark> marks_;          // this scan's echoes
-  std::vector<std::uint32_t> lost_;  // occupied cells that this scan's lines crossed
+      marked_at_;                     // [ms, wraps] of occupied cells; empty without persistence
+  std::vector<std::uint32_t> marks_;  // cells of this scan's echoes
+  std::vector<std::uint32_t> lost_;   // occupied cells that this scan's lines crossed
   CellRect seen_;
   bool has_deadline_ = false;
   std::uint32_t deadline_ = 0;  // [ms, wraps] no obstacle expires before

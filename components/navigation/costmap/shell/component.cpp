@@ -71,6 +71,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       parameters.integer("social_cost", "-", {0, 252}, settings_.social.cost,
                          "What it costs to be where somebody is; it falls to 0 over that room."));
   laser_settings_.name = "laser";
+  laser_settings_.clears_only_what_all_beams_pass = true;
   laser_settings_.max_obstacle_range = parameters.number("laser_obstacle_range", "m", {0.5, 30},
                                                          8.0, "Farther laser echoes mark nothing.");
   laser_settings_.max_raytrace_range =

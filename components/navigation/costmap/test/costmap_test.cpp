@@ -85,6 +85,7 @@ TEST_P(CostmapLaws, EveryCycleEqualsTheOneFromScratchAndTheDefinition) {
     layer.persistence = i == 2 ? 0.5 : 0.0;
     layer.overrules_static_map = i != 2;
     layer.footprint_clearing = i != 3;
+    layer.clears_only_what_all_beams_pass = i == 0;
     ASSERT_TRUE(incremental.add_obstacle_layer(layer).ok());
     ASSERT_TRUE(fresh.add_obstacle_layer(layer).ok());
     reference.add_obstacle_layer(layer);

@@ -85,45 +85,43 @@ TEST(ObstacleLayer, ForgetsAnObstacleThatItSeesThrough) {
   EXPECT_EQ(state(layer, 50), kSeenOccupied);
 }
 
-TEST(ObstacleLayer, KeepsAnEchoUntilTheBeamsBesideItPassToo) {
+TEST(ObstacleLayer, KeepsAnObstacleUntilTheBeamsBesideItPassToo) {
   const auto fan = beam_directions(-0.02, 0.02, 3);
   const auto look = [&](ObstacleLayer& layer, std::vector<float> ranges) {
     ASSERT_TRUE(layer.observe({kSensor, fan, ranges, 0.0}, raster()).ok());
   };
-  ObstacleLayer layer(config(), raster());
-  look(layer, {kNan, 1.0F, kNan});
-  for (const float hidden : {kNan, 1.01F}) {  // too near to measure, or the echo's own surface
-    look(layer, {2.0F, 2.0F, hidden});
-    EXPECT_EQ(state(layer, 40), kSeenOccupied) << hidden;
-    EXPECT_EQ(state(layer, 39), kSeenFree);
-    look(layer, {2.0F, hidden, 2.0F});
-    EXPECT_EQ(state(layer, 40), kSeenOccupied) << hidden;
-  }
-  look(layer, {2.0F, 2.0F, 2.0F});
-  EXPECT_EQ(state(layer, 40), kSeenFree);
-}
-
-TEST(ObstacleLayer, KeepsAnEchoThatALinePassesBeside) {
-  ObstacleLayer layer(config(), raster());
-  see(layer, 1.0F);
-  const std::vector<float> far = {2.0F};
-  for (const double beside : {1.047, 1.022}) {  // of one row of cells
-    ASSERT_TRUE(layer.observe({{1.02, beside, 0.0}, kAhead, far, 0.0}, raster()).ok());
-    EXPECT_EQ(state(layer, 40), beside > 1.04 ? kSeenOccupied : kSeenFree);
+  for (const bool careful : {true, false}) {
+    ObstacleLayerConfig settings = config();
+    settings.clears_only_what_all_beams_pass = careful;
+    ObstacleLayer layer(settings, raster());
+    for (const float hidden : {kNan, 0.8F}) {  // too near to measure, or behind something
+      for (const std::vector<float>& ranges :
+           {std::vector{2.0F, 2.0F, hidden}, std::vector{2.0F, hidden, 2.0F}}) {
+        look(layer, {kNan, 1.0F, kNan});
+        look(layer, ranges);
+        EXPECT_EQ(state(layer, 40), careful ? kSeenOccupied : kSeenFree) << hidden;
+        EXPECT_EQ(state(layer, 39), kSeenFree);
+      }
+    }
+    look(layer, {2.0F, 2.0F, 0.95F});
+    EXPECT_EQ(state(layer, 40), kSeenFree) << "what that beam hits has marked its own cell";
   }
 }
 
-TEST(ObstacleLayer, CarriesWhereAnEchoWasWithTheWindow) {
-  ObstacleLayer layer(config(), raster());
+TEST(ObstacleLayer, KeepsAnObstacleWhoseCenterIsNearABlindBeam) {
+  ObstacleLayerConfig settings = config();
+  settings.clears_only_what_all_beams_pass = true;
+  ObstacleLayer layer(settings, raster());
   see(layer, 1.0F);
-  layer.shift(10, 5);
-  Raster moved = raster();
-  moved.first_x = 10, moved.first_y = 5;
-  const std::vector<float> far = {2.0F};
-  ASSERT_TRUE(layer.observe({{1.02, 1.047, 0.0}, kAhead, far, 0.0}, moved).ok());
-  EXPECT_EQ(state(layer, 30, 15), kSeenOccupied);
-  ASSERT_TRUE(layer.observe({{1.02, 1.003, 0.0}, kAhead, far, 0.0}, moved).ok());
-  EXPECT_EQ(state(layer, 30, 15), kSeenFree);
+  // The cell's center is 3 mm to the left of the middle beam, the beams are 3 mm apart there.
+  const auto fan = beam_directions(-0.015, 0.003, 11);
+  std::vector<float> ranges(11, 2.0F);
+  ranges[8] = kNan;
+  ASSERT_TRUE(layer.observe({{1.02, 1.022, 0.0}, fan, ranges, 0.0}, raster()).ok());
+  EXPECT_EQ(state(layer, 40), kSeenOccupied) << "6 mm beside it";
+  ranges[8] = 2.0F, ranges[0] = kNan;
+  ASSERT_TRUE(layer.observe({{1.02, 1.022, 0.0}, fan, ranges, 0.0}, raster()).ok());
+  EXPECT_EQ(state(layer, 40), kSeenFree) << "18 mm beside it";
 }
 
 TEST(ObstacleLayer, KeepsWhatLiesBehindAnEcho) {

@@ -61,17 +61,10 @@ class ReferenceCostmap {
     const auto measures = [&](float range) {
       return range > 0.0F && (std::isfinite(range) || layer.config.infinity_clears);
     };
-    const auto spot_along = [&](std::size_t beam, double distance) -> geometry::Point2 {
-      const double dx = c * scan.directions[beam].x() - s * scan.directions[beam].y();
-      const double dy = s * scan.directions[beam].x() + c * scan.directions[beam].y();
-      const auto rounded = [](double value) {
-        return (std::floor((value - std::floor(value)) * 256.0) + 0.5) / 256.0;
-      };
-      return {rounded(x + distance * scale * dx), rounded(y + distance * scale * dy)};
-    };
     std::vector<std::pair<Key, Seen>> before;
     std::ranges::copy_if(layer.cells, std::back_inserter(before),
                          [](const auto& entry) { return entry.second.state == kSeenOccupied; });
+    if (!layer.config.clears_only_what_all_beams_pass) before.clear();
     for (std::size_t i = 0; in_window(origin) && i < scan.ranges.size(); ++i) {
       if (!measures(scan.ranges[i])) continue;
       const bool through = scan.ranges[i] > layer.config.max_raytrace_range;
@@ -80,7 +73,7 @@ class ReferenceCostmap {
     }
     for (const auto& [key, seen] : before) {
       const bool crossed = layer.cells.at(key).state == kSeenFree;
-      if (crossed && !passed(scan, place_of(key, seen), measures)) layer.cells[key] = seen;
+      if (crossed && !passed(scan, center_of(key), measures)) layer.cells[key] = seen;
     }
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
       const float range = scan.ranges[i];
@@ -88,8 +81,7 @@ class ReferenceCostmap {
       if (range < layer.config.min_obstacle_range || range > layer.config.max_obstacle_range)
         continue;
       const Key hit = along(i, range);
-      const geometry::Point2 spot = spot_along(i, range);
-      if (in_window(hit)) layer.cells[hit] = {kSeenOccupied, scan.stamp, spot.x(), spot.y()};
+      if (in_window(hit)) layer.cells[hit] = {kSeenOccupied, scan.stamp};
     }
   }
 
@@ -175,9 +167,8 @@ class ReferenceCostmap {
 
   using Key = std::pair<int, int>;  // cell number in the endless raster
   struct Seen {
-    std::uint8_t state = kUnseen;
-    double stamp = 0.0;
-    double x = 0.5, y = 0.5;  // of the echo, from the cell's corner [cells]
+    std::uint8_t state;
+    double stamp;
   };
   struct Layer {
     ObstacleLayerConfig config;
@@ -193,36 +184,34 @@ class ReferenceCostmap {
            key.second < first_y_ + config_.window.height;
   }
 
-  geometry::Point2 place_of(Key key, const Seen& seen) const {
+  geometry::Point2 center_of(Key key) const {
     const double resolution = config_.window.resolution;
-    return {anchor_x_ + (key.first + seen.x) * resolution,
-            anchor_y_ + (key.second + seen.y) * resolution};
+    return {anchor_x_ + (key.first + 0.5) * resolution,
+            anchor_y_ + (key.second + 0.5) * resolution};
   }
 
-  // Whether the beams to both sides of the place end behind it, and all within 2 cm of it.
+  // Whether the beam nearest to the place, those beside it, and all within 1 cm of the place end
+  // behind it or so near before it that they hit something else there.
   template <class Measures>
   bool passed(const RangeObservation& scan, const geometry::Point2& place,
               Measures measures) const {
     const geometry::Point2 point = geometry::inverse(scan.sensor) * place;
     const auto count = static_cast<int>(scan.directions.size());
-    const auto direction = [&](int beam) {
-      return scan.directions[static_cast<std::size_t>(beam)];
-    };
+    const auto direction = [&](int i) { return scan.directions[static_cast<std::size_t>(i)]; };
     const auto near = [&](int beam) {
-      const geometry::Point2& d = direction(beam);
-      return std::abs(d.x() * point.y() - d.y() * point.x()) <= 0.02;
+      const geometry::Point2 d = direction(beam);
+      return std::abs(d.x() * point.y() - d.y() * point.x()) <= 0.01;
     };
     int nearest = 0;
     for (int beam = 1; beam < count; ++beam) {
       if (direction(beam).dot(point) > direction(nearest).dot(point)) nearest = beam;
     }
-    if ((nearest == 0 || nearest == count - 1) && !near(nearest)) return false;
     int first = std::max(nearest - 1, 0), last = std::min(nearest + 1, count - 1);
-    while (first > 0 && first < nearest && near(first - 1)) --first;
-    while (last < count - 1 && last > nearest && near(last + 1)) ++last;
+    while (first > 0 && near(first - 1)) --first;
+    while (last < count - 1 && near(last + 1)) ++last;
     for (int beam = first; beam <= last; ++beam) {
       const float range = scan.ranges[static_cast<std::size_t>(beam)];
-      if (!measures(range) || range < point.norm() + 0.5 * config_.window.resolution) return false;
+      if (!measures(range) || range < point.norm() - 0.1) return false;
     }
     return true;
   }
