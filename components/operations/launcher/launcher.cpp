@@ -272,7 +272,9 @@ Launcher::~Launcher() {
 Status Launcher::lock(const Deployment& deployment) {
   if (auto status = make_runtime_directory(runtime_directory()); !status) return status;
   std::error_code error;
-  std::filesystem::create_directories(options_.run_directory, error);
+  // Memories of visitors and the paths of keys are of nobody else's concern.
+  if (std::filesystem::create_directories(options_.run_directory, error))
+    std::filesystem::permissions(options_.run_directory, std::filesystem::perms::owner_all, error);
   if (error) return Error{"cannot write " + options_.run_directory + ": " + error.message()};
   if (auto status = lock_file(options_.run_directory + "/lock"); !status) return status;
   for (const auto& host : deployment.manifest.hosts) {

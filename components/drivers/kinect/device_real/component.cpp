@@ -135,7 +135,7 @@ void KinectComponent::watch_reading() {
 
 /// When what was read last was measured: an image of before the read began may have waited for it.
 runtime::Time KinectComponent::measured() {
-  return runtime::Time(clock_.stamp(job_->stamps, arrived_.time_since_epoch())) - kOnItsWay;
+  return runtime::Time(came_at(job_->stamps, arrived_.time_since_epoch(), clock_)) - kOnItsWay;
 }
 
 /// Publishes the frame that was read, when its time has come.

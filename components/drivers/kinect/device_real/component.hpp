@@ -50,10 +50,10 @@ class KinectComponent final : public runtime::Component {
   bool repeat_ = true;
   std::shared_ptr<Job> job_ = std::make_shared<Job>();
   runtime::Time started_{};
-  runtime::Time read_at_{};  ///< when the newest read began
-  runtime::Time arrived_{};  ///< when the newest read ended
-  runtime::Time again_{};    ///< not before, after an error of a live one
-  DeviceClock clock_;        ///< of a live one
+  runtime::Time read_at_{};                  ///< when the newest read began
+  runtime::Time arrived_{};                  ///< when the newest read ended
+  runtime::Time again_{};                    ///< not before, after an error of a live one
+  estimation::DeviceClock clock_{kCounter};  ///< of a live one
   bool reading_ = false, ready_ = false;
   std::uint64_t& rejected_;
   runtime::Timer timer_;

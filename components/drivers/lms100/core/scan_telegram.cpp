@@ -122,28 +122,10 @@ Status to_scan(const ScanTelegram& telegram, Time stamp, Scan& scan) {
   return {};
 }
 
-Time DeviceClock::stamp(const ScanTelegram& telegram, Time arrival) {
-  using std::chrono::microseconds;
-  // The difference of two wrapping counters is exact as long as it is below half their range.
-  const auto step = static_cast<std::int32_t>(telegram.transmission_time - last_raw_);
-  Time device =
-      offset_ ? last_device_ + microseconds(step) : Time(microseconds(telegram.transmission_time));
-  constexpr Time kRestart = std::chrono::seconds(10);
-  if (offset_ && (step < 0 || std::chrono::abs(arrival - device - *offset_) > kRestart)) {
-    device = microseconds(telegram.transmission_time);  // the device restarted, or was away
-    offset_.reset();
-  }
-  const Time offset = arrival - device;
-  if (!offset_) {
-    offset_ = offset;
-  } else {
-    // Let the followed offset rise by 200 ppm, more than two quartzes drift apart.
-    offset_ = std::min(*offset_ + (device - last_device_) / 5000, offset);
-  }
-  last_device_ = device;
-  last_raw_ = telegram.transmission_time;
-  const auto age = static_cast<std::int32_t>(telegram.transmission_time - telegram.scan_time);
-  return device - microseconds(std::max(age, 0)) + *offset_;
+Time measured_at(const ScanTelegram& telegram, Time arrival, estimation::DeviceClock& clock) {
+  const std::int64_t age = clock.step(telegram.scan_time, telegram.transmission_time);
+  return clock.stamp(telegram.transmission_time, arrival) -
+         clock.time_of(std::max(age, std::int64_t{0}));
 }
 
 }  // namespace usher::lms100

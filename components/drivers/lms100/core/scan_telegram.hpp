@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "drivers/lms100/core/cola.hpp"
 #include "drivers/lms100/core/device.hpp"
+#include "foundation/estimation/device_clock.hpp"
 #include "foundation/result/result.hpp"
 
 namespace usher::lms100 {
@@ -52,18 +54,14 @@ Status read(const Message& message, ScanTelegram& telegram);
 /// 16 mm are codes: 0 is no echo (+infinity), the others no measurement (NaN) [REP 117].
 Status to_scan(const ScanTelegram& telegram, Time stamp, Scan& scan);
 
-/// Puts the device's clock on the host's. The shortest way of a telegram is followed as the offset,
-/// so that the jitter of network and scheduling does not shake the stamps.
-class DeviceClock {
- public:
-  /// When the scan was measured, on the host's clock: never after its arrival.
-  Time stamp(const ScanTelegram& telegram, Time arrival);
-  void reset() { offset_.reset(); }
+/// The LMS100 counts microseconds in 32 bits. After a pause of the host late telegrams are no new
+/// start.
+inline constexpr estimation::DeviceClock::Counter kCounter{.bits = 32,
+                                                           .ticks = 1,
+                                                           .last = std::chrono::microseconds(1),
+                                                           .restart = std::chrono::seconds(10)};
 
- private:
-  std::optional<Time> offset_;  ///< host time minus unwrapped device time
-  Time last_device_{};
-  std::uint32_t last_raw_ = 0;
-};
+/// When the scan was measured, on the host's clock: never after its arrival.
+Time measured_at(const ScanTelegram& telegram, Time arrival, estimation::DeviceClock& clock);
 
 }  // namespace usher::lms100

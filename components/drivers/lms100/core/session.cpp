@@ -131,7 +131,8 @@ bool Session::handle(const Telegram& telegram, Time now) {
 bool Session::handle_scan(const Message& message, Time now) {
   // Scans of an older subscription may come before this one is set up.
   if (state_ != State::kStreaming) return false;
-  if (!read(message, telegram_) || !to_scan(telegram_, clock_.stamp(telegram_, now), scan_)) {
+  if (!read(message, telegram_) ||
+      !to_scan(telegram_, measured_at(telegram_, now, clock_), scan_)) {
     ++rejected_;
     return false;
   }

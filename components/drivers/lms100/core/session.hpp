@@ -91,7 +91,7 @@ class Session {
   std::string reason_ = "not connected";
   ScanTelegram telegram_;
   Scan scan_;
-  DeviceClock clock_;
+  estimation::DeviceClock clock_{kCounter};
   std::optional<std::uint16_t> last_counter_;
   std::uint64_t scans_ = 0;
   std::uint64_t lost_scans_ = 0;

@@ -328,31 +328,13 @@ ScanTelegram timed(std::uint32_t scan_us, std::uint32_t transmission_us) {
   return telegram;
 }
 
-TEST(DeviceClock, FollowsTheShortestWayThroughJitterAndWraps) {
-  Random random(9);
-  DeviceClock clock;
-  const double start = 4294000000.0;  // [us] wraps within a second
-  double worst = 0.0;
-  for (int i = 0; i < 5000; ++i) {
-    const double device = start + i * 20114.0;
-    const double true_host = 5e6 + i * 20114.0 * (1.0 + 50e-6);  // [us] 50 ppm apart
-    const double jitter = 300.0 + (random.below(10) == 0 ? random.uniform(0.0, 15000.0) : 0.0);
-    const auto raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(device));
-    const Time arrival(static_cast<std::int64_t>((true_host + 3100.0 + jitter) * 1e3));
-    const Time stamp = clock.stamp(timed(raw, raw + 3100), arrival);
-    ASSERT_LE(stamp, arrival);
-    const double error = static_cast<double>(stamp.count()) * 1e-3 - (true_host + 300.0);
-    if (i > 20) worst = std::max(worst, std::abs(error));
-  }
-  EXPECT_LT(worst, 500.0) << "microseconds, although single telegrams are 15 ms late";
-}
-
-TEST(DeviceClock, StartsAnewWhenTheDeviceDoes) {
-  DeviceClock clock;
-  clock.stamp(timed(900000000, 900003000), std::chrono::seconds(100));
+TEST(MeasuredAt, IsTheAgeThatTheDeviceTellsBeforeItsWord) {
+  estimation::DeviceClock clock(kCounter);
   const Time arrival = std::chrono::seconds(130);
-  const Time stamp = clock.stamp(timed(1000, 4000), arrival);
-  EXPECT_EQ(stamp, arrival - std::chrono::microseconds(3000));
+  EXPECT_EQ(measured_at(timed(0xFFFFFF00U, 2744), arrival, clock),
+            arrival - std::chrono::microseconds(3000))
+      << "its clock has wrapped";
+  EXPECT_EQ(measured_at(timed(9000, 4000), arrival, clock), arrival) << "no scan is of the future";
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Decoder decoder;
   ScanTelegram telegram;
   Scan scan;
-  DeviceClock clock;
+  estimation::DeviceClock clock(kCounter);
   for (auto rest = bytes; !rest.empty();) {
     rest = rest.subspan(decoder.feed(rest));
     while (const auto frame = decoder.next()) {
       const auto message = open(*frame);
       if (!message || !read(*message, telegram)) continue;
       const Time arrival = std::chrono::milliseconds(20);
-      if (!to_scan(telegram, clock.stamp(telegram, arrival), scan)) continue;
+      if (!to_scan(telegram, measured_at(telegram, arrival, clock), scan)) continue;
       if (scan.ranges.empty() || !std::isfinite(scan.angle_min) || scan.angle_increment <= 0.0) {
         std::abort();
       }

@@ -11,7 +11,6 @@ namespace usher::urg04lx {
 namespace {
 
 constexpr std::size_t kRangeCharacters = 3;
-constexpr auto kClockDrift = std::chrono::microseconds(20);  // per scan that the host may gain
 
 }  // namespace
 
@@ -100,21 +99,6 @@ std::optional<Specification> parse_specification(const Answer& answer) {
                      s.turns_per_minute >= 60 && s.turns_per_minute <= 12000;
   if (!all || !sound) return std::nullopt;
   return s;
-}
-
-Time DeviceClock::stamp(std::uint32_t counter, Time arrival) {
-  constexpr std::uint32_t kWrap = 1U << 24;
-  if (started_) {
-    milliseconds_ += (counter - last_) & (kWrap - 1);
-  } else {
-    milliseconds_ = counter;
-  }
-  last_ = counter;
-  const Time device = std::chrono::milliseconds(milliseconds_);
-  const Time offset = arrival - device;
-  offset_ = started_ ? std::min(offset, offset_ + kClockDrift) : offset;
-  started_ = true;
-  return device + offset_;
 }
 
 bool parse_scan(const Answer& answer, const Specification& s, Scan& scan, std::uint32_t& counter) {

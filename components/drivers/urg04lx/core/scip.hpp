@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "drivers/urg04lx/core/device.hpp"
+#include "foundation/estimation/device_clock.hpp"
 
 namespace usher::urg04lx {
 
@@ -68,19 +70,11 @@ struct Specification {
 /// Nothing when a line is missing or the numbers make no scanner.
 std::optional<Specification> parse_specification(const Answer& answer);
 
-/// The 24-bit millisecond counter on the host's clock: the shortest way seen lately is followed, so
-/// that a late line does not shake the stamps.
-class DeviceClock {
- public:
-  void reset() { started_ = false; }
-  Time stamp(std::uint32_t counter, Time arrival);
-
- private:
-  bool started_ = false;
-  std::uint32_t last_ = 0;
-  std::int64_t milliseconds_ = 0;  // unwrapped
-  Time offset_{};
-};
+/// The URG-04LX counts milliseconds in 24 bits.
+inline constexpr estimation::DeviceClock::Counter kCounter{.bits = 24,
+                                                           .ticks = 1,
+                                                           .last = std::chrono::milliseconds(1),
+                                                           .restart = std::chrono::seconds(10)};
 
 /// The ranges of an answer to MD or GD over all steps of the specification: its first line is the
 /// time stamp, the rest ranges of three characters. False when their number is not that of the

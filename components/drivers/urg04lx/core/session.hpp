@@ -73,7 +73,7 @@ class Session {
   std::string reason_ = "not connected";
   Specification specification_;
   Scan scan_;
-  DeviceClock clock_;
+  estimation::DeviceClock clock_{kCounter};
   std::uint64_t rejected_ = 0;
 };
 

@@ -357,6 +357,18 @@ TEST(RunDirectory, OutlivesABootWhereTheUserHasAHome) {
                              "/tmp/usher-" + user + "/domain-7-nuc"));
 }
 
+TEST_F(Launching, MakesItsRunDirectoryForThisUserAlone) {
+  component("legs", "sleeper");
+  const std::string run = options_.run_directory = folder_.path() + "/deep/run/";
+  { const auto made = launcher(); }
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(run).permissions(), perms::owner_all);
+  std::filesystem::permissions(run, perms::owner_all | perms::group_all);
+  { const auto made = launcher(); }
+  EXPECT_EQ(std::filesystem::status(run).permissions(), perms::owner_all | perms::group_all)
+      << "one that was there stays as somebody made it";
+}
+
 TEST_F(Launching, NamesTheDomainsWhereALauncherLives) {
   component("legs", "sleeper");
   const std::string runtime = folder_.path() + "/runtime";
