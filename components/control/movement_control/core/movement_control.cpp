@@ -243,6 +243,16 @@ bool MovementControl::only_straight_stops(double turn, const Inputs& inputs) con
          guard_.stops({v, 0.0}, seen);
 }
 
+/// A base that was told to stand and still rolls would meet something that was seen before it
+/// stands, and sooner than straight on.
+bool MovementControl::turns_into_something(double turn, const Inputs& inputs) const {
+  const double v = inputs.measured ? inputs.measured->v : 0.0;
+  if (std::abs(v) < kinematics::RollOut::kStanding) return false;
+  const Guard::View seen = Guard::seen(inputs.view);
+  const double way = guard_.way({v, turn}, seen);
+  return way < parameters_.guard.stopping.distance(std::abs(v)) && way < guard_.way({v, 0.0}, seen);
+}
+
 /// What of a wish the limits leave. One factor for both, so that a slower robot drives the same
 /// arc. What may not move at all is cut instead: a lost pose forbids driving but not turning.
 MovementControl::Limited MovementControl::limited(const Wish& wish, const Bound& bound,
@@ -279,6 +289,10 @@ void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bo
     decision.limit = Limit::kObstacle;
     (wish.twist.v != 0.0 ? bound.limit.linear : bound.limit.angular) =
         std::abs(wish.twist.v != 0.0 ? wanted.v : wanted.w);
+  } else if (parameters_.guarded && !guards(wish.source) && wanted.v == 0.0 && wanted.w != 0.0 &&
+             turns_into_something(wanted.w, inputs)) {
+    wanted.w = 0.0;
+    decision.limit = Limit::kObstacle;
   }
 
   // What is wished, so that the arc stays, and what is really commanded: while the robot speeds

@@ -197,6 +197,7 @@ class MovementControl {
   double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
   double turn_while_rolling(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   double turn(const Wish& wish, double part, double most, const Inputs& inputs) const;
+  bool turns_into_something(double turn, const Inputs& inputs) const;
   bool only_straight_stops(double turn, const Inputs& inputs) const;
   Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
   void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);

@@ -426,6 +426,24 @@ TEST_F(Guarded, AHeldBackPlannersRobotRollsStraightOnWhereOnlyThatStopsInTime) {
   EXPECT_LT(turn_of(false), -0.4) << "straight on it meets something, too";
 }
 
+// Its planner brakes along a bend; the base, told zero, rolls on and keeps the turn (window 1015).
+TEST_F(Guarded, ARobotThatWasToldToStandTurnsIntoNothingThatItMissesStraightOn) {
+  const auto turn_of = [&](double measured, const std::vector<geometry::Point2>& seen) {
+    MovementControl control(parameters);
+    inputs.measured = Twist2{measured, -0.4};
+    inputs.navigation = Twist2{0.0, -0.4};
+    inputs.view = {.points = seen, .sees = true};
+    Twist2 twist;
+    for (int ms = 0; ms < 1000; ms += 20) twist = control.decide(inputs, milliseconds(ms)).twist;
+    return twist.w;
+  };
+  const std::vector<geometry::Point2> beside{{-0.2, 0.345}, {-0.21, 0.345}};  // of its tail
+  const std::vector<geometry::Point2> ahead{{0.35, 0.0}, {0.35, 0.01}};
+  EXPECT_NEAR(turn_of(0.2, {}), -0.4, 1e-9);
+  EXPECT_EQ(turn_of(0.2, beside), 0.0);
+  EXPECT_NEAR(turn_of(0.2, ahead), -0.4, 1e-9) << "straight on it meets that, too";
+}
+
 TEST_F(Guarded, AHeldBackPlannersRobotTurnsOnWhereItsArcStopsInTime) {
   const auto turn = [&](std::size_t guessed) {
     MovementControl control(parameters);
