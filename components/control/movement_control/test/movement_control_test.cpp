@@ -438,10 +438,10 @@ TEST_F(Guarded, ARobotThatWasToldToStandTurnsIntoNothingThatItMissesStraightOn) 
     return twist.w;
   };
   const std::vector<geometry::Point2> beside{{-0.2, 0.345}, {-0.21, 0.345}};  // of its tail
-  const std::vector<geometry::Point2> ahead{{0.35, 0.0}, {0.35, 0.01}};
+  const std::vector<geometry::Point2> ahead{{0.33, -0.32}, {0.33, -0.31}};    // of a corner
   EXPECT_NEAR(turn_of(0.2, {}), -0.4, 1e-9);
   EXPECT_EQ(turn_of(0.2, beside), 0.0);
-  EXPECT_NEAR(turn_of(0.2, ahead), -0.4, 1e-9) << "straight on it meets that, too";
+  EXPECT_NEAR(turn_of(0.2, ahead), -0.4, 1e-9) << "straight on it would meet that sooner";
 }
 
 TEST_F(Guarded, AHeldBackPlannersRobotTurnsOnWhereItsArcStopsInTime) {
