@@ -91,7 +91,7 @@ walls:
                                            lens.fy,    lens.cx,     lens.cy};
       info.write(wire::to_message(now, "kinect_depth_optical", intrinsics));
       EXPECT_TRUE(renderer.update(world).ok());
-      camera.measure(world, renderer.renderer(), millimeters);
+      camera.measure(camera.exposure(world), renderer.renderer(), millimeters);
       wire::to_message(now, "kinect_depth_optical",
                        imaging::DepthImage{lens.width, lens.height, millimeters}, image);
       images.write(image);

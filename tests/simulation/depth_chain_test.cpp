@@ -43,7 +43,7 @@ class Chain {
   }
   depth_pipeline::DepthImage image() {
     EXPECT_TRUE(renderer_.update(world_).ok());
-    camera_.measure(world_, renderer_.renderer(), millimeters_);
+    camera_.measure(camera_.exposure(world_), renderer_.renderer(), millimeters_);
     const auto& lens = camera_.config().sensor.lens;
     return {lens.width, lens.height, millimeters_};
   }

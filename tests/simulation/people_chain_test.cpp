@@ -180,7 +180,7 @@ TEST(PeopleModel, AgreesWithTheRenderedChain) {
         if (step < 30 || step % 7 != 0) continue;
         ++images;
         ASSERT_TRUE(renderer.update(*world));
-        camera.measure(*world, renderer.renderer(), millimeters);
+        camera.measure(camera.exposure(*world), renderer.renderer(), millimeters);
         depth_pipeline::Mount mount{.x = config.mount.x, .z = config.mount.z, .backward = backward};
         const auto pose = depth_pipeline::camera_pose(
             mount, backward ? radians(-15.0) : camera.tilt(), world->base().truth().pitch);

@@ -108,21 +108,33 @@ rendering::Gains DepthCamera::gains(const World& world, const Point2& place) con
   return colors_.gains(world.lighting(), place, pose(world).translation.head<2>());
 }
 
-void DepthCamera::measure(const World& world, rendering::Renderer& renderer,
+Exposure DepthCamera::exposure(const World& world) const { return {pose(world), burst_}; }
+
+void DepthCamera::measure(const Exposure& exposure, rendering::Renderer& renderer,
                           std::vector<std::uint16_t>& millimeters) {
-  sensor_.measure(renderer, pose(world), burst_, millimeters);
+  sensor_.measure(renderer, exposure.world_T_camera, exposure.burst, millimeters);
+}
+
+void WorldRenderer::look(const World& world, Moment& moment) {
+  moment.scene.reset();
+  if (version_ != world.scene_version()) moment.scene = model_of(world.scene(), world.map());
+  version_ = world.scene_version();
+  bodies_of(world.people(), moment.bodies);
+}
+
+Status WorldRenderer::show(const Moment& moment) {
+  if (moment.scene) {
+    auto made = rendering::Renderer::make(*moment.scene);
+    if (!made) return Error{made.error()};
+    renderer_.emplace(std::move(made).value());
+  }
+  renderer_->place(moment.bodies);
+  return {};
 }
 
 Status WorldRenderer::update(const World& world) {
-  if (!renderer_ || version_ != world.scene_version()) {
-    auto made = rendering::Renderer::make(model_of(world.scene(), world.map()));
-    if (!made) return Error{made.error()};
-    renderer_.emplace(std::move(made).value());
-    version_ = world.scene_version();
-  }
-  bodies_of(world.people(), bodies_);
-  renderer_->place(bodies_);
-  return {};
+  look(world, moment_);
+  return show(moment_);
 }
 
 }  // namespace usher::world

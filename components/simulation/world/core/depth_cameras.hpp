@@ -33,6 +33,12 @@ struct DepthCameraConfig {
   double servo_speed = 1.0;   ///< [rad/s]
 };
 
+/// What an image that a camera takes at one moment depends on.
+struct Exposure {
+  geometry::Pose3 world_T_camera;  ///< x along the optical axis
+  double burst = 0.0;              ///< {0..1} how much a jump of the pitch spoils it
+};
+
 /// One camera in a world: renders, adds the errors of the device, follows the tilt servo. A sudden
 /// change of the pitch rate spoils images, as on the robot (thesis 4.21a). The color camera beside
 /// it sees the same pixels.
@@ -49,8 +55,9 @@ class DepthCamera {
   geometry::Pose3 pose(const World& world) const;  ///< in world, x along the optical axis
   double burst() const { return burst_; }          ///< {0..1} of the next image
 
-  /// An image of the world now, in millimetres.
-  void measure(const World& world, rendering::Renderer& renderer,
+  Exposure exposure(const World& world) const;  ///< now
+  /// The image, in millimetres. Touches nothing that the others touch: it may be made beside them.
+  void measure(const Exposure& exposure, rendering::Renderer& renderer,
                std::vector<std::uint16_t>& millimeters);
   /// What its color camera makes of the light at a place now.
   rendering::Gains gains(const World& world, const Point2& place) const;
@@ -70,15 +77,22 @@ class DepthCamera {
 /// The renderer of a world, kept up with its doors, things and people.
 class WorldRenderer {
  public:
-  /// The people and, when it changed, the scene of this moment.
-  Status update(const World& world);
+  /// What there is to see at one moment.
+  struct Moment {
+    std::optional<rendering::Model> scene;  ///< when it changed since the last look
+    std::vector<rendering::Body> bodies;    ///< of the people
+  };
+  void look(const World& world, Moment& moment);
+  /// Moments in the order of their looks; this may be done beside look().
+  Status show(const Moment& moment);
+  Status update(const World& world);  ///< both
   rendering::Renderer& renderer() { return *renderer_; }
-  std::span<const rendering::Body> bodies() const { return bodies_; }  ///< of the people
+  std::span<const rendering::Body> bodies() const { return moment_.bodies; }  ///< of update()
 
  private:
   std::optional<rendering::Renderer> renderer_;
-  std::uint64_t version_ = 0;
-  std::vector<rendering::Body> bodies_;
+  std::optional<std::uint64_t> version_;  ///< that was looked at last
+  Moment moment_;
 };
 
 }  // namespace usher::world

@@ -12,6 +12,7 @@ namespace {
 
 /// Half a period of 30 Hz: the cameras take turns.
 constexpr auto kTurn = std::chrono::nanoseconds(16'666'667);
+constexpr auto kRendering = std::chrono::milliseconds(10);  ///< of one image, with colors
 constexpr int kColorsEvery = 6;  ///< 5 Hz of the modelled colors of clothes
 constexpr int kRearEvery = 2;    ///< the rear camera has 15 Hz: the detector looks no more often
 constexpr const char* kKinectFrame = "kinect_depth_optical";
@@ -75,7 +76,10 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
     : host_(host),
       world_(world),
       kinect_(read_kinect(host.parameters()), seed),
-      rear_(read_rear(host.parameters()), seed + 1) {
+      rear_(read_rear(host.parameters()), seed + 1),
+      kinect_pixels_{.camera = kinect_, .frame = kKinectFrame},
+      rear_pixels_{.camera = rear_, .frame = kRearFrame},
+      late_images_(host.health().counter("images: late")) {
   const std::string kind = host.parameters().choice(
       "depth", {"off", "model", "pixels"}, "off",
       "Depth cameras: rendered pixels, or the scans of the model that is fitted to them.");
@@ -104,11 +108,11 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
                                                 "Faces per image that are none (model).");
   face_model_.emplace(faces, seed);
   faces_ = host.output(topics::kSimKinectFaces);
-  kinect_shot_.depths = host.output(topics::kSimKinectDepth);
-  kinect_shot_.colors = host.output(topics::kSimKinectColor);
+  kinect_pixels_.depths = host.output(topics::kSimKinectDepth);
+  kinect_pixels_.colors = host.output(topics::kSimKinectColor);
   kinect_info_ = host.output(topics::kSimKinectInfo);
-  rear_shot_.depths = host.output(topics::kSimRearDepth);
-  rear_shot_.colors = host.output(topics::kSimRearColor);
+  rear_pixels_.depths = host.output(topics::kSimRearDepth);
+  rear_pixels_.colors = host.output(topics::kSimRearColor);
   rear_info_ = host.output(topics::kSimRearInfo);
   kinect_scan_ = host.output(topics::kSimKinectScan);
   kinect_low_ = host.output(topics::kSimKinectScanLow);
@@ -146,7 +150,7 @@ void DepthOutput::publish_next() {
   if (kind_ == Kind::kOff || world_ == nullptr || stepped_ == runtime::Time{}) return;
   if (!told_ && kind_ == Kind::kPixels) publish_info();
   told_ = true;
-  deliver(kinect_next_ ? kinect_shot_ : rear_shot_);
+  deliver(kinect_next_ ? kinect_pixels_ : rear_pixels_);
   const bool rendered = kind_ != Kind::kPixels || images_ / 2 % every_ == 0;
   if (rendered && kinect_next_) publish_kinect();
   if (rendered && !kinect_next_ && has_rear_ && images_ / 2 % kRearEvery == 0) publish_rear();
@@ -171,39 +175,65 @@ void DepthOutput::publish_kinect() {
     publish_faces();
     return;
   }
-  take(kinect_, kKinectFrame, kinect_shot_);
+  take(kinect_pixels_);
 }
 
-void DepthOutput::take(DepthCamera& camera, const char* frame, Shot& shot) {
-  if (const auto status = renderer_.update(*world_); !status) host_.fault(status.error());
-  camera.measure(*world_, renderer_.renderer(), depth_);
-  shot.taken = true;
-  shot.painted = paint(camera, frame, shot.color);
-  const rendering::Lens& lens = camera.config().sensor.lens;
-  wire::to_message(stepped_, frame, imaging::DepthImage{lens.width, lens.height, depth_},
+void DepthOutput::take(Pixels& pixels) {
+  Shot& shot = pixels.shots[1 - pixels.newest];
+  if (shot.state != Shot::State::kNone) {
+    ++late_images_;
+    return;
+  }
+  pixels.newest = 1 - pixels.newest;
+  shot.state = Shot::State::kInWork;
+  shot.due = false;
+  shot.stamp = stepped_;
+  shot.exposure = pixels.camera.exposure(*world_);
+  renderer_.look(*world_, shot.moment);
+  shot.painted = painter_ && images_ / 2 % colors_every_ == 0;
+  if (shot.painted) {
+    shot.gains.clear();
+    for (const Person& person : world_->people())
+      shot.gains.push_back(pixels.camera.gains(*world_, person.position));
+  }
+  host_.offload(
+      kRendering, [this, &pixels, &shot] { render(pixels, shot); },
+      [this, &pixels, &shot] {
+        if (!shot.error.empty()) host_.fault(shot.error);
+        shot.state = Shot::State::kReady;
+        if (shot.due) publish(pixels, shot);
+      });
+}
+
+/// Beside the handlers.
+void DepthOutput::render(Pixels& pixels, Shot& shot) {
+  if (const auto status = renderer_.show(shot.moment); !status) {
+    shot.error = status.error();
+    return;
+  }
+  pixels.camera.measure(shot.exposure, renderer_.renderer(), depth_);
+  const rendering::Lens& lens = pixels.camera.config().sensor.lens;
+  if (shot.painted) {
+    painter_->paint(pixels.camera.truth(), lens, shot.exposure.world_T_camera, shot.moment.bodies,
+                    shot.gains, rgb_);
+    wire::to_color_message(shot.stamp, pixels.frame, lens.width, rgb_, shot.color);
+  }
+  wire::to_message(shot.stamp, pixels.frame, imaging::DepthImage{lens.width, lens.height, depth_},
                    shot.depth);
 }
 
-/// The colors before the depths of the same moment: whoever has those has the colors, too.
-void DepthOutput::deliver(Shot& shot) {
-  if (!shot.taken) return;
-  if (shot.painted) shot.colors.publish(shot.color);
-  shot.depths.publish(shot.depth);
-  shot.taken = false;
+/// What was taken two turns ago.
+void DepthOutput::deliver(Pixels& pixels) {
+  Shot& shot = pixels.shots[pixels.newest];
+  shot.due = true;
+  if (shot.state == Shot::State::kReady) publish(pixels, shot);
 }
 
-/// False where this image has no colors.
-bool DepthOutput::paint(const DepthCamera& camera, const char* frame,
-                        sensor_msgs::msg::Image& image) {
-  if (!painter_ || images_ / 2 % colors_every_ != 0) return false;
-  const auto people = world_->people();
-  gains_.resize(people.size());
-  for (std::size_t i = 0; i < people.size(); ++i)
-    gains_[i] = camera.gains(*world_, people[i].position);
-  const rendering::Lens& lens = camera.config().sensor.lens;
-  painter_->paint(camera.truth(), lens, camera.pose(*world_), renderer_.bodies(), gains_, rgb_);
-  wire::to_color_message(stepped_, frame, lens.width, rgb_, image);
-  return true;
+/// The colors before the depths of the same moment: whoever has those has the colors, too.
+void DepthOutput::publish(Pixels& pixels, Shot& shot) {
+  if (shot.painted) pixels.colors.publish(shot.color);
+  pixels.depths.publish(shot.depth);
+  shot.state = Shot::State::kNone;
 }
 
 void DepthOutput::publish_rear() {
@@ -213,7 +243,7 @@ void DepthOutput::publish_rear() {
     publish_people(*rear_people_model_, rear_, "rear_camera_level", rear_people_);
     return;
   }
-  take(rear_, kRearFrame, rear_shot_);
+  take(rear_pixels_);
 }
 
 void DepthOutput::publish_scan(const std::vector<float>& ranges, const char* frame,

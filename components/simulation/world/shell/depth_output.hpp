@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -15,8 +16,8 @@ namespace usher::world {
 
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
 /// that the fitted models make without them, at 30 Hz (rear camera and people 15, faces 10), the
-/// two cameras in turn. Stamps are those of the world's steps; a rendered image comes two turns
-/// later, as regularly as from a camera, however long its rendering took.
+/// two cameras in turn. Stamps are those of the world's steps; an image is rendered beside the
+/// handlers and comes two turns later, as regularly as from a camera.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
@@ -37,9 +38,11 @@ class DepthOutput {
   void publish_kinect();
   void publish_rear();
   struct Shot;
-  void take(DepthCamera& camera, const char* frame, Shot& shot);
-  void deliver(Shot& shot);
-  bool paint(const DepthCamera& camera, const char* frame, sensor_msgs::msg::Image& image);
+  struct Pixels;
+  void take(Pixels& pixels);
+  void render(Pixels& pixels, Shot& shot);
+  void deliver(Pixels& pixels);
+  void publish(Pixels& pixels, Shot& shot);
   void publish_scan(const std::vector<float>& ranges, const char* frame,
                     runtime::Output<sensor_msgs::msg::LaserScan>& output);
   void publish_people(PeopleModel& model, const DepthCamera& camera, const char* frame,
@@ -62,16 +65,31 @@ class DepthOutput {
   bool told_ = false;                          ///< the intrinsics
   bool kinect_next_ = true;
   int images_ = 0;  ///< of both cameras
+  /// An image that a camera took. While it is in work it belongs to the job that renders it, and so
+  /// do the renderer, the painter and the two buffers.
+  struct Shot {
+    enum class State { kNone, kInWork, kReady } state = State::kNone;
+    bool due = false;  ///< to be delivered as soon as it is ready
+    bool painted = false;
+    runtime::Time stamp{};
+    Exposure exposure;
+    WorldRenderer::Moment moment;
+    std::vector<rendering::Gains> gains;  ///< for each of the people
+    std::string error;
+    sensor_msgs::msg::Image depth, color;
+  };
+  /// The rendered images of one camera.
+  struct Pixels {
+    DepthCamera& camera;
+    const char* frame;
+    std::array<Shot, 2> shots{};
+    std::size_t newest = 0;
+    runtime::Output<sensor_msgs::msg::Image> depths{}, colors{};
+  };
+  Pixels kinect_pixels_, rear_pixels_;
   std::vector<std::uint16_t> depth_;
   std::vector<std::uint8_t> rgb_;
-  std::vector<rendering::Gains> gains_;  // for each of the people
-  /// An image that a camera took and has not delivered yet.
-  struct Shot {
-    bool taken = false, painted = false;
-    sensor_msgs::msg::Image depth, color;
-    runtime::Output<sensor_msgs::msg::Image> depths, colors;
-  };
-  Shot kinect_shot_, rear_shot_;
+  std::uint64_t& late_images_;  ///< left out since two before them are in work still
   DepthScanResult result_;
   sensor_msgs::msg::LaserScan scan_;
   std::vector<ModelledSighting> found_;
