@@ -279,6 +279,11 @@ void Supervisor::note_base(Time now) {
   }
 }
 
+/// The heartbeats of its name are those of its next start already.
+bool Supervisor::movement_died(Time now) const {
+  return watched_.front().right.doubted(now, table_.timeout(parameters_.names.movement));
+}
+
 std::string_view Supervisor::refusal(Time now) const {
   if (refused_since_ && now - *refused_since_ >= parameters_.refusal_patience)
     return base_->refusal;
@@ -298,6 +303,8 @@ void Supervisor::explain(Time now) {
     reason_.assign(missing->name).append(": ").append(missing->reason);
   } else if (!holder()) {
     reason_.assign(parameters_.names.movement).append(": writes no drive/command yet");
+  } else if (movement_died(now)) {
+    reason_.assign(parameters_.names.movement).append(": starts anew");
   } else if (!base_heard(now)) {
     reason_.assign(parameters_.names.base)
         .append(base_ ? ": base/status is silent" : ": no base/status yet");
@@ -332,8 +339,8 @@ void Supervisor::grant(bool able) {
 const Decision& Supervisor::step(Time now) {
   table_.judge(now);
   note_faults(now);
-  const bool able = !table_.first_lost(Criticality::kStop) && holder() && base_heard(now) &&
-                    !base_->emergency && base_->ready;
+  const bool able = !table_.first_lost(Criticality::kStop) && holder() && !movement_died(now) &&
+                    base_heard(now) && !base_->emergency && base_->ready;
   const bool fault = faults_.latched() != nullptr;
   decision_.state = behavior_.step(able, fault, now);
   grant(able);

@@ -250,6 +250,7 @@ class Supervisor {
   void explain(Time now);
   /// What the base says, or shows, of a right to drive that it does not use; empty when all is
   /// well.
+  bool movement_died(Time now) const;
   std::string_view refusal(Time now) const;
 
   Parameters parameters_;

@@ -508,6 +508,28 @@ TEST(Supervisor, ReplacesAWriterOnlyAfterTheOldOneIsSeenDead) {
   EXPECT_EQ(robot.state(), State::kNavigationActive);
 }
 
+// What starts anew is heard before discovery knows that the old one died: no right to drive is the
+// dead one's.
+TEST(Supervisor, GrantsNothingToADeadWriterWhoseNextStartIsHeard) {
+  Robot robot = guiding();
+  robot.silent.insert("movement_control");
+  robot.run(40);
+  robot.appear(kReplacement);
+  for (int ms = 0; ms < 300; ms += 20) {
+    robot.supervisor.heartbeat({"movement_control", kReplacement, kDigest, Reported::kOk, ""},
+                               robot.now());
+    robot.run(20);
+    if (ms < 60) continue;  // 100 ms after its death
+    EXPECT_FALSE(robot.granted()) << ms;
+    EXPECT_EQ(robot.reason(), "movement_control: starts anew");
+  }
+  robot.supervisor.writer_gone(kDrive, kMovement);
+  robot.supervisor.heartbeat({"movement_control", kReplacement, kDigest, Reported::kOk, ""},
+                             robot.now());
+  robot.supervisor.step(robot.now());
+  EXPECT_EQ(robot.supervisor.decision().grant.writer, kReplacement);
+}
+
 TEST(Supervisor, EpochsGrowOverARestart) {
   Robot first = ready();
   first.ask(Command::kStop);

@@ -104,6 +104,16 @@ bool WriterRight::trusted(const WriterId& writer) const {
   });
 }
 
+bool WriterRight::doubted(Time now, Time silence) const {
+  const auto holder = std::ranges::find(known_, Role::kHolder, &Known::role);
+  if (holder == known_.end()) return false;
+  const bool silent = !holder->heard_at || now - *holder->heard_at >= silence;
+  return silent && std::ranges::any_of(known_, [&](const Known& known) {
+           return known.role == Role::kWaiting &&
+                  known.sighting.participant == holder->sighting.participant;
+         });
+}
+
 std::optional<WriterId> WriterRight::holder() const {
   for (const Known& known : known_) {
     if (known.role == Role::kHolder) return known.sighting.writer;

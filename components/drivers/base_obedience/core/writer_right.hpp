@@ -67,6 +67,10 @@ class WriterRight {
   /// one name is allowed.
   std::optional<WriterId> holder() const;
 
+  /// Whether holder() is somebody who was not heard for so long, or never, while a second one of
+  /// its name waits: it died, and discovery has not noticed it yet.
+  bool doubted(Time now, Time silence) const;
+
   /// The oldest writer that must not be there; null when there is none.
   const WriterSighting* foreign() const;
 

@@ -69,6 +69,21 @@ TEST(WriterRight, AReplacementWaitsUntilTheOldOneIsSeenDead) {
   EXPECT_EQ(right.foreign(), nullptr);
 }
 
+TEST(WriterRight, ASilentHolderIsDoubtedOnlyWhileItsReplacementWaits) {
+  WriterRight right({"movement_control"});
+  constexpr Time kSilence = std::chrono::milliseconds(100);
+  const auto at = [](int ms) { return Time(std::chrono::milliseconds(ms)); };
+  EXPECT_FALSE(right.doubted(at(0), kSilence));
+  right.appeared({WriterId{1}, "movement_control", "nuc"}, at(0));
+  EXPECT_FALSE(right.doubted(at(500), kSilence)) << "silent, but who else";
+  right.alive(WriterId{1}, at(500));
+  right.appeared({WriterId{2}, "movement_control", "nuc"}, at(560));
+  EXPECT_FALSE(right.doubted(at(590), kSilence));
+  EXPECT_TRUE(right.doubted(at(600), kSilence));
+  right.gone(WriterId{1});
+  EXPECT_FALSE(right.doubted(at(900), kSilence));
+}
+
 TEST(WriterRight, OfSeveralReplacementsTheOldestIsNext) {
   WriterRight right({"movement_control"});
   for (std::uint8_t i = 1; i <= 3; ++i) right.appeared(sighting(i), milliseconds(i));
