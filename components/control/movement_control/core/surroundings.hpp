@@ -23,9 +23,9 @@ struct ScanView {
 /// touch.
 ///
 ///  - What was seen within `near` and is now out of view (beyond the scan's ends, on a beam without
-///    measurement, or behind something) stays, moved by the measured velocity, until a beam passes
-///    through it, the robot has gone `longest_way` or `longest_turn`, or, beyond the scan's ends,
-///    `longest` has passed.
+///    measurement, or behind something) stays, moved by the measured velocity, until all beams
+///    within 2 cm of it pass, the robot has gone `longest_way` or `longest_turn`, or, beyond the
+///    scan's ends, `longest` has passed.
 ///  - A wall that leaves the view beside the robot goes on straight for `continued`.
 ///
 /// Deterministic; allocates when made only.

@@ -248,9 +248,9 @@ class Supervisor {
   bool resetting(Time now) const { return reset_until_ && now < *reset_until_; }
   void grant(bool able);
   void explain(Time now);
+  bool movement_died(Time now) const;
   /// What the base says, or shows, of a right to drive that it does not use; empty when all is
   /// well.
-  bool movement_died(Time now) const;
   std::string_view refusal(Time now) const;
 
   Parameters parameters_;

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Decoder decoder;
   ScanTelegram telegram;
   Scan scan;
-  estimation::DeviceClock clock(kCounter);
+  usher::estimation::DeviceClock clock(kCounter);
   for (auto rest = bytes; !rest.empty();) {
     rest = rest.subspan(decoder.feed(rest));
     while (const auto frame = decoder.next()) {
