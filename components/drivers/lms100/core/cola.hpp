@@ -25,7 +25,7 @@ struct Telegram {
 /// Bounded memory, no allocation after construction.
 class Decoder {
  public:
-  static constexpr std::size_t kLongestPayload = 16 * 1024;
+  static constexpr std::size_t kLongestPayload = std::size_t{16} * 1024;
 
   Decoder();
 
