@@ -41,6 +41,7 @@ function(usher_test NAME)
   add_executable(${TARGET} ${ARG_SOURCES})
   set_target_properties(${TARGET} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${TARGET} PRIVATE ${ARG_DEPENDS} GTest::gmock_main usher_warnings)
+  usher_build_quickly(${TARGET})
   if(ARG_DEPENDS MATCHES "Qt6|_window")
     # Qt wants position-independent code.
   elseif(ARG_DEPENDS MATCHES "_shell|_wire|_runtime|_lockstep|_experiment")

@@ -62,14 +62,17 @@ TEST(Hosts, LosingTheTabletIsAModeNotACrash) {
   ASSERT_TRUE(robot->wait_for([&] { return robot.speed() > 0.1; }, Seconds(30))) << robot->story();
   networks->set(kCut, kCut);
   bool lost_the_right = false;
-  ASSERT_TRUE(robot->wait_for(
-      [&] {
-        lost_the_right = lost_the_right || !robot->granted();
-        return !robot.guide_is_ok();
-      },
-      Seconds(10)))
+  const auto has_the_right = [&] {
+    lost_the_right = lost_the_right || !robot->granted();
+    return !lost_the_right;
+  };
+  ASSERT_TRUE(robot->wait_for([&] { return has_the_right() && !robot.guide_is_ok(); }, Seconds(10)))
       << robot->story();
-  EXPECT_EQ(errand->wait(std::chrono::seconds(120)), 0) << errand->output() << robot->story();
+  EXPECT_TRUE(robot->wait_for(
+      [&] { return has_the_right() && errand->output().find("arrived") != std::string::npos; },
+      Seconds(120)))
+      << errand->output() << robot->story();
+  EXPECT_EQ(errand->wait(), 0) << errand->output() << robot->story();
   EXPECT_FALSE(lost_the_right) << "the drive chain on the nuc goes on";
   EXPECT_TRUE(robot->granted()) << robot->story();
   EXPECT_TRUE(robot->wait_for([&] { return robot.speed() < 0.01; }, Seconds(10))) << "it parks";
@@ -86,8 +89,12 @@ TEST(Hosts, LosingTheTabletIsAModeNotACrash) {
 
   // One way: the nuc hears the tablet, but not the other way round; then the reverse.
   networks->set(kCut, kGood);
-  std::this_thread::sleep_for(milliseconds(3000));
+  ASSERT_TRUE(robot->wait_for([&] { return !robot.guide_is_ok(); }, Seconds(10)))
+      << "it hears nothing of the robot, and says so\n"
+      << robot->story();
   EXPECT_TRUE(robot->granted()) << robot->story();
+  networks->set(kGood, kGood);
+  ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20))) << robot->story();
   networks->set(kGood, kCut);
   ASSERT_TRUE(robot->wait_for([&] { return !robot.guide_is_ok(); }, Seconds(10)));
   EXPECT_TRUE(robot->granted()) << robot->story();

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <functional>
 #include <thread>
 
 #include "deployment/driven_robot.hpp"
@@ -101,16 +102,19 @@ class IntruderTest : public testing::Test {
   static DrivenRobot& robot() { return *robot_; }
   static RunningRobot& running() { return *robot_->operator->(); }
 
-  /// The robot drives; the intruder begins; it stands, and an operator reads why.
+  /// The robot drives; the intruder begins; it stands, and an operator reads who writes.
   static void stops_for(const Target& target) {
+    stops_for(target, [&] { return names(running(), target.topic); });
+  }
+  /// ... and an operator reads what is `told`.
+  static void stops_for(const Target& target, const std::function<bool()>& told) {
     SCOPED_TRACE(target.topic);
     ASSERT_TRUE(robot().sets_out("lounge")) << running().complaints() << robot().errand_story();
     const double slow = slowdown();
     robot().forget();
     {
       const Intruder intruder(running(), target.topic, target.type, target.bytes);
-      ASSERT_TRUE(running().wait_for([&] { return names(running(), target.topic); }, Seconds(5)))
-          << running().complaints();
+      ASSERT_TRUE(running().wait_for(told, Seconds(5))) << running().complaints();
       ASSERT_TRUE(running().wait_for(
           [&] { return robot().zero_since(intruder.born()).has_value(); }, Seconds(2)));
       const Seconds took = *robot().zero_since(intruder.born()) - intruder.born();
@@ -228,10 +232,21 @@ TEST_F(IntruderTest, WhoFloodsWhatAnybodyMayWriteSlowsNoStop) {
   SupervisorRequest nothing;
   nothing.client(kIntruder);
   drives_beside(target(topics::kSupervisorRequest, nothing));
+  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+}
+
+TEST_F(IntruderTest, WhoSpeaksInTheNameOfAComponentThatLivesStopsTheRobot) {
   Heartbeat amcl;
   amcl.component_name("amcl");
-  drives_beside(target(topics::kHeartbeat, amcl));
-  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+  amcl.idl_digest(USHER_IDL_DIGEST);
+  amcl.state(usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+  stops_for(target(topics::kHeartbeat, amcl), [] {
+    const auto status = running().status();
+    return status && !status->granted() &&
+           status->reason() == "amcl: two live participants have this name";
+  });
+  EXPECT_TRUE(running().wait_for([] { return robot().is_ready(); }, Seconds(5)))
+      << running().complaints();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "drivers/base_obedience/core/writer_id.hpp"
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
@@ -16,6 +17,7 @@
 #include "runtime/dds/message_layout.hpp"
 #include "runtime/dds/message_types.hpp"
 #include "runtime/dds/observer.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 
@@ -66,15 +68,54 @@ std::string goal_line(const usher_msgs::msg::NavigateStatus& status) {
   return line;
 }
 
+struct StatusArguments {
+  double patience = 2.0;  ///< [s]
+  bool writers = false, faults = false;
+};
+
+/// Seconds before the status was written, with a decimal.
+std::string ago(const usher_msgs::msg::SupervisorStatus& status,
+                const builtin_interfaces::msg::Time& stamp) {
+  return format("%.1f", runtime::seconds(wire::from_message(status.header().stamp()) -
+                                         wire::from_message(stamp)));
+}
+
+/// Who writes what moves the robot, since when, and whether he may.
+Table writers_table(const usher_msgs::msg::SupervisorStatus& status) {
+  Table table({"topic", "writer", "host", "since s ago", "may write it", "id"});
+  for (const auto& one : status.writers()) {
+    table.add({one.topic(), one.participant(), one.host(), ago(status, one.since()),
+               one.granted()   ? "yes, has the right to drive"
+               : one.allowed() ? "yes"
+                               : "NO",
+               drive::to_string(one.writer())});
+  }
+  return table;
+}
+
+/// What went wrong, newest first, and how it ended.
+Table faults_table(const usher_msgs::msg::SupervisorStatus& status) {
+  Table table({"s ago", "whom", "what", "ended s ago", "by"});
+  const auto& faults = status.faults();
+  for (auto one = faults.rbegin(); one != faults.rend(); ++one) {
+    table.add({ago(status, one->stamp()), one->component_name(), one->cause(),
+               one->active() ? "-" : ago(status, one->ended()),
+               one->active()             ? (one->latched() ? "until usher clear" : "-")
+               : one->ended_by().empty() ? "itself"
+                                         : one->ended_by()});
+  }
+  return table;
+}
+
 /// What the supervisor thinks, and what the navigator is about; exit code 0 only when nothing is
 /// wrong.
-int status(std::uint32_t domain, double patience) {
+int status(std::uint32_t domain, const StatusArguments& arguments) {
   auto observer = Observer::create(reach_robot("status", domain));
   if (!observer) return fail(observer.error());
   auto reader = (*observer)->reader(topics::kSupervisorStatus);
   auto goals = (*observer)->reader(topics::kNavigateStatus);
   if (!reader || !goals) return fail(!reader ? reader.error() : goals.error());
-  const auto message = reader->take(runtime::from_seconds(patience));
+  const auto message = reader->take(runtime::from_seconds(arguments.patience));
   if (!message) return fail(nobody_there("supervisor", domain));
   const auto goal = goals->take(kGoalPatience);
   std::string stopped;
@@ -104,6 +145,8 @@ int status(std::uint32_t domain, double patience) {
     std::cout << (fault.latched() ? "latched fault: " : "fault: ") << fault.component_name() << ": "
               << fault.cause() << "\n";
   }
+  if (arguments.writers) std::cout << "\n" << writers_table(*message).text();
+  if (arguments.faults) std::cout << "\n" << faults_table(*message).text();
   show_refusals((*observer)->refusals());
   return well ? 0 : 1;
 }
@@ -221,11 +264,15 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
   auto* status_command =
       app.add_subcommand("status", "What the supervisor thinks of the running robot");
   add_domain_option(*status_command, *domain);
-  status_command->add_option("--seconds", *seconds, "How long to look for it")
+  auto shown = std::make_shared<StatusArguments>();
+  status_command->add_option("--seconds", shown->patience, "How long to look for it")
       ->check(within(0.1, kLongest))
       ->capture_default_str();
-  status_command->callback(
-      [=, &exit_code] { exit_code = status(meant_domain(*domain), *seconds); });
+  status_command->add_flag("--writers", shown->writers,
+                           "Also who writes what moves the robot, since when, and whether he may");
+  status_command->add_flag("--faults", shown->faults,
+                           "Also the fault log: what, when, how it ended, and who cleared it");
+  status_command->callback([=, &exit_code] { exit_code = status(meant_domain(*domain), *shown); });
 
   auto arguments = std::make_shared<EchoArguments>();
   auto* topics_command = app.add_subcommand(

@@ -32,19 +32,41 @@ using std::chrono::milliseconds;
 
 std::atomic<bool> stop_asked{false};
 
-/// The newest heartbeat of every component.
+/// The newest heartbeat of every component of the manifest, and when the supervisor last heard it.
+/// Other names are nobody's: whoever writes ever new ones fills no memory.
 class Heartbeats {
  public:
-  void take(const usher_msgs::msg::Heartbeat& message) {
-    const std::lock_guard lock(mutex_);
-    newest_[message.component_name()] = {message, std::chrono::steady_clock::now()};
-  }
   struct Entry {
     usher_msgs::msg::Heartbeat message;
-    std::chrono::steady_clock::time_point at;
+    std::optional<std::chrono::steady_clock::time_point> at, by_supervisor_at;
   };
+
+  explicit Heartbeats(const Manifest& manifest) {
+    for (const auto& component : manifest.components) newest_[component.name];
+  }
+  void take(const usher_msgs::msg::Heartbeat& message) {
+    const std::lock_guard lock(mutex_);
+    const auto entry = newest_.find(message.component_name());
+    if (entry == newest_.end()) return;
+    entry->second.message = message;
+    entry->second.at = std::chrono::steady_clock::now();
+  }
+  void take(const usher_msgs::msg::SupervisorStatus& message) {
+    using usher_msgs::msg::SupervisorStatus_Constants::HEALTH_MISSING;
+    const auto now = std::chrono::steady_clock::now();
+    const std::lock_guard lock(mutex_);
+    for (const auto& component : message.components()) {
+      const auto entry = newest_.find(component.name());
+      if (entry != newest_.end() && component.health() != HEALTH_MISSING)
+        entry->second.by_supervisor_at = now;
+    }
+  }
   void report_to(Launcher& launcher) const {
-    for (const auto& [component, entry] : entries()) launcher.heard(component, entry.at);
+    const std::lock_guard lock(mutex_);
+    for (const auto& [component, entry] : newest_) {
+      if (entry.at) launcher.heard(component, *entry.at);
+      if (entry.by_supervisor_at) launcher.heard_by_supervisor(component, *entry.by_supervisor_at);
+    }
   }
   std::map<std::string, Entry> entries() const {
     const std::lock_guard lock(mutex_);
@@ -54,27 +76,6 @@ class Heartbeats {
  private:
   mutable std::mutex mutex_;
   std::map<std::string, Entry> newest_;
-};
-
-/// When the supervisor last heard whom.
-class SupervisorRoll {
- public:
-  void take(const usher_msgs::msg::SupervisorStatus& message) {
-    using usher_msgs::msg::SupervisorStatus_Constants::HEALTH_MISSING;
-    const auto now = std::chrono::steady_clock::now();
-    const std::lock_guard lock(mutex_);
-    for (const auto& component : message.components()) {
-      if (component.health() != HEALTH_MISSING) heard_at_[component.name()] = now;
-    }
-  }
-  void report_to(Launcher& launcher) const {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [component, at] : heard_at_) launcher.heard_by_supervisor(component, at);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::map<std::string, std::chrono::steady_clock::time_point> heard_at_;
 };
 
 /// Whether the base was last heard to stand.
@@ -100,7 +101,7 @@ class Standing {
   std::chrono::steady_clock::time_point at_{};
 };
 
-std::string state_of(const Process& process, const Heartbeats::Entry* heartbeat) {
+std::string state_of(const Process& process, const Heartbeats::Entry& heartbeat) {
   switch (process.state) {
     case Process::State::kWaiting:
       return "waiting";
@@ -113,10 +114,10 @@ std::string state_of(const Process& process, const Heartbeats::Entry* heartbeat)
     case Process::State::kRunning:
       break;
   }
-  if (heartbeat == nullptr) return "starting";
-  if (std::chrono::steady_clock::now() - heartbeat->at > milliseconds(500)) return "silent";
+  if (!heartbeat.at) return "starting";
+  if (std::chrono::steady_clock::now() - *heartbeat.at > milliseconds(500)) return "silent";
   constexpr const char* kStates[] = {"starting", "ok", "degraded", "fault"};
-  return kStates[std::min<std::uint8_t>(heartbeat->message.state(), 3)];
+  return kStates[std::min<std::uint8_t>(heartbeat.message.state(), 3)];
 }
 
 Table live_table(const Launcher& launcher, const Heartbeats& heartbeats) {
@@ -125,16 +126,15 @@ Table live_table(const Launcher& launcher, const Heartbeats& heartbeats) {
   for (const auto& process : launcher.processes()) {
     for (const auto& component : process.components) {
       const auto entry = entries.find(component);
-      const auto* heartbeat = entry == entries.end() ? nullptr : &entry->second;
-      const bool running = heartbeat != nullptr && process.state == Process::State::kRunning;
+      const auto heartbeat = entry == entries.end() ? Heartbeats::Entry{} : entry->second;
+      const auto& message = heartbeat.message;
+      const bool running = heartbeat.at && process.state == Process::State::kRunning;
       table.add({component, state_of(process, heartbeat), std::to_string(process.starts),
-                 running ? format("%.1f", heartbeat->message.cpu_percent()) : "-",
-                 running
-                     ? format("%.0f", static_cast<double>(heartbeat->message.memory_bytes()) / 1e6)
-                     : "-",
-                 running ? format("%.1f", heartbeat->message.handler_time_max() * 1e3) : "-",
-                 running ? std::to_string(heartbeat->message.samples_lost()) : "-",
-                 running ? heartbeat->message.reason() : process.last_end});
+                 running ? format("%.1f", message.cpu_percent()) : "-",
+                 running ? format("%.0f", static_cast<double>(message.memory_bytes()) / 1e6) : "-",
+                 running ? format("%.1f", message.handler_time_max() * 1e3) : "-",
+                 running ? std::to_string(message.samples_lost()) : "-",
+                 running ? message.reason() : process.last_end});
     }
   }
   return table;
@@ -172,24 +172,21 @@ class RunningRobot {
     if (!manifest.keys.empty()) reach.identity = manifest.keys + "/" + kLauncher;
     auto observer = runtime::Observer::create(reach);
     if (!observer) return Error{observer.error()};
-    std::unique_ptr<RunningRobot> robot(new RunningRobot(std::move(observer).value()));
+    std::unique_ptr<RunningRobot> robot(new RunningRobot(manifest, std::move(observer).value()));
     if (auto status = robot->subscribe(); !status) return Error{status.error()};
     return robot;
   }
 
   /// Who lives.
-  void report_to(Launcher& launcher) const {
-    heartbeats_.report_to(launcher);
-    roll_.report_to(launcher);
-  }
+  void report_to(Launcher& launcher) const { heartbeats_.report_to(launcher); }
   const Heartbeats& heartbeats() const { return heartbeats_; }
   bool stands() const { return standing_.stands(); }
   /// Who was kept out since the last call, in words.
   std::vector<std::string> refusals() { return refusals_.news(observer_->refusals()); }
 
  private:
-  explicit RunningRobot(std::unique_ptr<runtime::Observer> observer)
-      : observer_(std::move(observer)) {}
+  RunningRobot(const Manifest& manifest, std::unique_ptr<runtime::Observer> observer)
+      : heartbeats_(manifest), observer_(std::move(observer)) {}
   Status subscribe() {
     auto heartbeats =
         observer_->reader(topics::kHeartbeat,
@@ -197,7 +194,7 @@ class RunningRobot {
     if (!heartbeats) return Error{heartbeats.error()};
     auto supervisor =
         observer_->reader(topics::kSupervisorStatus,
-                          [this](const auto& message, const auto&) { roll_.take(message); });
+                          [this](const auto& message, const auto&) { heartbeats_.take(message); });
     if (!supervisor) return Error{supervisor.error()};
     auto base = observer_->reader(
         topics::kBaseStatus, [this](const auto& message, const auto&) { standing_.take(message); });
@@ -209,7 +206,6 @@ class RunningRobot {
   }
 
   Heartbeats heartbeats_;
-  SupervisorRoll roll_;
   Standing standing_;
   RefusalReport refusals_;
   std::unique_ptr<runtime::Observer> observer_;

@@ -521,19 +521,20 @@ void Launcher::heard_by_supervisor(const std::string& component, Clock::time_poi
 }
 
 std::string Launcher::hang_of(const Process& process, Clock::time_point now) const {
+  if (now - anybody_heard_at_ > kHang) return {};
+  const auto supervisor_hears = [&](const std::string& component) {
+    const auto at = process.supervisor_heard_at.find(component);
+    return at != process.supervisor_heard_at.end() && now - at->second <= kHang;
+  };
   for (const auto& [component, at] : process.heard_at) {
-    if (now - at > kHang) return component + ": hangs, killed";
+    if (now - at > kHang && !supervisor_hears(component)) return component + ": hangs, killed";
   }
   const auto patience = process.start_patience;
-  if (patience == Clock::duration::zero() || now - anybody_heard_at_ > kHang ||
+  if (patience == Clock::duration::zero() ||
       now - std::max(process.started_at, trusted_from_) <= patience)
     return {};
   for (const auto& component : process.components) {
-    const auto by_supervisor = process.supervisor_heard_at.find(component);
-    if (process.heard_at.contains(component) ||
-        (by_supervisor != process.supervisor_heard_at.end() &&
-         now - by_supervisor->second <= kHang))
-      continue;
+    if (process.heard_at.contains(component) || supervisor_hears(component)) continue;
     std::ostringstream text;
     text << component << ": has not come alive within "
          << std::chrono::duration<double>(patience).count() << " s of its start, killed";

@@ -74,13 +74,14 @@ class Launcher {
   Launcher& operator=(Launcher&&) = delete;
   Launcher(const Launcher&) = delete;
 
-  /// A component showed life. One that did once and then is silent for `kHang` hangs: it is killed,
-  /// and its restart policy decides.
+  /// A component showed life. One that did once and then is silent for `kHang`, for the supervisor,
+  /// too, hangs: it is killed, and its restart policy decides. A launcher that hears nobody at all
+  /// knows nothing and kills nobody.
   void heard(const std::string& component, std::chrono::steady_clock::time_point at);
   static constexpr auto kHang = std::chrono::seconds(5);
   /// The supervisor hears a component, though it may not be heard here. One that the supervisor has
   /// not heard for `kHang`, and that was not heard here since its start for its start patience, is
-  /// killed too, as long as anybody is heard at all: a launcher that hears nobody knows nothing.
+  /// killed likewise.
   void heard_by_supervisor(const std::string& component, std::chrono::steady_clock::time_point at);
 
   /// Starts what is due, notices what ended. Call it at least ten times a second; never blocks.

@@ -186,9 +186,9 @@ Scene random_scene(std::uint64_t seed, Crowd crowd) {
   return scene;
 }
 
-Scene rear_scene(std::uint64_t seed) {
+Scene rear_scene(std::uint64_t seed, Crowd crowd) {
   const depth_pipeline::Mount mount{.x = -0.2, .z = 0.9, .backward = true};
-  Scene scene = random_scene(seed);
+  Scene scene = random_scene(seed, crowd);
   // The base leans a little while it drives.
   Random random(stream_seed(seed, "lean"));
   scene.camera = depth_pipeline::camera_pose(mount, radians(-15.0), radians(random.gaussian(0, 2)));

@@ -35,7 +35,7 @@ enum class Crowd { kUsual, kHard };
 /// people of any posture, some of them side by side; the same for the same seed.
 Scene random_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
 /// The same room seen by MARVIN's rear camera, where config/robots/marvin.yaml mounts it.
-Scene rear_scene(std::uint64_t seed);
+Scene rear_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
 /// The cases of thesis figures 8.17 to 8.21 and what the issue of partly visible people adds.
 std::vector<Scene> thesis_scenes();
 

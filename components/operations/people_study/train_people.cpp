@@ -59,25 +59,34 @@ Answer answer_to(const Candidate& place, std::span<const Truth> truths) {
   return answer;
 }
 
+enum Camera : std::size_t { kKinect, kRear, kCameras };
+
 /// Scenes, rendered, one after the other.
 class Scenes {
  public:
-  const imaging::Intrinsics& intrinsics() const { return studio_.intrinsics(); }
-  /// Every third is a hard one.
-  Studio::Shot next_to_learn() {
-    return ++turn_ % 3 == 0 ? take(hard_++, Crowd::kHard) : take(usual_++, Crowd::kUsual);
+  const imaging::Intrinsics& intrinsics(Camera camera) const {
+    return studios_[camera].intrinsics();
   }
-  Studio::Shot next_unseen() { return take(unseen_++, Crowd::kUsual); }
+  /// Every second one is seen by the rear camera, every third is a hard one.
+  Studio::Shot next_to_learn(Camera& camera) {
+    camera = ++turn_ % 2 == 0 ? kRear : kKinect;
+    return turn_ % 3 == 0 ? take(camera, hard_++, Crowd::kHard)
+                          : take(camera, usual_++, Crowd::kUsual);
+  }
+  Studio::Shot unseen(Camera camera, int number) {
+    return take(camera, kUnseenSeeds + static_cast<std::uint64_t>(number), Crowd::kUsual);
+  }
 
  private:
-  Studio::Shot take(std::uint64_t seed, Crowd crowd) {
-    const auto shot = studio_.take(random_scene(seed, crowd), seed);
+  Studio::Shot take(Camera camera, std::uint64_t seed, Crowd crowd) {
+    const Scene scene = camera == kRear ? rear_scene(seed, crowd) : random_scene(seed, crowd);
+    const auto shot = studios_[camera].take(scene, seed);
     if (!shot) std::fprintf(stderr, "%s\n", shot.error().c_str()), std::exit(1);
     return *shot;
   }
 
-  Studio studio_;
-  std::uint64_t usual_ = kUsualSeeds, hard_ = kHardSeeds, unseen_ = kUnseenSeeds;
+  std::array<Studio, kCameras> studios_{Studio(), Studio(rendering::rear_camera())};
+  std::uint64_t usual_ = kUsualSeeds, hard_ = kHardSeeds;
   int turn_ = 0;
 };
 
@@ -85,12 +94,15 @@ class Scenes {
 /// takes for people or nearly.
 void collect(Scenes& scenes, int count, const Network* network, double share,
              std::vector<Sample>& samples) {
-  Windows windows(scenes.intrinsics(), {});
+  std::array<Windows, kCameras> of_camera{Windows(scenes.intrinsics(kKinect), {}),
+                                          Windows(scenes.intrinsics(kRear), {})};
   auto classifier = network ? std::make_unique<people_detector::Classifier>(*network) : nullptr;
   Windows::Inputs inputs;
   Random random(samples.size());
   for (int i = 0; i < count; ++i) {
-    const auto shot = scenes.next_to_learn();
+    Camera camera{};
+    const auto shot = scenes.next_to_learn(camera);
+    Windows& windows = of_camera[camera];
     windows.take(shot.processed, shot.view);
     for (const Candidate& place : windows.candidates()) {
       const Answer answer = answer_to(place, shot.truths);
@@ -266,14 +278,15 @@ class Trainer {
 constexpr std::array kThresholds{-1.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};
 
 /// The scores of unseen scenes at several thresholds.
-std::array<Score, kThresholds.size()> test(const Network& network, Scenes& scenes, int count) {
+std::array<Score, kThresholds.size()> test(const Network& network, Scenes& scenes, Camera camera,
+                                           int count) {
   people_detector::DetectorConfig config;
   config.threshold = kThresholds.front();
   auto detector =
-      people_detector::DepthDetector::make(scenes.intrinsics(), config, network).value();
+      people_detector::DepthDetector::make(scenes.intrinsics(camera), config, network).value();
   std::array<Score, kThresholds.size()> scores;
   for (int i = 0; i < count; ++i) {
-    const auto shot = scenes.next_unseen();
+    const auto shot = scenes.unseen(camera, i);
     const auto found = detector.find(shot.processed, shot.view).value();
     std::vector<people_detector::Sighting> sightings(found.begin(), found.end());
     for (std::size_t k = 0; k < scores.size(); ++k) {
@@ -346,12 +359,15 @@ int main(int argc, char** argv) {
     *network = trainer.network();
     write(*network, out);
   }
-  const auto scores = test(*network, scenes, tests);
-  for (std::size_t k = 0; k < scores.size(); ++k) {
-    const Score& score = scores[k];
-    std::printf("threshold %5.2f: recall %.4f precision %.4f error %.3f m (%d people)\n",
-                kThresholds[k], score.recall(), score.precision(),
-                score.error / std::max(1, score.found), score.found + score.missed);
+  for (const Camera camera : {kKinect, kRear}) {
+    std::printf("%s\n", camera == kRear ? "rear camera" : "Kinect");
+    const auto scores = test(*network, scenes, camera, tests);
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      const Score& score = scores[k];
+      std::printf("threshold %5.2f: recall %.4f precision %.4f error %.3f m (%d people)\n",
+                  kThresholds[k], score.recall(), score.precision(),
+                  score.error / std::max(1, score.found), score.found + score.missed);
+    }
   }
   return 0;
 }

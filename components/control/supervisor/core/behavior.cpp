@@ -30,7 +30,7 @@ void Behavior::manual(bool on) {
 }
 
 void Behavior::navigation_start() {
-  new_goal_ = navigation_ == Navigation::kGoing;
+  new_goal_ = new_goal_ || navigation_ == Navigation::kGoing;
   navigation_ = Navigation::kStarting;
 }
 

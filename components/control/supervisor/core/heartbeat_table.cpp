@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace usher::supervisor {
 
@@ -45,13 +46,16 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   Record& record = records_[index];
   ComponentHealth& health = health_[index];
   if (heartbeat.writer != record.writer) {
-    // A, B, A: both live. A, B alone is a restart.
-    if (heartbeat.writer == record.previous_writer && health.heard_at) {
+    // A, B, A: both live, and however many more are between. A, B alone is a restart.
+    auto& earlier = record.earlier_writers;
+    const bool again = std::find(earlier.begin(), earlier.end(), heartbeat.writer) != earlier.end();
+    if (again && health.heard_at) {
       record.conflict_at = now;
     } else if (health.heard_at) {
       ++health.restarts;
     }
-    record.previous_writer = record.writer;
+    earlier[std::exchange(record.next_earlier, (record.next_earlier + 1) % earlier.size())] =
+        record.writer;
     record.writer = heartbeat.writer;
   }
   record.reported = heartbeat.state;

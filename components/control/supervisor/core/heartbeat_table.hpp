@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -90,8 +91,9 @@ class HeartbeatTable {
   struct Record {
     Time timeout{};
     WriterId writer{};
-    WriterId previous_writer{};
-    std::optional<Time> conflict_at;  ///< when two writers were last heard in turn
+    std::array<WriterId, 8> earlier_writers{};  ///< a ring
+    std::size_t next_earlier = 0;
+    std::optional<Time> conflict_at;  ///< when several writers were last heard in turn
     Reported reported = Reported::kStarting;
     std::uint64_t idl_digest = 0;
     std::string reason;

@@ -13,6 +13,8 @@ constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
 
 /// A crash may have lost the last epochs that were granted; a restart begins safely above them.
 constexpr std::uint64_t kUnsavedEpochs = 1024;
+/// So long the answer to an operator stays in the status; others ask again until they are answered.
+constexpr Time kOperatorsFirst = std::chrono::milliseconds(100);
 constexpr const char* kItself = "supervisor";
 constexpr const char* kOthers = "others";  // more clients than are remembered
 
@@ -130,21 +132,30 @@ void Supervisor::exploration(std::string_view client, bool lasts) {
 }
 
 Answer Supervisor::request(const Request& request, Time now) {
-  for (const Handled& handled : handled_) {
-    if (handled.answer.id == request.id && handled.client == request.client &&
+  HandledRing& ring = is_operator(request.client) ? handled_by_operators_ : handled_by_others_;
+  for (const Handled& handled : ring.all) {
+    if (request.own_name && handled.answer.id == request.id && handled.client == request.client &&
         !handled.client.empty()) {
-      last_request_ = handled.answer;
-      last_client_ = handled.client;
+      tell(handled, now);
       return handled.answer;
     }
   }
   Answer answer{request.id, false, carry_out(request, now)};
   answer.done = answer.reason.empty();
-  handled_[next_handled_] = {request.client, answer};
-  next_handled_ = (next_handled_ + 1) % handled_.size();
-  last_request_ = answer;
-  last_client_ = request.client;
+  if (!request.own_name) return answer;
+  ring.all[ring.next] = {request.client, answer};
+  tell(ring.all[ring.next], now);
+  ring.next = (ring.next + 1) % ring.all.size();
   return answer;
+}
+
+void Supervisor::tell(const Handled& handled, Time now) {
+  const bool waits = !is_operator(handled.client) && is_operator(last_client_) &&
+                     now - answered_at_ < kOperatorsFirst;
+  if (waits) return;
+  last_request_ = handled.answer;
+  last_client_ = handled.client;
+  answered_at_ = now;
 }
 
 void Supervisor::stop(const std::string& client) {

@@ -200,6 +200,9 @@ class Supervisor {
   void exploration_lost() { exploring_ = false; }
 
   /// Carries out or refuses. The same id of the same client gets the same answer and acts once.
+  /// What somebody asks in another one's name is neither remembered nor answered in the status: the
+  /// other one's own request may have that id. However many others ask, what operators asked is
+  /// remembered and its answer told.
   Answer request(const Request& request, Time now);
 
   const Decision& step(Time now);
@@ -219,6 +222,11 @@ class Supervisor {
   struct Handled {
     std::string client;
     Answer answer;
+  };
+  /// The last requests.
+  struct HandledRing {
+    std::array<Handled, 16> all;
+    std::size_t next = 0;
   };
   struct Commanded {
     geometry::Twist2 twist;
@@ -240,6 +248,7 @@ class Supervisor {
   const Watched* invaded() const;
   /// Why the request cannot be carried out; empty when it was.
   std::string carry_out(const Request& request, Time now);
+  void tell(const Handled& handled, Time now);
   void note_faults(Time now);
   void note_base(Time now);
   bool base_heard(Time now) const { return base_ && now - base_at_ < parameters_.base_age; }
@@ -279,10 +288,10 @@ class Supervisor {
   std::string navigation_client_;             ///< who had it started
   bool exploring_ = false;
 
-  std::array<Handled, 16> handled_;  ///< the last requests, a ring
-  std::size_t next_handled_ = 0;
+  HandledRing handled_by_operators_, handled_by_others_;
   Answer last_request_;
   std::string last_client_;
+  Time answered_at_{};
 
   Decision decision_;
   std::string reason_;

@@ -271,11 +271,12 @@ void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest&
                                        const runtime::Guid& writer) {
   const std::string& asks = asker(writer);
   const Request request{message.id(), message.client(), static_cast<Command>(message.command()),
-                        message.goal(), asks == message.client()};
+                        message.goal(), asks.empty() || asks == message.client()};
   // A sample may come before discovery tells who its writer is: who asks for more than a stop is
   // answered when that is known. Requests are repeated.
   if (asks.empty() && !stops(request.command)) return;
   core_.request(request, now());
+  if (!request.own_name && !stops(request.command)) return;
   // The first one acts and is answered at once; a flood of them must not become one of answers.
   answer_later_ = now() - answered_at_ < kPeriod;
   if (answer_later_) return;

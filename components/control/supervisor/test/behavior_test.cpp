@@ -276,5 +276,23 @@ TEST(Behavior, FollowsFigure69) {
   EXPECT_EQ(seen, edges);
 }
 
+TEST(Behavior, TwoNewGoalsBetweenTwoStepsEndTheJourneyAsOneDoes) {
+  Behavior behavior(milliseconds(250));
+  auto run = [&, now = milliseconds(0)](int ms) mutable {
+    for (const auto end = now + milliseconds(ms); now < end;)
+      behavior.step(true, false, now += milliseconds(10));
+    return behavior.state();
+  };
+  run(300);
+  behavior.navigation_start();
+  run(300);
+  behavior.navigation_go();
+  ASSERT_EQ(run(300), State::kNavigationActive);
+  behavior.navigation_start();
+  behavior.navigation_start();
+  EXPECT_EQ(run(10), State::kInactive);
+  EXPECT_EQ(run(300), State::kNavigationStart);
+}
+
 }  // namespace
 }  // namespace usher::supervisor

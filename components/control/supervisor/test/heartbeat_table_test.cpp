@@ -116,6 +116,12 @@ TEST(HeartbeatTable, ARestartIsNoConflictButTwoLivesAre) {
   heartbeats.judge(milliseconds(70));
   EXPECT_EQ(heartbeats.find("amcl")->health, Health::kFault);
   EXPECT_EQ(heartbeats.find("amcl")->reason, "two live participants have this name");
+  for (int ms = 80; ms < 100; ms += 2) {  // so do three
+    for (std::uint8_t writer = 4; writer < 7; ++writer)
+      heartbeats.hear(beat("people", Reported::kOk, writer), milliseconds(ms));
+  }
+  heartbeats.judge(milliseconds(100));
+  EXPECT_EQ(heartbeats.find("people")->reason, "two live participants have this name");
   for (int ms = 100; ms <= 1100; ms += 50) {  // one of them goes on alone
     heartbeats.hear(beat("amcl", Reported::kOk, 1), milliseconds(ms));
   }

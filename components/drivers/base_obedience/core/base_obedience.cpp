@@ -50,6 +50,7 @@ void BaseObedience::grant(const Grant& grant, Time now) {
     command_.reset();
     return;
   }
+  if (grant.epoch > highest_epoch_ && grant.epoch - highest_epoch_ > kLongestLeap) return;
   grantor_ = grant.grantor;
   grantor_at_ = now;
   if (grant.epoch < highest_epoch_) return;

@@ -24,6 +24,10 @@ struct Grant {
   bool operator==(const Grant&) const = default;
 };
 
+/// An epoch so far above the highest that was heard is nonsense: no supervisor decides so often,
+/// and above it the next one must still be heard.
+inline constexpr std::uint64_t kLongestLeap = std::uint64_t{1} << 32;
+
 /// A velocity command, as heard on drive/command.
 struct Command {
   WriterId writer = kNobody;   ///< who wrote it, from the middleware, not from the message
@@ -64,7 +68,7 @@ struct Decision {
 ///
 /// - A grant lives for `grant_expiry` from its writing, or shorter where it says so; a command for
 ///   `command_expiry` from its writing. Late is as good as never.
-/// - Epochs only grow: a grant of an older epoch
+/// - Epochs only grow: a grant of an older epoch, or of one that leaps by more than `kLongestLeap`,
 ///   is ignored, and one of the present epoch may only renew or withdraw. After a withdrawal the
 ///   next grant needs a higher epoch.
 /// - While two grantors speak within one expiry, nobody drives.

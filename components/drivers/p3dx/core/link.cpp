@@ -11,6 +11,7 @@ constexpr double kHeadingUnit = 2.0 * geometry::kPi / 4096.0;  // [rad]
 constexpr std::uint16_t kWrap = 0x8000;                        // [mm] positions have 15 bits
 constexpr std::uint16_t kNoEcho = 5000;                        // [mm] and beyond
 constexpr auto kEnableAgain = std::chrono::milliseconds(500);
+constexpr auto kForgives = std::chrono::seconds(1);
 constexpr std::uint8_t kInformation = 0x32;  // and 0x33
 
 /// The shortest way from one wrapped position to another [m].
@@ -117,11 +118,13 @@ std::optional<Feedback> Link::take(std::span<const std::uint8_t> packet, Time no
   reported_ = now;
   Feedback feedback = tracker_.take(*information, now);
   if (information->stop_button)
-    stopped_by_ = "its stop button was pressed";
-  else if (information->stall_stop && !stopped())
-    stopped_by_ = "stopped after a stall";
+    stay_stopped("its stop button was pressed");
+  else if (information->stall_stop && !stopped() && !released_ && now >= forgives_until_)
+    stay_stopped("stopped after a stall");
   else if (reported_mode_ == Mode::kReady && !information->motors_on && !stopped())
-    stopped_by_ = "its motors were switched off at the base";
+    stay_stopped("its motors were switched off at the base");
+  motors_on_ = information->motors_on;
+  rolls_ = information->left_velocity != 0 || information->right_velocity != 0;
   if (stopped()) feedback.mode = Mode::kEmergency;
   reported_mode_ = feedback.mode;
   reason_ = stopped()                                             ? stopped_by_
@@ -147,7 +150,8 @@ void Link::handshake(std::span<const std::uint8_t> packet, Time now) {
   if (state_ == State::kRunning) {
     reported_ = now;
     reported_mode_ = Mode::kStandby;
-    reason_ = "motors off";
+    reason_ = stopped() ? stopped_by_ : "motors off";
+    motors_on_ = false;
     send_setup();
     enabled_ = now;
   } else {
@@ -165,7 +169,14 @@ void Link::send_setup() {
   send(encode(Command::kSetMaxVelocity, parameters_.max_velocity));
   send(encode(Command::kSetMaxTurnRate, parameters_.max_turn_rate));
   send(encode(Command::kSonar, 1));
-  send(encode(Command::kEnable, 1));
+  if (!stopped()) send(encode(Command::kEnable, 1));
+}
+
+void Link::reset() {
+  if (!stopped()) return;
+  stopped_by_.clear();
+  reported_mode_ = Mode::kStandby;
+  released_ = true;
 }
 
 std::vector<std::uint8_t> Link::standstill() {
@@ -186,6 +197,7 @@ void Link::send_velocity(const geometry::Twist2& wanted, Time now) {
   told_ = now;
   if (stopped()) {
     send(encode(Command::kEmergencyStop));
+    if (motors_on_ && !rolls_) send(encode(Command::kEnable, 0));
     return;
   }
   const bool drive =
@@ -194,9 +206,11 @@ void Link::send_velocity(const geometry::Twist2& wanted, Time now) {
   const double w = drive ? std::clamp(wanted.w, -10.0, 10.0) : 0.0;
   send(encode(Command::kVelocity, static_cast<int>(std::lround(1e3 * v))));
   send(encode(Command::kTurnRate, static_cast<int>(std::lround(geometry::degrees(w)))));
-  if (reported_mode_ == Mode::kStandby && now - enabled_ >= kEnableAgain) {
+  if (released_) forgives_until_ = now + kForgives;
+  if (released_ || (reported_mode_ == Mode::kStandby && now - enabled_ >= kEnableAgain)) {
     send(encode(Command::kEnable, 1));
     enabled_ = now;
+    released_ = false;
   }
 }
 

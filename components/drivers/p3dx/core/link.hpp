@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/p3dx/core/device.hpp"
@@ -74,10 +75,14 @@ class Link {
   /// before the motors are switched on: the controller would resume what it was told last.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
 
-  /// Stops at once and stays stopped until reset(); so do its stop button and a stall that took the
-  /// motors off.
-  void emergency_stop() { stopped_by_ = "emergency stop"; }
-  void reset() { stopped_by_ = ""; }
+  /// Stops at once and stays stopped until reset(), also when the line is opened anew; so do its
+  /// stop button and a stall that took the motors off. Once it stands it is told to switch its
+  /// motors off: before, they brake.
+  void emergency_stop() { stay_stopped("emergency stop"); }
+  void stay_stopped(std::string why) { stopped_by_ = std::move(why); }
+  void reset();
+  /// What stopped it until reset(); empty: nothing.
+  const std::string& stopped_by() const { return stopped_by_; }
 
   /// The next cycle says nothing that a later one would not say again: only the newest counts.
   bool velocity_only() const { return state_ == State::kRunning && output_.empty(); }
@@ -88,7 +93,7 @@ class Link {
   const Decoder& decoder() const { return decoder_; }
 
  private:
-  bool stopped() const { return *stopped_by_ != '\0'; }
+  bool stopped() const { return !stopped_by_.empty(); }
 
   enum class State : std::uint8_t { kClosed, kSync0, kSync1, kSync2, kRunning };
 
@@ -108,7 +113,10 @@ class Link {
   Time enabled_{};  ///< when the motors were last asked on
   std::optional<Time> reported_;
   Mode reported_mode_ = Mode::kStandby;
-  const char* stopped_by_ = "";  ///< what stopped it until reset(); empty: nothing
+  bool motors_on_ = false, rolls_ = false;  ///< as it reported last
+  bool released_ = false;                   ///< reset, not yet told to the base
+  Time forgives_until_{};                   ///< it reports an old stall until its motors are on
+  std::string stopped_by_;                  ///< until reset(); empty: nothing
   std::string reason_ = "not connected";
   std::vector<std::uint8_t> output_, sent_;
 };

@@ -137,16 +137,30 @@ TEST_F(DeviceReal, SaysThatTheBaseIsGoneAndWakesItAnew) {
   EXPECT_EQ(state(), STATE_DISCONNECTED) << "the line is open, the base says nothing";
 }
 
-TEST_F(DeviceReal, StopsAtOnceInAnEmergency) {
+TEST_F(DeviceReal, AnEmergencyStopTakesTheMotorsOffAndHoldsOverARestart) {
+  auto request = [this, id = 0U](std::uint8_t command) mutable {
+    usher_msgs::msg::BaseRequest message;
+    message.id(++id);
+    message.command(command);
+    host.publish(topics::kBaseRequest, message, "supervisor");
+  };
+  using namespace usher_msgs::msg::BaseRequest_Constants;
   right.v = 0.3;
   right.run(4000);
-  usher_msgs::msg::BaseRequest request;
-  request.id(1);
-  request.command(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
-  host.publish(topics::kBaseRequest, request, "supervisor");
+  request(COMMAND_EMERGENCY_STOP);
   right.run(300);
   EXPECT_GT(device->emergency_stops, 0);
   EXPECT_EQ(state(), STATE_EMERGENCY);
+  EXPECT_FALSE(device->motors);
+  host.world().kill(host.name());
+  host.world().start(host.name());
+  right.run(4000);
+  EXPECT_EQ(state(), STATE_EMERGENCY);
+  EXPECT_FALSE(device->motors);
+  request(COMMAND_RESET);
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING) << host.heartbeat().reason();
+  EXPECT_EQ(device->velocity, 300);
 }
 
 }  // namespace

@@ -250,10 +250,51 @@ TEST(Link, AnEmergencyStopHoldsUntilReset) {
   base.connect(link);
   base.hear(link, report(0, 0, 0, 0, 0, true));
   link.emergency_stop();
-  EXPECT_EQ(base.cycle(link, {0.4, 0}), bytes_of(encode(Command::kEmergencyStop)));
+  const Bytes stopping = base.cycle(link, {0.4, 0});
+  EXPECT_TRUE(contains(stopping, encode(Command::kEmergencyStop)));
+  EXPECT_FALSE(contains(stopping, encode(Command::kVelocity, 400)));
   EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
   link.reset();
+  const Bytes released = base.cycle(link, {0.4, 0});
+  EXPECT_TRUE(contains(released, encode(Command::kEnable, 1)));
+  EXPECT_TRUE(contains(released, encode(Command::kVelocity, 0))) << "its motors may be off";
+  base.hear(link, report(0, 0, 0, 0, 0, true));
   EXPECT_TRUE(contains(base.cycle(link, {0.4, 0}), encode(Command::kVelocity, 400)));
+}
+
+TEST(Link, AnEmergencyStopBrakesAndThenTakesTheMotorsOff) {
+  Link link({});
+  Base base;
+  base.connect(link);
+  base.hear(link, report(0, 0, 0, 400, 400, true));
+  link.emergency_stop();
+  EXPECT_FALSE(contains(base.cycle(link, {}), encode(Command::kEnable, 0))) << "it still rolls";
+  base.hear(link, report(0, 0, 0, 0, 0, true));
+  EXPECT_TRUE(contains(base.cycle(link, {}), encode(Command::kEnable, 0)));
+  base.hear(link, report(0, 0, 0, 0, 0, false));
+  EXPECT_EQ(base.cycle(link, {}), bytes_of(encode(Command::kEmergencyStop)));
+}
+
+TEST(Link, WhatStoppedItHoldsOverANewConnection) {
+  const auto stays_stopped = [](Link& link, Base& base) {
+    base.connect(link);
+    EXPECT_FALSE(contains(base.setup, encode(Command::kEnable, 1)));
+    for (int i = 0; i < 50; ++i) {
+      base.hear(link, report(0, 0, 0, 0, 0, false));
+      EXPECT_FALSE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
+    }
+    EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
+  };
+  Link link({});
+  Base base;
+  base.connect(link);
+  base.hear(link, report(0, 0, 0, 0, 0, true));
+  link.emergency_stop();
+  stays_stopped(link, base);
+  Link restarted({});
+  restarted.stay_stopped(link.stopped_by());
+  stays_stopped(restarted, base);
+  EXPECT_EQ(restarted.reason(), "emergency stop");
 }
 
 /// A report whose flags say what stopped the motors.
@@ -289,6 +330,25 @@ TEST(Link, ItsStopButtonAndAStallHoldUntilReset) {
     base.now += milliseconds(600);
     EXPECT_TRUE(contains(base.cycle(link, {0.4, 0}), encode(Command::kEnable, 1)));
   }
+}
+
+TEST(Link, AStallIsReportedUntilTheMotorsAreOnAndForgivenMeanwhile) {
+  constexpr std::uint8_t kStallStop = 0x40;
+  Link link({});
+  Base base;
+  base.connect(link);
+  base.hear(link, stopped_by(kStallStop));
+  EXPECT_EQ(link.mode(base.now), Mode::kEmergency);
+  link.reset();
+  base.hear(link, stopped_by(kStallStop));  // the base has not been told yet
+  EXPECT_TRUE(contains(base.cycle(link, {}), encode(Command::kEnable, 1)));
+  base.hear(link, stopped_by(kStallStop));
+  EXPECT_EQ(link.mode(base.now), Mode::kStandby);
+  base.hear(link, report(0, 0, 0, 0, 0, true));
+  EXPECT_EQ(link.mode(base.now), Mode::kReady);
+  base.now += std::chrono::seconds(1);
+  base.hear(link, stopped_by(kStallStop));
+  EXPECT_EQ(link.mode(base.now), Mode::kEmergency) << "a new one";
 }
 
 TEST(Link, MotorsThatSomebodySwitchedOffStayOffUntilReset) {

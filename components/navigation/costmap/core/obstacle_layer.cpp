@@ -126,7 +126,9 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   grid::Cell previous{std::numeric_limits<int>::min(), 0};
   bool previous_through = false;
   for (std::size_t beam = 0; beam < observation.ranges.size(); ++beam) {
-    const float range = observation.ranges[beam];
+    const bool marks = !config_.negative_clears || !std::isfinite(observation.ranges[beam]) ||
+                       observation.ranges[beam] >= 0.0F;
+    const float range = marks ? observation.ranges[beam] : -observation.ranges[beam];
     const geometry::Point2& direction = observation.directions[beam];
     const double dx = c * direction.x() - s * direction.y();
     const double dy = s * direction.x() + c * direction.y();
@@ -141,7 +143,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     };
     const bool through = range > config_.max_raytrace_range;
     const grid::Cell end = cell_along(through ? config_.max_raytrace_range : range);
-    if (range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
+    if (marks && range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
       for (int step = 0; step <= behind; ++step) {
         const grid::Cell hit = cell_along(range + step * raster.resolution);
         if (collect(hit)) touched.include(hit);

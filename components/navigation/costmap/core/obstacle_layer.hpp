@@ -22,9 +22,9 @@ struct RangeObservation {
   geometry::Pose2 sensor;  ///< in the costmap's frame, at the time of the scan
   std::span<const geometry::Point2> directions;  ///< unit vectors in the sensor's frame
   /// [m] One per direction. A finite positive range is an obstacle at that distance; +infinity is
-  /// no echo; everything else (NaN, -infinity, zero, negative) is no measurement. A driver that
-  /// reports "no echo" as the sensor's maximum range turns it into infinity, or keeps
-  /// max_obstacle_range below it.
+  /// no echo; everything else (NaN, -infinity, zero, negative) is no measurement, but for a layer
+  /// with `negative_clears`. A driver that reports "no echo" as the sensor's maximum range turns it
+  /// into infinity, or keeps max_obstacle_range below it.
   std::span<const float> ranges;
   double stamp = 0.0;  ///< [s] any steady origin, the one of update(); finite
 };
@@ -40,6 +40,9 @@ struct ObstacleLayerConfig {
   double thickness = 0.0;
   bool infinity_clears =
       true;  ///< no echo clears up to max_raytrace_range, else it is no measurement
+  /// A finite negative range says that nothing is up to there, and no more: what stands there is
+  /// for another layer.
+  bool negative_clears = false;
   double persistence =
       0.0;  ///< [s] an obstacle not seen again is forgotten after this time; 0: never
   /// What a line of this scan crosses stays an obstacle while a beam beside its cell's center tells

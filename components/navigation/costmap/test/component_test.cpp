@@ -170,6 +170,37 @@ TEST_F(Component, KeepsWhatADepthCameraSawThatFallsSilent) {
   }
 }
 
+TEST_F(Component, KeepsTheEdgeOfATableThatTheKinectIsTooNearToSee) {
+  give_map();
+  run(200);
+  const auto see = [&](float range) {
+    for (int i = 0; i < 10; ++i) host.publish(topics::kKinectScan, scan("laser", range)), run(40);
+  };
+  see(1.0F);
+  base.x = 0.45;
+  see(std::numeric_limits<float>::infinity());
+  EXPECT_EQ(local_cost(1.0, 0.0), kLethalCost);
+  base.x = 0.0;
+  see(std::numeric_limits<float>::infinity());
+  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "from here it would see it";
+}
+
+TEST_F(Component, ForgetsALowThingThatIsGoneBeforeAWall) {
+  give_map();
+  run(200);
+  const auto see = [&](float range) {
+    for (int i = 0; i < 10; ++i)
+      host.publish(topics::kKinectScanLow, scan("laser", range)), run(40);
+  };
+  see(2.2F);
+  EXPECT_EQ(local_cost(2.22, 0.17), kLethalCost);
+  see(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(local_cost(2.22, 0.17), kLethalCost) << "nothing is known";
+  see(-2.9F);
+  EXPECT_LT(local_cost(2.22, 0.17), kLethalCost) << "a wall is at 2.9 m, and nothing low before it";
+  EXPECT_LT(local_cost(2.9, 0.17), kLethalCost) << "the wall is for other layers";
+}
+
 TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
   give_map();
   run(200);

@@ -165,6 +165,23 @@ TEST(ObstacleLayer, KeepsItsRanges) {
   EXPECT_EQ(state(layer, 71), kUnseen);
 }
 
+TEST(ObstacleLayer, ANegativeRangeClearsWhereTheLayerSaysSoAndMarksNowhere) {
+  ObstacleLayerConfig low = config();
+  for (const bool clears : {false, true}) {
+    low.negative_clears = clears;
+    ObstacleLayer layer(low, raster());
+    see(layer, 0.4F);
+    ASSERT_EQ(state(layer, 28), kSeenOccupied);
+    see(layer, -1.0F);
+    EXPECT_EQ(state(layer, 28), clears ? kSeenFree : kSeenOccupied);
+    EXPECT_EQ(state(layer, 39), clears ? kSeenFree : kUnseen);
+    EXPECT_EQ(state(layer, 40), kUnseen) << "what is there is not known";
+    see(layer, -kInfinity);
+    EXPECT_EQ(state(layer, 60), kUnseen);
+    EXPECT_EQ(layer.invalid_ranges(), clears ? 1U : 2U);
+  }
+}
+
 TEST(ObstacleLayer, MarksBeyondTheRaytraceRange) {
   ObstacleLayerConfig far = config();
   far.max_obstacle_range = 3.5;

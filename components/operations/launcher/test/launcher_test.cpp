@@ -486,18 +486,24 @@ TEST_F(Launching, ABootEndsTheSessionAndNoLatch) {
 }
 
 TEST_F(Launching, KillsWhatWasHeardAndFallsSilent) {
-  component("legs", "sleeper");
-  component("arms", "sleeper");
+  for (const auto* name : {"legs", "head", "arms"}) component(name, "sleeper");
   auto launcher = this->launcher();
   ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("arms")->pid != 0; }));
   const pid_t legs = launcher.find("legs")->pid;
   const pid_t arms = launcher.find("arms")->pid;
   const auto begin = std::chrono::steady_clock::now();
   launcher.heard("legs", begin);
-  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("legs")->starts == 2; }));
+  launcher.heard("head", begin);
+  ASSERT_TRUE(wait_for(launcher, [&] {
+    const auto now = std::chrono::steady_clock::now();
+    launcher.heard("somebody on another host", now);
+    launcher.heard_by_supervisor("head", now);
+    return launcher.find("legs")->starts == 2;
+  }));
   EXPECT_GE(std::chrono::steady_clock::now() - begin, Launcher::kHang);
   EXPECT_NE(launcher.find("legs")->pid, legs);
   EXPECT_EQ(launcher.find("arms")->pid, arms) << "never heard: it may not speak at all";
+  EXPECT_EQ(launcher.find("head")->starts, 1) << "the supervisor hears it";
   EXPECT_THAT(events_, Contains("legs: hangs, killed"));
 }
 
@@ -524,12 +530,16 @@ TEST_F(Launching, KillsWhatDoesNotComeAlive) {
 
 TEST_F(Launching, KillsNobodyWhenItHearsNobody) {
   component("legs", "sleeper").start_patience = 1.0;
+  component("arms", "sleeper");
   auto launcher = this->launcher();
+  ASSERT_TRUE(wait_for(launcher, [&] { return launcher.find("arms")->pid != 0; }));
   const auto begin = std::chrono::steady_clock::now();
+  launcher.heard("arms", begin);
   ASSERT_TRUE(wait_for(launcher, [&] {
     return std::chrono::steady_clock::now() - begin > Launcher::kHang + std::chrono::seconds(2);
   }));
   EXPECT_EQ(launcher.find("legs")->starts, 1);
+  EXPECT_EQ(launcher.find("arms")->starts, 1);
 }
 
 TEST_F(Launching, BelievesNoSilenceWhenItWasStoppedItself) {

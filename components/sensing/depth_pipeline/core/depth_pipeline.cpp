@@ -98,6 +98,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
     scan->intensities.resize(geometry_.count);
   }
   seen_low_.resize(geometry_.count);
+  looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
 }
 
@@ -130,15 +131,16 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
 
   shift_ = view.pose.forward - config_.origin;
   clear_bearings();
-  mark_free(view.pose);
+  mark_seen(view.pose);
   mark_obstacles(floor);
   add_low();
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
   forget_blind_falls(floor);
-  view.drops = mark_drops(kGrazing * view.pose.height);
+  view.drops = mark_drops(view.pose);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
+  tell_what_hides_low();
   view.processed = processed_;
   view.scan = &scan_;
   view.low = &low_;
@@ -197,6 +199,7 @@ void DepthPipeline::clear_bearings() {
   std::fill(scan_.ranges.begin(), scan_.ranges.end(), kUnknown);
   std::fill(low_.ranges.begin(), low_.ranges.end(), kUnknown);
   std::fill(seen_low_.begin(), seen_low_.end(), kUnknown);
+  std::fill(looked_.begin(), looked_.end(), std::uint8_t{0});
 }
 
 std::size_t DepthPipeline::bearing_of(double forward, double left) const {
@@ -205,8 +208,8 @@ std::size_t DepthPipeline::bearing_of(double forward, double left) const {
       std::clamp(step, 0.0, static_cast<double>(geometry_.count) - 1.0));
 }
 
-/// A column whose pixels measured something, but no obstacle, is free.
-void DepthPipeline::mark_free(const CameraPose& pose) {
+/// A column whose pixels measured something is free up to what is marked later.
+void DepthPipeline::mark_seen(const CameraPose& pose) {
   const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
   const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
   const double level = std::cos(pose.down);
@@ -214,11 +217,11 @@ void DepthPipeline::mark_free(const CameraPose& pose) {
     if (valid[column] * kLeastValid < intrinsics_.height) continue;
     const double left = (intrinsics_.cx - column) / intrinsics_.fx * level;
     const std::size_t bearing = bearing_of(1.0, left);
-    // Neighbouring columns are less than two bearings apart. What stands high hides what is low
-    // behind it.
+    // Neighbouring columns are less than two bearings apart.
     const std::size_t last = std::min(bearing + 1, geometry_.count - 1);
     for (std::size_t i = bearing; i <= last; ++i) {
       scan_.ranges[i] = kFree;
+      looked_[i] = 1;
       if (high[column] == kernels::kNothing) low_.ranges[i] = kFree;
     }
   }
@@ -282,6 +285,7 @@ void DepthPipeline::add_low() {
       } else {
         if (!std::isfinite(high)) scan_.ranges[begin] = kUnknown;
         low_.ranges[begin] = kUnknown;
+        looked_[begin] = 0;
       }
     }
   }
@@ -302,10 +306,15 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
   }
 }
 
-/// A piece of floor is missing where neighbouring columns say so over a width, from a distance [m]
-/// on over the width that no mirroring patch has.
-int DepthPipeline::mark_drops(double grazing_from) {
+/// A piece of floor is missing where neighbouring columns say so over a width, where it is looked
+/// at flatly over the width that no mirroring patch has.
+int DepthPipeline::mark_drops(const CameraPose& pose) {
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
+  const double grazing_from = kGrazing * pose.height;
+  const double level = std::cos(pose.down), sunk = pose.height * std::sin(pose.down);
+  const auto side_per_pixel = [&](double forward) {  // [m] on the floor
+    return (forward * level + sunk) / intrinsics_.fx;
+  };
   int count = 0;
   for (int begin = 0; begin < intrinsics_.width;) {
     if (fall[begin] == kernels::kNothing) {
@@ -318,9 +327,9 @@ int DepthPipeline::mark_drops(double grazing_from) {
     for (; end < intrinsics_.width && fall[end] != kernels::kNothing; ++end) {
       if (end > begin && std::abs(fall[end] - fall[end - 1]) > kFallGap * 1e3) break;
       const double forward = 1e-3 * fall[end];
-      width += forward / intrinsics_.fx;
+      width += side_per_pixel(forward);
       nearest =
-          std::min(nearest, std::hypot(forward, forward / intrinsics_.fx * (intrinsics_.cx - end)));
+          std::min(nearest, std::hypot(forward, side_per_pixel(forward) * (intrinsics_.cx - end)));
     }
     const double needed = nearest < grazing_from
                               ? config_.drop_width
@@ -328,14 +337,23 @@ int DepthPipeline::mark_drops(double grazing_from) {
     if (width >= needed) {
       for (int column = begin; column < end; ++column) {
         const double forward = 1e-3 * fall[column];
-        mark(scan_.ranges, column, forward, forward / intrinsics_.fx);
-        mark(low_.ranges, column, forward, forward / intrinsics_.fx);
+        mark(scan_.ranges, column, forward, side_per_pixel(forward));
+        mark(low_.ranges, column, forward, side_per_pixel(forward));
       }
       count += end - begin;
     }
     begin = end;
   }
   return count;
+}
+
+/// What stands high hides what is low behind it: up to there nothing low is.
+void DepthPipeline::tell_what_hides_low() {
+  for (std::size_t i = 0; i < low_.ranges.size(); ++i) {
+    const float range = scan_.ranges[i];
+    if (looked_[i] == 0 || !std::isnan(low_.ranges[i]) || std::isnan(range)) continue;
+    low_.ranges[i] = std::isinf(range) ? kFree : -range;
+  }
 }
 
 /// An obstacle that no neighbouring bearing knows of is noise.

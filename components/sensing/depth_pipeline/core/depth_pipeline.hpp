@@ -66,8 +66,10 @@ struct DepthScan {
 struct DepthView {
   std::span<const std::uint16_t> processed;  ///< [mm] obstacles only, 0 elsewhere
   const DepthScan* scan = nullptr;           ///< nearest obstacle or drop of each bearing
-  const DepthScan* low = nullptr;            ///< only what is lower than low_height, and drops
-  CameraPose pose;                           ///< as used: refitted when `refitted`
+  /// Only what is lower than low_height, and drops; -r: nothing low up to r [m], where something
+  /// high hides it.
+  const DepthScan* low = nullptr;
+  CameraPose pose;  ///< as used: refitted when `refitted`
   bool refitted = false;
   int drops = 0;          ///< columns that end at missing floor
   double measured = 0.0;  ///< {0..1} share of the pixels that measured something
@@ -103,10 +105,11 @@ class DepthPipeline {
   double measured_share() const;
   void clear_bearings();
   void forget_blind_falls(const FloorPrediction& floor);
-  int mark_drops(double grazing_from);
-  void mark_free(const CameraPose& pose);
+  int mark_drops(const CameraPose& pose);
+  void mark_seen(const CameraPose& pose);
   void mark_obstacles(const FloorPrediction& floor);
   void add_low();
+  void tell_what_hides_low();
   void drop_unsupported(std::vector<float>& ranges) const;
   void mark(std::vector<float>& ranges, int column, double forward, double side_per_pixel);
   std::size_t bearing_of(double forward, double left) const;
@@ -122,7 +125,8 @@ class DepthPipeline {
   std::size_t buffer_stride_ = 0;
   double shift_ = 0.0;  // [m] from the scan's origin to the camera's foot
   DepthScan scan_, low_;
-  std::vector<float> seen_low_;  // [m] of each bearing, NaN: nothing low
+  std::vector<float> seen_low_;       // [m] of each bearing, NaN: nothing low
+  std::vector<std::uint8_t> looked_;  // of each bearing, whether its columns measured something
   mutable std::vector<float> spare_;
   Confidence confidence_, low_confidence_;
 };

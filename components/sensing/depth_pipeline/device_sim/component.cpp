@@ -13,6 +13,7 @@ constexpr auto kScanAge = milliseconds(300);
 DepthPipelineSimComponent::DepthPipelineSimComponent(runtime::Host& host)
     : host_(host),
       config_(read_pipeline(host.parameters())),
+      without_kinect_(read_without_kinect(host.parameters())),
       tilt_(host),
       rejected_(host.health().counter("scans: rejected")) {
   const double axle = read_axle(host.parameters());
@@ -67,7 +68,7 @@ void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::L
 
 void DepthPipelineSimComponent::report() {
   if (kinect_.input.fresh() == nullptr) {
-    host_.health().set(HealthState::kDegraded, "no depth scan");
+    host_.health().set(without_kinect_, "no depth scan");
   } else if (rear_.confidence && rear_.input.fresh() == nullptr) {
     host_.health().set(HealthState::kDegraded, "rear camera: no depth scan");
   } else {

@@ -30,6 +30,7 @@ class DepthPipelineSimComponent final : public runtime::Component {
 
   runtime::Host& host_;
   PipelineConfig config_;
+  runtime::HealthState without_kinect_;
   TiltControl tilt_;
   std::uint64_t& rejected_;
   Channel kinect_, low_, rear_;

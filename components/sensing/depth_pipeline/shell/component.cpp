@@ -49,6 +49,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       drops_(host.health().counter("images: with missing floor")) {
   auto& p = host.parameters();
   far_ = p.number("far_of_8_bit", "m", {1, 20}, far_, "What 255 means in an 8-bit image.");
+  without_kinect_ = read_without_kinect(p);
   mount_slope_ = read_kinect_mount_slope(p);
   kinect_.name = "Kinect";
   kinect_.structured_light =
@@ -196,9 +197,9 @@ std::string DepthPipelineComponent::trouble(const Camera& camera) const {
 /// The one place that says how the component is, but for the pitch: that its input says.
 void DepthPipelineComponent::report() {
   if (!pitch_.current()) return;
-  std::string reason = trouble(kinect_);
-  if (reason.empty()) reason = trouble(rear_);
-  if (!reason.empty()) {
+  if (std::string reason = trouble(kinect_); !reason.empty()) {
+    host_.health().set(without_kinect_, std::move(reason));
+  } else if (reason = trouble(rear_); !reason.empty()) {
     host_.health().set(HealthState::kDegraded, std::move(reason));
   } else if (kinect_.delivered) {
     host_.health().set(HealthState::kOk);

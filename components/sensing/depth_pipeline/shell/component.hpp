@@ -62,6 +62,7 @@ class DepthPipelineComponent final : public runtime::Component {
 
   runtime::Host& host_;
   PipelineConfig config_;
+  runtime::HealthState without_kinect_{};
   TiltControl tilt_;
   wire::PitchInput pitch_;
   double mount_slope_ = 0.0;

@@ -50,6 +50,13 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
   return c;
 }
 
+runtime::HealthState read_without_kinect(runtime::Parameters& p) {
+  const bool needed = p.flag("kinect_needed", false,
+                             "Without the Kinect's scans it is not able to work, and a robot whose "
+                             "manifest says `criticality: stop` of it stands: before stairs.");
+  return needed ? runtime::HealthState::kStarting : runtime::HealthState::kDegraded;
+}
+
 double read_axle(runtime::Parameters& p) {
   return p.number("robot.wheel_radius", "m", {0.05, 0.5},
                   "Of the driven wheels; also the axle's height.");

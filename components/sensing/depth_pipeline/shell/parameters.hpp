@@ -7,6 +7,8 @@ namespace usher::depth_pipeline {
 
 /// The component's parameters, with their units, ranges and texts.
 PipelineConfig read_pipeline(runtime::Parameters& parameters);
+/// How the component is without the Kinect's scans.
+runtime::HealthState read_without_kinect(runtime::Parameters& parameters);
 /// [m] of the axle above the floor.
 double read_axle(runtime::Parameters& parameters);
 Mount read_kinect_mount(runtime::Parameters& parameters, double axle);

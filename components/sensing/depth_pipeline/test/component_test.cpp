@@ -116,6 +116,12 @@ class FittingDepthPipelineTest : public DepthPipelineComponentTest {
 };
 
 /// Of three frames, as by default.
+class NeededKinectTest : public DepthPipelineComponentTest {
+ protected:
+  NeededKinectTest()
+      : DepthPipelineComponentTest(std::string(kParameters).insert(1, "kinect_needed: true, ")) {}
+};
+
 class RatingDepthPipelineTest : public DepthPipelineComponentTest {
  protected:
   RatingDepthPipelineTest()
@@ -322,6 +328,23 @@ TEST_F(DepthPipelineComponentTest, SaysThatACameraMeasuresNothing) {
   blind_ = false;
   stream(300, true);
   EXPECT_EQ(reason(), "");
+}
+
+TEST_F(NeededKinectTest, IsNotAbleToWorkWithoutIt) {
+  using namespace usher_msgs::msg::Heartbeat_Constants;
+  tell_camera();
+  live(100);
+  stream(300);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_OK);
+  blind_ = true;
+  stream(600);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_STARTING) << reason();
+  EXPECT_EQ(reason(), "Kinect: it measures nothing");
+  blind_ = false;
+  stream(300);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_OK);
+  live(600);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_STARTING) << reason();
 }
 
 TEST_F(DepthPipelineComponentTest, SaysThatACameraIsBlindFromItsFirstImageOn) {

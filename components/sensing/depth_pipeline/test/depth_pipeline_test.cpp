@@ -18,6 +18,8 @@ using testing::HasSubstr;
 
 constexpr CameraPose kPose{.height = 0.9, .forward = 0.2, .down = 0.0872664626};
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 PipelineConfig trusting() {
   PipelineConfig config;
   config.confidence_frames = 1;
@@ -86,10 +88,12 @@ TEST(DepthPipeline, LowScanHasOnlyWhatIsLow) {
   const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
   const double tall = std::atan2(0.6, 2.5), low = std::atan2(-0.6, 2.0);
   EXPECT_NEAR(at(pipeline, view.scan->ranges, tall), std::hypot(2.5, 0.6), 0.02);
-  EXPECT_TRUE(std::isnan(at(pipeline, view.low->ranges, tall)));
+  EXPECT_NEAR(at(pipeline, view.low->ranges, tall), -std::hypot(2.5, 0.6), 0.02)
+      << "nothing low up to there";
   EXPECT_NEAR(at(pipeline, view.low->ranges, low), std::hypot(2.0, 0.6), 0.02);
   // The far wall is in the scan, and hides from the low one what is low behind it.
   EXPECT_NEAR(at(pipeline, view.scan->ranges, 0.0), 5.0, 0.02);
+  EXPECT_NEAR(at(pipeline, view.low->ranges, 0.0), -5.0, 0.02);
 }
 
 TEST(DepthPipeline, WhatIsLowAndNarrowAsPixelsAtAnEdgeIsNotKnown) {
@@ -174,6 +178,38 @@ TEST(DepthPipeline, MissingFloorIsAnObstacleWhereItEnds) {
   }
 }
 
+TEST(DepthPipeline, AHoleIsAsWideAsItIsThoughTheCameraLooksDown) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  DepthPipeline pipeline = make(scene);
+  CameraPose pose = kPose;
+  pose.down = 0.26;
+  auto image = scene.draw(pose);
+  constexpr double kNear = 1.3, kFar = 1.8;  // [m] of the hole
+  constexpr int kHalf = 100;                 // [px]
+  double half_width = 0.0;                   // [m] where it begins
+  const double c = std::cos(pose.down), s = std::sin(pose.down);
+  for (int row = 0; row < scene.camera.height; ++row) {
+    const double y = (row - scene.camera.cy) / scene.camera.fy;
+    const double sinks = s + y * c;
+    if (sinks <= 0.0) continue;
+    const double depth = pose.height / sinks, forward = depth * (c - y * s);
+    if (forward < kNear || forward > kFar) continue;
+    half_width = kHalf * depth / scene.camera.fx;
+    for (int column = 256 - kHalf; column < 256 + kHalf; ++column)
+      image[static_cast<std::size_t>(row * 512 + column)] = 5000;
+  }
+  EXPECT_NEAR(half_width, 0.41, 0.01);
+  const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
+  const auto ends_at = [&](double left) {
+    return at(pipeline, view.scan->ranges, std::atan2(left, kNear + 0.02));
+  };
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_LT(ends_at(side * (half_width - 0.02)), 1.5F) << side;
+    EXPECT_FALSE(ends_at(side * (half_width + 0.04)) < 1.5F) << side;
+  }
+}
+
 TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;
@@ -215,15 +251,17 @@ TEST(DepthPipeline, ReflectionsOfVinylFarAwayAreNoDropsButHolesAre) {
 TEST(DepthPipeline, SinglePixelsAndSingleColumnsAreNoise) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;
-  DepthPipeline pipeline = make(scene);
   auto image = scene.draw(kPose);
   Random random(5);
   for (int i = 0; i < 150; ++i) image[random.below(image.size())] = 1200;
-  PipelineConfig closed = trusting();
-  closed.opening = false;  // which would make nine pixels of one
-  DepthPipeline plain = make(scene, closed);
-  const auto view = plain.process(view_of(scene.camera, image), kPose).value();
-  EXPECT_EQ(finite(view.scan->ranges), 0U);
+  for (std::size_t row = 0; row < 424; ++row) image[512 * row + 100] = 1500;
+  for (const bool opening : {false, true}) {
+    PipelineConfig config = trusting();
+    config.opening = opening;
+    DepthPipeline pipeline = make(scene, config);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    EXPECT_EQ(finite(view.scan->ranges), 0U) << opening;
+  }
 }
 
 TEST(DepthPipeline, ThinThingsAreFoundWhenTheFloorIsFitted) {
@@ -300,7 +338,7 @@ TEST(DepthPipeline, AllInstructionSetsGiveTheSameBits) {
   }
 }
 
-TEST(DepthPipeline, AnyImageGivesPositiveRangesOrNone) {
+TEST(DepthPipeline, AnyImageGivesRangesOrNone) {
   SyntheticScene scene;
   DepthPipeline pipeline = make(scene, {});
   Random random(11);
@@ -313,7 +351,8 @@ TEST(DepthPipeline, AnyImageGivesPositiveRangesOrNone) {
     ASSERT_TRUE(view.ok());
     for (const DepthScan* scan : {view->scan, view->low}) {
       for (std::size_t i = 0; i < scan->ranges.size(); ++i) {
-        EXPECT_FALSE(scan->ranges[i] <= 0.0F);
+        const float range = scan->ranges[i];
+        EXPECT_FALSE(range == 0.0F || range == -kInfinity || (range < 0.0F && scan == view->scan));
         EXPECT_GE(scan->intensities[i], 0.0F);
         EXPECT_LE(scan->intensities[i], 1.0F);
       }

@@ -121,7 +121,7 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
   for (std::size_t i = 0; i < high_.size(); ++i) {
     const bool alone = low_[i] + static_cast<float>(config_.low_gap) < high_[i];
     result.ranges[i] = std::min(high_[i], low_[i]);
-    result.low[i] = alone || (low_[i] == kFree && high_[i] == kFree) ? low_[i] : kUnknown;
+    result.low[i] = alone || (low_[i] == kFree && high_[i] == kFree) ? low_[i] : -result.ranges[i];
   }
   disturb(camera.burst(), result);
 }
@@ -139,7 +139,7 @@ void DepthScanModel::disturb(double burst, DepthScanResult& result) {
     const double sigma = config_.noise + config_.noise_growth * range * range;
     const auto off = static_cast<float>(sigma * noise);
     result.ranges[i] += off;
-    if (std::isfinite(result.low[i])) result.low[i] += off;
+    if (std::isfinite(result.low[i])) result.low[i] += result.low[i] < 0.0F ? -off : off;
   }
 }
 

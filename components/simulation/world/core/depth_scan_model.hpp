@@ -11,7 +11,7 @@ namespace usher::world {
 
 /// What the depth pipeline makes of a camera's images, without the images: for missions that shall
 /// run much faster than real time. The constants are fitted to the rendered chain;
-/// tests/simulation/depth_model_test.cpp compares the two.
+/// tests/simulation/depth_chain_test.cpp compares the two.
 struct DepthScanModelConfig {
   rendering::Lens lens = rendering::kinect_v2().lens;
   double widest = 0.85;      ///< the scan's bearings cover columns seen at this share of forward
@@ -38,7 +38,7 @@ struct DepthScanResult {
   double angle_min = 0.0;     ///< [rad]
   double increment = 0.0;     ///< [rad]
   std::vector<float> ranges;  ///< [m] nearest obstacle or missing floor
-  std::vector<float> low;     ///< [m] what is lower than low_height, alone
+  std::vector<float> low;     ///< [m] what is lower than low_height, alone; -r: none up to r
 };
 
 /// The same for a pipeline that fits the floor in every frame: low things count from what the noise
