@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kSteepest = 1.2;   // [rad]
 constexpr double kBodyDepth = 0.1;  // [m] from the visible surface to the body's middle
-constexpr double kHeadless = 3.5;   // [log odds] so much surer of whose head is not seen
 constexpr double kBeside = 0.55;    // [m] nearer to somebody surer by far ...
 constexpr float kEcho = 0.35F;      // ... than by this is no other one
 constexpr double kSamePlace = 0.2;  // [m] nearer votes are for the same place
@@ -134,9 +133,7 @@ Result<std::span<const Sighting>> DepthDetector::find(const imaging::DepthImage&
     taken_.push_back(vote);
     const float score = score_of(vote);
     if (static_cast<double>(score) <= config_.threshold) continue;
-    const Sighting sighting = settle(vote, score);
-    const bool headless = sighting.height <= 0.0;
-    if (!headless || sighting.score > config_.threshold + kHeadless) sightings_.push_back(sighting);
+    sightings_.push_back(settle(vote, score));
   }
   std::sort(sightings_.begin(), sightings_.end(), [](const Sighting& a, const Sighting& b) {
     return std::hypot(a.forward, a.left) < std::hypot(b.forward, b.left);

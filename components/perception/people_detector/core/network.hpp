@@ -22,7 +22,7 @@ struct Layer {
 /// Two hidden layers of rectified sums over a window, and what they say about it. Whole numbers and
 /// single sums in a fixed order make the result the same on every machine.
 struct Network {
-  static constexpr int kFirst = 96, kSecond = 32, kOutputs = 3;
+  static constexpr int kFirst = 128, kSecond = 32, kOutputs = 3;
   Layer<Windows::kInputs, kFirst> first;
   Layer<kFirst, kSecond> second;
   Layer<kSecond, kOutputs> outputs;  ///< log odds, forward, left
