@@ -32,7 +32,7 @@ struct PipelineConfig {
   /// Floor that gives no measurement counts as missing, in a column that measures something.
   bool missing_is_drop = true;
   double drop_length = 0.3;  ///< [m] {0.05..2} of floor that must be missing along a column
-  double drop_width = 0.15;  ///< [m] {0..2} and across
+  double drop_width = 0.2;   ///< [m] {0..2} and across
   /// [m] {0..2} across where the floor is looked at flatter than 62 deg: vinyl mirrors in patches
   /// there, which look like holes.
   double grazing_drop_width = 0.4;

@@ -131,7 +131,7 @@ TEST(DepthPipeline, AMirroringPatchAsideIsNoDrop) {
       if (!(forward > from && forward < from + 0.36)) continue;
       for (int column = 0; column < 512; ++column) {
         const double side = (scene.camera.cx - column) / scene.camera.fx;
-        if (std::abs(side - middle) < 0.065)
+        if (std::abs(side - middle) < 0.085)
           image[static_cast<std::size_t>(512 * row + column)] = 4000;
       }
     }
