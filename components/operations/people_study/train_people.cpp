@@ -335,7 +335,7 @@ int main(int argc, char** argv) {
   using usher::operations::within;
   CLI::App app("Trains the network of the people detector on random scenes");
   std::string out = "network_weights.cpp";
-  int count = 12000, epochs = 12, rounds = 3, tests = 1000;
+  int count = 20000, epochs = 12, rounds = 3, tests = 1000;
   bool trains = true;
   app.add_option("--out", out, "Where the network is written");
   app.add_option("--scenes", count, "New ones in each round")->check(within(10, 100000));
