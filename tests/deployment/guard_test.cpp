@@ -49,7 +49,7 @@ Base pioneer() {
   for (const auto& frame :
        {p3dx::encode(p3dx::Command::kVelocity, 500), p3dx::encode(p3dx::Command::kTurnRate, 6)})
     drive.insert(drive.end(), frame.span().begin(), frame.span().end());
-  return {"Pioneer", 9600, 40ms, p3dx::Link::standstill(), drive};
+  return {"Pioneer", 9600, 40ms, p3dx::Link::velocity({}), drive};
 }
 
 /// The base's end of the line: everything that it heard.

@@ -70,6 +70,21 @@ class RollOut {
     if (told.v != 0.0) rolled_at_ = now;
   }
 
+  /// What to tell the base, and for how long, where from now on nobody measures and tells: as
+  /// stop() would. No time where it stands or goes straight.
+  struct Rest {
+    geometry::Twist2 twist;
+    std::chrono::nanoseconds lasts{};
+  };
+  Rest rest() const {
+    const double v = stops_ ? onset_.v : rolls_;
+    const double w = stops_ ? onset_.w * share_ : driven_w_;
+    if (!(std::abs(v) > kStanding) || std::abs(w) < kStraight) return {};
+    const std::chrono::nanoseconds rolled = rolled_at_ ? passed_ - *rolled_at_ : passed_;
+    const auto left = std::min<std::chrono::nanoseconds>(kBlind, longest(v) - rolled);
+    return {{0.0, w}, std::max(left, std::chrono::nanoseconds::zero())};
+  }
+
  private:
   /// The time since the first call, of each pause kPause at most.
   std::chrono::nanoseconds passed(std::chrono::nanoseconds called) {

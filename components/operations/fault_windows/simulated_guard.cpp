@@ -13,8 +13,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPeriod = 5ms;  // more than the end of a driver takes to be seen
-// The line carries no bytes here: one stands for whatever the driver writes, one for zero.
-constexpr std::uint8_t kZero = 0;
+// The line carries no bytes here: one stands for whatever the driver writes, one for zero, one for
+// what it leaves as its will.
+constexpr std::uint8_t kZero = 0, kWill = 2;
 constexpr std::array<std::uint8_t, 1> kDriven = {1};
 
 }  // namespace
@@ -23,11 +24,10 @@ SimulatedGuard::SimulatedGuard(runtime::LockstepWorld& world, std::string driver
                                runtime::Guard::Time silence)
     : world_(world), driver_(std::move(driver)), silence_(silence) {
   // Before whatever a fault does to the line, which lies behind the guard.
-  world_.tamper_bytes(std::string(topics::kSimBaseCommand.name),
-                      [this](const runtime::Guid& writer, runtime::Bytes&) {
-                        if (world_.participant_of(writer) == driver_) hear();
-                        return true;
-                      });
+  world_.tamper(topics::kSimBaseCommand, [this](const runtime::Guid& writer, auto& command) {
+    if (world_.participant_of(writer) == driver_) hear({command.v(), command.w()});
+    return true;
+  });
   watch();
 }
 
@@ -36,6 +36,7 @@ void SimulatedGuard::watch() {
     life_ = life;
     guard_.emplace(std::vector{kZero}, silence_);
     guard_->greet();
+    roll_out_ = {};
   }
   if (!world_.running(driver_)) guard_->gone(now());
   guard_->tick(now());
@@ -44,16 +45,23 @@ void SimulatedGuard::watch() {
 }
 
 /// What the driver writes goes its own way: nothing but a zero is ever left to be sent.
-void SimulatedGuard::hear() {
+void SimulatedGuard::hear(const geometry::Twist2& told) {
+  roll_out_.drive(told, now());
+  const auto rest = roll_out_.rest();
+  will_ = rest.twist;
+  guard_->will({&kWill, 1}, rest.lasts);
   guard_->heard(runtime::Outbox::Kind::kLatest, kDriven, now());
   guard_->sent(guard_->output().size());
 }
 
 void SimulatedGuard::pass() {
   const auto output = guard_->output();
-  const bool zero = std::ranges::find(output, kZero) != output.end();
+  const bool speaks = !output.empty(), willed = speaks && output.back() == kWill;
   guard_->sent(output.size());
-  if (zero) world_.publish(topics::kSimBaseCommand, {}, "usher-guard");
+  if (!speaks) return;
+  usher_sim_msgs::msg::BaseCommand command;
+  if (willed) command.w(will_.w);
+  world_.publish(topics::kSimBaseCommand, command, "usher-guard");
 }
 
 }  // namespace usher::operations

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "foundation/kinematics/roll_out.hpp"
 #include "runtime/guard/guard.hpp"
 #include "runtime/lockstep/lockstep_world.hpp"
 
@@ -24,7 +25,7 @@ class SimulatedGuard {
 
  private:
   runtime::Guard::Time now() const { return world_.now().time_since_epoch(); }
-  void hear();
+  void hear(const geometry::Twist2& told);
   void watch();
   void pass();
 
@@ -33,6 +34,8 @@ class SimulatedGuard {
   const runtime::Guard::Time silence_;
   std::uint64_t life_ = 0;  ///< of the driver, whose guard it is
   std::optional<runtime::Guard> guard_;
+  kinematics::RollOut roll_out_;  ///< by what the driver told the base
+  geometry::Twist2 will_;
 };
 
 }  // namespace usher::operations

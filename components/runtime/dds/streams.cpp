@@ -122,6 +122,15 @@ class Connection final : public Stream {
   bool write_latest(std::span<const std::uint8_t> bytes) override {
     return put(Outbox::Kind::kLatest, bytes);
   }
+  void last_will(std::span<const std::uint8_t> message, Duration lasts) override {
+    if (!guarded()) return;
+    using Milliseconds = std::chrono::duration<std::uint16_t, std::milli>;
+    const auto most = std::clamp<Duration>(lasts, Duration::zero(), Milliseconds::max());
+    const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(most).count();
+    will_.assign({static_cast<std::uint8_t>(count & 0xFF), static_cast<std::uint8_t>(count >> 8)});
+    will_.insert(will_.end(), message.begin(), message.end());
+    put(Outbox::Kind::kWill, will_);
+  }
   bool open() const override {
     const std::scoped_lock lock(mutex_);
     return state_ == State::kOpen;
@@ -394,6 +403,7 @@ class Connection final : public Stream {
   Clock::time_point opened_at_{};        // I/O thread only: by the present guard
   Outbox outbox_;
   Bytes message_;  // of the guard, reused
+  Bytes will_;     // the component's handlers only
   bool line_full_ = false;
   std::vector<std::uint8_t> held_;  // I/O thread only
   bool reopen_asked_ = false;

@@ -224,6 +224,9 @@ class EngineStream final : public Stream {
   void reopen(Duration delay) override {
     if (stream_) stream_->reopen(delay);
   }
+  void last_will(std::span<const std::uint8_t> message, Duration lasts) override {
+    if (stream_) stream_->last_will(message, lasts);
+  }
 
  private:
   std::string uri_;

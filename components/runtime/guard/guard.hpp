@@ -19,6 +19,10 @@ namespace usher::runtime {
 /// driver's first write: the device may not be ready for it. Bytes that wait because the port is
 /// slow are dropped for the safe ones, but never a part of what is already on its way.
 ///
+/// A driver may leave a will: what a device that still moves shall hear instead of the safe bytes
+/// for a while, where the driver is silent. One that ended is followed by another one soon, which
+/// decides itself.
+///
 /// Fixed memory, no allocation after the constructor, no clock of its own.
 class Guard {
  public:
@@ -37,7 +41,11 @@ class Guard {
   void greet();
   /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
   /// messages, wait for it.
+  static constexpr std::size_t kLongestWill = 256;  ///< bytes
   bool heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now);
+  /// What to send for so long, from when the driver is found silent; the newest counts, an empty
+  /// one is none, a longer one than kLongestWill is none either. No sign of life.
+  void will(std::span<const std::uint8_t> message, Time lasts);
   /// The driver ended.
   void gone(Time now);
   /// Puts a safe message up when one is due.
@@ -56,7 +64,7 @@ class Guard {
   bool overruling() const { return overruling_; }
 
  private:
-  void put_safe(Time now);
+  void overrule(Time now);
 
   const std::vector<std::uint8_t> safe_;
   const Time silence_;
@@ -64,6 +72,9 @@ class Guard {
   Outbox outbox_;
   std::optional<Time> heard_at_;
   Time safe_at_{};
+  std::vector<std::uint8_t> will_;
+  Time will_lasts_{};
+  std::optional<Time> silent_since_;  ///< while a silent driver is overruled
   bool overruling_ = false;
   bool gone_ = false;
   int farewells_ = 0;

@@ -131,11 +131,21 @@ class Process {
         guard_.gone(*gone_at_);
         return true;
       }
+      const std::span message(buffer_.data() + 1, static_cast<std::size_t>(count) - 1);
+      if (buffer_[0] == static_cast<std::uint8_t>(Outbox::Kind::kWill)) {
+        take_will(message);
+        continue;
+      }
       const auto kind = buffer_[0] == 0 ? Outbox::Kind::kEach : Outbox::Kind::kLatest;
-      if (!guard_.heard(kind, {buffer_.data() + 1, static_cast<std::size_t>(count) - 1}, now()))
-        return complain("the port takes nothing");
+      if (!guard_.heard(kind, message, now())) return complain("the port takes nothing");
     }
     return true;
+  }
+
+  /// Two octets of milliseconds, the low one first, then the bytes.
+  void take_will(std::span<const std::uint8_t> message) {
+    if (message.size() < 2) return;
+    guard_.will(message.subspan(2), std::chrono::milliseconds(message[0] | message[1] << 8));
   }
 
   bool from_port() {

@@ -11,7 +11,7 @@ Outbox::Outbox() {
 
 bool Outbox::push(Kind kind, std::span<const std::uint8_t> message) {
   if (message.empty()) return true;
-  if (kind == Kind::kLatest) drop_latest();
+  if (kind != Kind::kEach) drop(kind);
   if (bytes_.size() + message.size() > kMostBytes || messages_.size() == kMostMessages)
     return false;
   bytes_.insert(bytes_.end(), message.begin(), message.end());
@@ -19,12 +19,12 @@ bool Outbox::push(Kind kind, std::span<const std::uint8_t> message) {
   return true;
 }
 
-/// There is at most one that was not begun.
-void Outbox::drop_latest() {
+/// There is at most one of it that was not begun.
+void Outbox::drop(Kind kind) {
   std::size_t begin = 0;
   for (std::size_t i = 0; i < messages_.size(); ++i) {
     const Message& message = messages_[i];
-    if (message.kind == Kind::kLatest && (i > 0 || !first_under_way_)) {
+    if (message.kind == kind && (i > 0 || !first_under_way_)) {
       const auto from = bytes_.begin() + static_cast<std::ptrdiff_t>(begin);
       bytes_.erase(from, from + static_cast<std::ptrdiff_t>(message.length));
       messages_.erase(messages_.begin() + static_cast<std::ptrdiff_t>(i));

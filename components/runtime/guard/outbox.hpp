@@ -13,6 +13,7 @@ class Outbox {
   enum class Kind : std::uint8_t {
     kEach = 0,    ///< has to arrive
     kLatest = 1,  ///< gives way to the next one of this kind, unless a part of it was sent
+    kWill = 2,    ///< likewise; for the guard itself (Guard::will)
   };
   static constexpr std::size_t kMostBytes = 65536;
   static constexpr std::size_t kMostMessages = 1024;
@@ -40,7 +41,7 @@ class Outbox {
     Kind kind;
     std::size_t length;  ///< that is not sent yet
   };
-  void drop_latest();
+  void drop(Kind kind);
 
   std::vector<std::uint8_t> bytes_;
   std::vector<Message> messages_;

@@ -14,8 +14,8 @@ namespace usher::drive {
 /// what it wants to say. A velocity never waits behind an older one: while the line is blocked the
 /// newest takes the place of what was not sent.
 ///
-/// A Link is a driver's core: opened, closed, received, cycle, velocity_only, mode, reason (see
-/// segway_rmp/core/link.hpp).
+/// A Link is a driver's core: opened, closed, received, cycle, velocity_only, velocity, mode,
+/// reason (see segway_rmp/core/link.hpp).
 template <class Link, class Feedback>
 class BaseLine {
  public:
@@ -34,6 +34,12 @@ class BaseLine {
   Link& link() { return link_; }
   /// What the link shall make of it in its next cycle.
   void want(const geometry::Twist2& twist) { wanted_ = twist; }
+
+  /// What its guard shall tell the base for so long where this driver hangs.
+  void last_will(const geometry::Twist2& twist, runtime::Duration lasts) {
+    will_ = twist;
+    will_lasts_ = lasts;
+  }
 
   /// To be called once.
   void open(Options options) {
@@ -62,6 +68,8 @@ class BaseLine {
     const auto bytes = link_.cycle(wanted_, now());
     if (!bytes.empty() && replaceable) stream_->write_latest(bytes);
     if (!bytes.empty() && !replaceable) stream_->write(bytes);
+    const auto will = link_.velocity(will_);
+    stream_->last_will({will.data(), will.size()}, will_lasts_);
     using Mode = decltype(link_.mode(now()));
     if (link_.mode(now()) == Mode::kDisconnected) options_.lost(link_.reason());
   }
@@ -69,7 +77,8 @@ class BaseLine {
   runtime::Host& host_;
   Link link_;
   Options options_;
-  geometry::Twist2 wanted_;
+  geometry::Twist2 wanted_, will_;
+  runtime::Duration will_lasts_{};
   runtime::Stream* stream_ = nullptr;
   runtime::Timer timer_;
 };

@@ -135,6 +135,11 @@ void ObedientBase::drive() {
     decision_.twist = roll_out_.stop(known ? std::optional(report_.twist) : std::nullopt, now);
   }
   device_.drive(decision_.twist);
+  if (!device_.last_will) return;
+  const bool slides =
+      motors_off_ || report_.state == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
+  const auto rest = slides ? kinematics::RollOut::Rest{} : roll_out_.rest();
+  device_.last_will(rest.twist, rest.lasts);
 }
 
 void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request,

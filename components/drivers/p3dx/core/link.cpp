@@ -22,6 +22,12 @@ double way(std::uint16_t from, std::uint16_t to) {
   return 1e-3 * step;
 }
 
+std::array<Frame, 2> frames(const geometry::Twist2& twist) {
+  const double v = std::clamp(twist.v, -10.0, 10.0), w = std::clamp(twist.w, -10.0, 10.0);
+  return {encode(Command::kVelocity, static_cast<int>(std::lround(1e3 * v))),
+          encode(Command::kTurnRate, static_cast<int>(std::lround(geometry::degrees(w))))};
+}
+
 /// Which slot of the ring a sonar of the front array has; sonar 0 looks to the left.
 std::optional<std::size_t> slot_of(std::uint8_t number) {
   constexpr std::array<std::size_t, 8> kSlots = {9, 7, 6, 5, 4, 3, 2, 0};
@@ -179,9 +185,9 @@ void Link::reset() {
   released_ = true;
 }
 
-std::vector<std::uint8_t> Link::standstill() {
+std::vector<std::uint8_t> Link::velocity(const geometry::Twist2& twist) {
   std::vector<std::uint8_t> bytes;
-  for (const Frame& frame : {encode(Command::kVelocity, 0), encode(Command::kTurnRate, 0)})
+  for (const Frame& frame : frames(twist))
     bytes.insert(bytes.end(), frame.span().begin(), frame.span().end());
   return bytes;
 }
@@ -202,10 +208,7 @@ void Link::send_velocity(const geometry::Twist2& wanted, Time now) {
   }
   const bool drive =
       reported_mode_ == Mode::kReady && std::isfinite(wanted.v) && std::isfinite(wanted.w);
-  const double v = drive ? std::clamp(wanted.v, -10.0, 10.0) : 0.0;
-  const double w = drive ? std::clamp(wanted.w, -10.0, 10.0) : 0.0;
-  send(encode(Command::kVelocity, static_cast<int>(std::lround(1e3 * v))));
-  send(encode(Command::kTurnRate, static_cast<int>(std::lround(geometry::degrees(w)))));
+  for (const Frame& frame : frames(drive ? wanted : geometry::Twist2{})) send(frame);
   if (released_) forgives_until_ = now + kForgives;
   if (released_ || (reported_mode_ == Mode::kStandby && now - enabled_ >= kEnableAgain)) {
     send(encode(Command::kEnable, 1));

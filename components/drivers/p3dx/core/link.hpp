@@ -68,8 +68,8 @@ class Link {
     });
   }
 
-  /// Zero velocity, as a guard sends it for a driver that is gone.
-  static std::vector<std::uint8_t> standstill();
+  /// A velocity, as a guard sends it for a driver that is gone.
+  static std::vector<std::uint8_t> velocity(const geometry::Twist2& twist);
 
   /// What to send now, valid until the next call; call it at 25 Hz or more. Zero velocity goes out
   /// before the motors are switched on: the controller would resume what it was told last.

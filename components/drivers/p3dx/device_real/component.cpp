@@ -21,17 +21,20 @@ Link::Parameters P3dxComponent::read_parameters(runtime::Parameters& parameters)
 P3dxComponent::P3dxComponent(runtime::Host& host)
     : damaged_(host.health().counter("packets: damaged")),
       line_(host, Link(read_parameters(host.parameters()))),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
-                     .emergency_stop =
-                         [this] {
-                           line_.link().emergency_stop();
-                           remember();
-                         },
-                     .reset =
-                         [this] {
-                           line_.link().reset();
-                           remember();
-                         }}),
+      driver_(host,
+              {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
+               .emergency_stop =
+                   [this] {
+                     line_.link().emergency_stop();
+                     remember();
+                   },
+               .reset =
+                   [this] {
+                     line_.link().reset();
+                     remember();
+                   },
+               .last_will = [this](const geometry::Twist2& twist,
+                                   runtime::Duration lasts) { line_.last_will(twist, lasts); }}),
       memory_(host, kStoppedKey) {
   const double silence =
       host.parameters().number("guard_silence", "s", {0.1, 0.15}, 0.15,
@@ -41,7 +44,7 @@ P3dxComponent::P3dxComponent(runtime::Host& host)
   line_.open({.address = "serial:///dev/ttyUSB0?baud=9600",
               .text = "The base's line.",
               .cycle = kCycle,
-              .guard = {.safe = Link::standstill(), .silence = runtime::from_seconds(silence)},
+              .guard = {.safe = Link::velocity({}), .silence = runtime::from_seconds(silence)},
               .take =
                   [this](const Feedback& feedback) {
                     driver_.warn(line_.link().reason());

@@ -368,7 +368,7 @@ TEST(Link, MotorsThatSomebodySwitchedOffStayOffUntilReset) {
 }
 
 TEST(Link, StandstillIsZeroVelocity) {
-  const Bytes bytes = Link::standstill();
+  const Bytes bytes = Link::velocity({});
   EXPECT_TRUE(contains(bytes, encode(Command::kVelocity, 0)));
   EXPECT_TRUE(contains(bytes, encode(Command::kTurnRate, 0)));
 }

@@ -69,11 +69,11 @@ std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time n
     return output_;
   }
   if (asks_first()) {
-    output_ = standstill();
+    output_ = velocity({});
     return output_;
   }
   if (configured()) {
-    output_ = command(wanted, parameters_.calibration);
+    output_ = velocity(wanted);
     return output_;
   }
   struct Step {

@@ -49,8 +49,10 @@ class Link {
   /// line is closed. Nothing but zero goes out while the base is being configured or in emergency.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
 
-  /// The frame that commands zero and sets nothing.
-  PacketBytes standstill() const { return command({}, parameters_.calibration); }
+  /// The frame that commands this and sets nothing.
+  PacketBytes velocity(const geometry::Twist2& twist) const {
+    return command(twist, parameters_.calibration);
+  }
 
   /// An earlier driver saw it balance, and nobody has told it to balance anew since.
   void balanced_before() { balanced_ = true; }

@@ -45,15 +45,18 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
       incomplete_cycles_(host.health().counter("cycles: incomplete")),
       counter_jumps_(host.health().counter("odometers: jumped")),
       line_(host, Link(read_parameters(host.parameters()))),
-      driver_(host, {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
-                     .emergency_stop = [this] { emergency(true); },
-                     .reset = [this] { emergency(false); }}),
+      driver_(host,
+              {.drive = [this](const geometry::Twist2& twist) { line_.want(twist); },
+               .emergency_stop = [this] { emergency(true); },
+               .reset = [this] { emergency(false); },
+               .last_will = [this](const geometry::Twist2& twist,
+                                   runtime::Duration lasts) { line_.last_will(twist, lasts); }}),
       memory_(host, kEmergencyKey),
       balanced_(host, kBalancedKey) {
   const double silence =
       host.parameters().number("guard_silence", "s", {0.03, 0.15}, runtime::seconds(kGuardSilence),
                                "The guard commands zero when the driver is silent for so long.");
-  const auto zero = line_.link().standstill();
+  const auto zero = line_.link().velocity({});
   // Connecting sets the balance mode: a base that was switched off must stay so over a restart, and
   // one that balanced is asked first, because it may have gone off while no driver ran.
   if (!memory_.found().empty()) line_.link().emergency_stop();

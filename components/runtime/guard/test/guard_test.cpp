@@ -85,6 +85,43 @@ TEST(Guard, OverrulesASilentDriverUntilItWrites) {
   EXPECT_EQ(bench.tick(605), "0.");
 }
 
+TEST(Guard, SendsTheWillOfASilentDriverBeforeWhatIsSafe) {
+  Bench bench;
+  const auto will = [&](std::string_view text, int lasts) {
+    bench.guard.will({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
+                     milliseconds(lasts));
+  };
+  bench.hear("go", 0);
+  will("left.", 150);
+  EXPECT_EQ(bench.take(), "go");
+  EXPECT_EQ(bench.tick(100), "left.");
+  EXPECT_EQ(bench.tick(134), "left.");
+  EXPECT_EQ(bench.tick(249), "left.");
+  EXPECT_EQ(bench.tick(283), "0.");
+  bench.hear("go", 300);
+  EXPECT_EQ(bench.take(), "go");
+  EXPECT_EQ(bench.tick(400), "left.") << "it counts anew";
+  will("right.", 150);
+  EXPECT_EQ(bench.tick(434), "right.") << "a will is no sign of life, and the newest counts";
+  bench.hear("go", 450);
+  will("", 150);
+  bench.take();
+  EXPECT_EQ(bench.tick(550), "0.") << "none any more";
+  bench.hear("go", 600);
+  will(std::string(300, 'x'), 150);
+  bench.take();
+  EXPECT_EQ(bench.tick(700), "0.") << "longer than any";
+}
+
+TEST(Guard, WhoEndedIsFollowedSoonByAnotherOneWhoDecides) {
+  Bench bench;
+  bench.hear("go", 0);
+  bench.guard.will(std::vector<std::uint8_t>{'w'}, milliseconds(1000));
+  bench.take();
+  bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(), "0.");
+}
+
 TEST(Guard, AnEmptyMessageIsALifeSignToo) {
   Bench bench;
   bench.hear("go", 0);
