@@ -237,7 +237,8 @@ TEST(SupervisorLaws, RecoversFromEveryHistory) {
       world.supervisor.step(world.now());
       if (step == 60) {
         ASSERT_TRUE(
-            world.supervisor.request({1, "operator", Command::kClear, ""}, world.now()).done);
+            world.supervisor.request({1'000'000, "operator", Command::kClear, ""}, world.now())
+                .done);
       }
     }
     ASSERT_EQ(world.supervisor.decision().grant.writer, fresh)

@@ -459,6 +459,7 @@ TEST(Supervisor, AFullDiskIsToldAndBarsNothing) {
 TEST(Supervisor, OnlyAnOperatorClears) {
   Robot robot = ready();
   robot.ask(Command::kEmergencyStop);
+  robot.run(100);  // the operator is answered first
   const Answer answer = robot.supervisor.request({1, "tablet", Command::kClear, ""}, robot.now());
   EXPECT_FALSE(answer.done);
   EXPECT_EQ(answer.reason, "only an operator may clear faults");

@@ -180,10 +180,6 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
       parameters.number("depth_clear_range", "m", {0.5, 8}, 4.5, "Depth cameras clear no farther.");
   depth_settings_.overrules_static_map = false;
   depth_settings_.persistence = laser_settings_.persistence;
-  depth_near_range_ = parameters.number(
-      "depth_near_range", "m", {0, 2}, 0.6,
-      "Nearer than this the Kinect measures nothing and looks over the edge of a table: what is "
-      "marked there stays.");
   depth_blind_range_ = parameters.number(
       "depth_blind_range", "m", {0, 4}, 1.8,
       "Nearer than this the Kinect looks over low things: what is marked there stays.");
@@ -245,7 +241,6 @@ void CostmapComponent::add_layers(Map& map) {
   // only.
   ObstacleLayerConfig depth = depth_settings_;
   if (&map == &local_) depth.persistence = local_persistence_;
-  depth.min_raytrace_range = depth_near_range_;
   map.depth = add(depth);
   depth.name = "rear";
   depth.min_raytrace_range = rear_blind_range_;

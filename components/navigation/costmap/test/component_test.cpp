@@ -170,21 +170,6 @@ TEST_F(Component, KeepsWhatADepthCameraSawThatFallsSilent) {
   }
 }
 
-TEST_F(Component, KeepsTheEdgeOfATableThatTheKinectIsTooNearToSee) {
-  give_map();
-  run(200);
-  const auto see = [&](float range) {
-    for (int i = 0; i < 10; ++i) host.publish(topics::kKinectScan, scan("laser", range)), run(40);
-  };
-  see(1.0F);
-  base.x = 0.45;
-  see(std::numeric_limits<float>::infinity());
-  EXPECT_EQ(local_cost(1.0, 0.0), kLethalCost);
-  base.x = 0.0;
-  see(std::numeric_limits<float>::infinity());
-  EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost) << "from here it would see it";
-}
-
 TEST_F(Component, ForgetsALowThingThatIsGoneBeforeAWall) {
   give_map();
   run(200);
