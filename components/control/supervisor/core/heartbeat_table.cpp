@@ -45,12 +45,13 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   const auto index = static_cast<std::size_t>(entry - health_.data());
   Record& record = records_[index];
   ComponentHealth& health = health_[index];
+  const Time at = std::max(now, health.heard_at.value_or(now));  // an old one unsays nothing
   if (heartbeat.writer != record.writer) {
     // A, B, A: both live, and however many more are between. A, B alone is a restart.
     auto& earlier = record.earlier_writers;
     const bool again = std::find(earlier.begin(), earlier.end(), heartbeat.writer) != earlier.end();
     if (again && health.heard_at) {
-      record.conflict_at = now;
+      record.conflict_at = at;
     } else if (health.heard_at) {
       ++health.restarts;
     }
@@ -63,7 +64,7 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   record.reason = heartbeat.reason;
   health.longest_handler = heartbeat.longest_handler;
   if (health.host != heartbeat.host) health.host = heartbeat.host;
-  health.heard_at = now;
+  health.heard_at = at;
   return true;
 }
 

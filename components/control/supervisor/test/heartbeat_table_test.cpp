@@ -106,6 +106,14 @@ TEST(HeartbeatTable, DoesNotKnowWhatTheManifestDoesNot) {
   EXPECT_EQ(heartbeats.timeout("rogue"), milliseconds(0));
 }
 
+TEST(HeartbeatTable, AnOldHeartbeatUnsaysNoNewerOne) {
+  HeartbeatTable heartbeats = table();
+  heartbeats.hear(beat("amcl"), milliseconds(1000));
+  heartbeats.hear(beat("amcl"), milliseconds(0));
+  heartbeats.judge(milliseconds(1050));
+  EXPECT_EQ(heartbeats.find("amcl")->health, Health::kOk);
+}
+
 TEST(HeartbeatTable, ARestartIsNoConflictButTwoLivesAre) {
   HeartbeatTable heartbeats = table();
   heartbeats.hear(beat("amcl", Reported::kOk, 1), milliseconds(0));
@@ -116,6 +124,9 @@ TEST(HeartbeatTable, ARestartIsNoConflictButTwoLivesAre) {
   heartbeats.judge(milliseconds(70));
   EXPECT_EQ(heartbeats.find("amcl")->health, Health::kFault);
   EXPECT_EQ(heartbeats.find("amcl")->reason, "two live participants have this name");
+  heartbeats.hear(beat("amcl", Reported::kOk, 2), milliseconds(0));  // with an old stamp
+  heartbeats.judge(milliseconds(70));
+  EXPECT_EQ(heartbeats.find("amcl")->health, Health::kFault);
   for (int ms = 80; ms < 100; ms += 2) {  // so do three
     for (std::uint8_t writer = 4; writer < 7; ++writer)
       heartbeats.hear(beat("people", Reported::kOk, writer), milliseconds(ms));
