@@ -34,6 +34,7 @@ class Guard {
   /// Safe messages to a port that was just opened: the device may take the first one for the rest
   /// of what an earlier guard left half sent.
   static constexpr int kGreetings = 2;
+  static constexpr std::size_t kLongestWill = 256;  ///< bytes
 
   Guard(std::vector<std::uint8_t> safe, Time silence);
 
@@ -41,7 +42,6 @@ class Guard {
   void greet();
   /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
   /// messages, wait for it.
-  static constexpr std::size_t kLongestWill = 256;  ///< bytes
   bool heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now);
   /// What to send for so long, from when the driver is found silent; the newest counts, an empty
   /// one is none, a longer one than kLongestWill is none either. No sign of life.
