@@ -409,6 +409,19 @@ TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
   EXPECT_EQ(heard.find_first_not_of("[stop]drive"), std::string::npos) << heard;
 }
 
+TEST(GuardedStreams, SayTheLastWillOfASilentDriverBeforeWhatIsSafe) {
+  Server server;
+  Log log;
+  Streams streams;
+  Stream& stream = streams.open(server.uri(), guarded(log, 300ms));
+  server.accept_guard();
+  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  EXPECT_TRUE(stream.write(bytes("drive")));
+  stream.last_will(bytes("[none]"), 0ms);
+  stream.last_will(bytes("[turn]"), 290ms);  // three times in a silence of 300 ms
+  EXPECT_EQ(server.read(29), "drive[turn][turn][turn][stop]");
+}
+
 TEST(GuardedStreams, ReplaceAGuardThatHangs) {
   Server server;
   Log log;
