@@ -21,9 +21,11 @@ constexpr auto kUltrasonicAge = milliseconds(500);
 constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
-constexpr double kSeenLately = 0.5;         // [s] who was not seen for longer gets no room
-constexpr double kWalks = 0.3;              // [m/s] who walks is elsewhere when the robot comes
-constexpr double kWhiskerReach = 0.1;       // [m]
+constexpr double kSeenLately = 0.5;    // [s] who was not seen for longer gets no room
+constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
+constexpr double kWhiskerReach = 0.1;  // [m]
+constexpr auto kContactsKept = std::chrono::seconds(60);
+constexpr std::size_t kMostContacts = 64;
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
 // Every fifth scan of a sensor goes into the global costs, which planning reads once a second.
 constexpr int kGlobalShare = 5;
@@ -46,6 +48,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       invalid_ranges_(host.health().counter("ranges: invalid")),
       sensors_outside_(host.health().counter("scan: sensor outside")),
       rejected_maps_(host.health().counter("map: rejected")),
+      rejected_people_(host.health().counter("people: rejected")),
       transforms_(host) {
   auto& parameters = host.parameters();
   resolution_ =
@@ -102,8 +105,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                         "Half of an ultrasonic cone, where the laser explains echoes.");
   ultrasonic_cone_ = parameters.number("ultrasonic_cone", "rad", {0, 0.8}, 0.28,
                                        "Full width of a cone: an echo may come from all of it.");
-  echo_tolerance_ =
-      parameters.number("echo_tolerance", "m", {0, 1}, 0.3, "How far apart laser and echo may be.");
+  echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.15,
+                                      "How far apart laser and echo may be.");
 
   const auto judge = [&host](Beams& beams, runtime::Duration max_age, const std::string& name) {
     beams.max_age = max_age;
@@ -416,6 +419,29 @@ void CostmapComponent::place_whiskers(const usher_msgs::msg::Whiskers& message, 
   touch(message.back_left(), back, side);
   touch(message.back_right(), back, -side);
   if (!local_.costs->replace(local_.whiskers, touched, in_seconds(stamp))) ++rejected_scans_;
+  remember_contacts(touched, stamp);
+}
+
+/// On the map: what only a whisker feels is in no other layer, and once the robot has backed off
+/// the next plan would lead there again.
+void CostmapComponent::remember_contacts(std::span<const geometry::Point2> in_odom,
+                                         runtime::Time stamp) {
+  if (!global_.costs || (in_odom.empty() && contacts_.empty())) return;
+  const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
+  if (!map_T_odom) return;
+  std::erase_if(contacts_, [&](const Contact& one) { return stamp - one.stamp > kContactsKept; });
+  for (const geometry::Point2& point : in_odom) {
+    const geometry::Point2 place = *map_T_odom * point;
+    std::erase_if(contacts_, [&](const Contact& one) {
+      return (one.place - place).norm() < global_.costs->costs().resolution();
+    });
+    if (contacts_.size() == kMostContacts) contacts_.erase(contacts_.begin());
+    contacts_.push_back({place, stamp});
+  }
+  contact_places_.clear();
+  for (const Contact& one : contacts_) contact_places_.push_back(one.place);
+  if (!global_.costs->replace(global_.whiskers, contact_places_, in_seconds(stamp)))
+    ++rejected_scans_;
 }
 
 /// Room in the window for who is ahead (who comes from behind sees the robot), on the map for who
@@ -424,6 +450,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
   const runtime::Time stamp = wire::from_message(message.header().stamp());
   const auto base_T_odom = transforms_.lookup_planar(frames::kBaseFootprint, frames::kOdom, stamp);
   if (message.header().frame_id() != frames::kOdom || !base_T_odom) {
+    ++rejected_people_;
     forget_people();
     return;
   }

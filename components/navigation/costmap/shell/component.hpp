@@ -58,6 +58,7 @@ class CostmapComponent final : public runtime::Component {
                       const geometry::Pose2& odom_T_base);
   void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
                std::span<const float> ranges, runtime::Time stamp);
+  void remember_contacts(std::span<const geometry::Point2> in_odom, runtime::Time stamp);
   void take_people(const usher_msgs::msg::People& message);
   void forget_people();
   void publish_local();
@@ -80,11 +81,19 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
 
+  struct Contact {
+    geometry::Point2 place;  ///< in map
+    runtime::Time stamp;
+  };
+  std::vector<Contact> contacts_;  ///< of the whiskers, lately
+  std::vector<geometry::Point2> contact_places_;
+
   std::uint64_t& rejected_scans_;
   std::uint64_t& placeless_scans_;
   std::uint64_t& invalid_ranges_;
   std::uint64_t& sensors_outside_;
   std::uint64_t& rejected_maps_;
+  std::uint64_t& rejected_people_;
   std::string refused_map_;  ///< why; empty: the newest map was none that was refused
   Map local_, global_;
   std::optional<grid::OccupancyGrid> waiting_map_;  ///< for the window, until its place is known

@@ -153,6 +153,18 @@ TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   give_map();
   run(1500);
   EXPECT_EQ(reason(), "") << "neither was ever heard";
+  usher_msgs::msg::Whiskers whiskers;
+  for (int i = 0; i < 10; ++i) {
+    host.publish(topics::kUltrasonicFiltered, scan("ultrasonic", 1.2F));
+    run(20);
+    whiskers.header(wire::header(last_scan, frames::kBaseLink));
+    host.publish(topics::kWhiskers, whiskers);
+  }
+  EXPECT_EQ(local_cost(1.2, 0.0), kLethalCost);
+  run(1500);  // their ages are 0.5 and 0.3 s
+  EXPECT_EQ(reason(), "") << "both fell silent";
+  EXPECT_EQ(local_cost(1.2, 0.0), kLethalCost) << "the glass that was heard";
+  EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost) << "the laser goes on";
 }
 
 TEST_F(Component, KeepsWhatADepthCameraSawThatFallsSilent) {
@@ -261,6 +273,37 @@ TEST_F(Component, KeepsTheLastContactsOfWhiskersThatFallSilent) {
   host.publish(topics::kWhiskers, whiskers);
   run(1000);
   EXPECT_EQ(local_cost(0.4, 0.3), kLethalCost);
+}
+
+TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  const auto feel = [&](bool pressed) {
+    whiskers.header(wire::header(last_scan, frames::kBaseLink));
+    whiskers.front_left(pressed);
+    host.publish(topics::kWhiskers, whiskers);
+    run(1500);
+  };
+  feel(true);
+  base.x -= 1.0;  // it backs off
+  run(100);
+  feel(false);
+  EXPECT_LT(local_cost(0.42, 0.32), kLethalCost);
+  EXPECT_EQ(global_cost(0.42, 0.32), 252) << "to be crossed where there is no other way";
+  run(60'000);
+  feel(false);
+  EXPECT_LT(global_cost(0.42, 0.32), 252);
+}
+
+TEST_F(Component, CountsPeopleOfAnotherFrame) {
+  give_map();
+  run(500);
+  usher_msgs::msg::People people;
+  people.header(wire::header(last_scan, frames::kMap));
+  host.publish(topics::kPeople, people);
+  run(600);
+  EXPECT_EQ(host.counter("people: rejected"), 1U);
 }
 
 TEST_F(Component, DropsAndCountsLateScansOfItsOwnHost) {

@@ -25,7 +25,7 @@ std::vector<float> wall_beside(double offset) {
 std::vector<float> after_check(const std::vector<float>& laser, std::vector<float> echoes,
                                const geometry::Pose2& laser_pose = {}) {
   drop_explained_echoes({laser_pose, -90 * kDegree, kDegree, laser},
-                        {{}, -60 * kDegree, 30 * kDegree, {}}, 12 * kDegree, 0.3, echoes);
+                        {{}, -60 * kDegree, 30 * kDegree, {}}, 12 * kDegree, 0.15, echoes);
   return echoes;
 }
 
@@ -48,6 +48,19 @@ TEST(EchoCheck, ABeamHereAndThereThatGlassSendsBackExplainsNothing) {
   for (std::size_t beam = 80; beam < 102; beam += 3) laser[beam] = laser[beam + 1] = 1.5F;
   const auto echoes = after_check(laser, {kInfinity, kInfinity, 1.5F, kInfinity, kInfinity});
   EXPECT_FLOAT_EQ(echoes[2], 1.5F);
+}
+
+TEST(EchoCheck, GlassBeforeAPanelStays) {
+  const std::vector<float> panel(181, 1.25F);
+  const auto echoes = after_check(panel, {kInfinity, kInfinity, 1.0F, kInfinity, kInfinity});
+  EXPECT_FLOAT_EQ(echoes[2], 1.0F);
+}
+
+TEST(EchoCheck, GlassBehindAChairsLegStays) {
+  std::vector<float> laser(181, 8.0F);
+  for (std::size_t beam = 85; beam < 90; ++beam) laser[beam] = 0.6F;
+  const auto echoes = after_check(laser, {kInfinity, kInfinity, 2.0F, kInfinity, kInfinity});
+  EXPECT_FLOAT_EQ(echoes[2], 2.0F);
 }
 
 /// A laser's layer around the origin that remembers posts 5 cm wide.

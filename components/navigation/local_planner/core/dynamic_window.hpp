@@ -74,7 +74,7 @@ struct DynamicWindowConfig {
   double window = 0.4;          ///< [s] of the dynamic window
   int speed_samples = 8;        ///< 3 to 64
   int turn_samples = 25;        ///< 3 to 255
-  double simulated_time = 1.7;  ///< [s] 0.5 to 4
+  double simulated_time = 1.7;  ///< [s] 1 to 4
   int steps = 20;               ///< of the simulated time, 6 to 40
 
   double margin = 0.10;              ///< [m] left free after stopping

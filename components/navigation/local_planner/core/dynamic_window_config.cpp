@@ -24,7 +24,7 @@ Status check(const DynamicWindowConfig& c) {
       {"window", c.window, 0.02, 4.0},
       {"speed_samples", static_cast<double>(c.speed_samples), 3, 64},
       {"turn_samples", static_cast<double>(c.turn_samples), 3, 255},
-      {"simulated_time", c.simulated_time, 0.5, 4.0},
+      {"simulated_time", c.simulated_time, 1.0, 4.0},
       {"steps", static_cast<double>(c.steps), 6, 40},
       {"margin", c.margin, 0.0, 1.0},
       {"forward_point", c.forward_point, 0.0, 2.0},

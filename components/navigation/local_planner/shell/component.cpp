@@ -28,8 +28,8 @@ DynamicWindowConfig read_parameters(runtime::Host& host) {
       p.integer("speed_samples", "-", {3, 64}, c.speed_samples, "Speeds that are tried."));
   c.turn_samples = static_cast<int>(
       p.integer("turn_samples", "-", {3, 255}, c.turn_samples, "Turn rates that are tried."));
-  c.simulated_time = p.number("simulated_time", "s", {0.5, 4}, c.simulated_time,
-                              "How far each trial looks ahead.");
+  c.simulated_time =
+      p.number("simulated_time", "s", {1, 4}, c.simulated_time, "How far each trial looks ahead.");
   return c;
 }
 

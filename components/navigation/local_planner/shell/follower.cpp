@@ -232,14 +232,18 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
 void FollowerComponent::place_people(const geometry::Point2& here) {
   everybody_.clear();
   const auto* message = people_.fresh();
-  if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
+  if (message == nullptr) return;
+  if (message->header().frame_id() != frames::kOdom) {
+    ++rejected_;
+    return;
+  }
   const double age = runtime::seconds(host_.now() - people_.info()->effective);
   for (const auto& person : message->people()) {
     const geometry::Point2 velocity{person.vx(), person.vy()};
     const geometry::Point2 position = geometry::Point2{person.x(), person.y()} + age * velocity;
     if (!position.allFinite() || !velocity.allFinite()) continue;
     const bool near = (position - here).norm() < kBlind;
-    if (static_cast<double>(person.unseen()) > kSeenLately && !near) continue;
+    if (!(static_cast<double>(person.unseen()) <= kSeenLately) && !near) continue;
     everybody_.push_back({position, velocity, kBody});
   }
 }

@@ -88,6 +88,7 @@ Status check(const TrackerConfig& c) {
                  {"height_sigma", c.height_sigma, 0.02, 1.0},
                  {"confirmations", static_cast<double>(c.confirmations), 1, 30},
                  {"travel", c.travel, 0.0, 3.0},
+                 {"stands", c.stands, 1.0, 600.0},
                  {"patience", c.patience, 0.1, 2.0},
                  {"walk", c.walk, 0.5, 3.0},
                  {"memory", c.memory, 0.5, 30.0},
@@ -158,9 +159,13 @@ void Tracker::correct(Track& track, const Observation& observation, const Gain& 
   if (const auto camera = static_cast<std::size_t>(source); camera < track.appearances.size())
     imaging::learn(track.appearances[camera], observation.appearance);
   if (source != Source::kLaser) ++track.sightings;
-  if (track.confirmed) return;
-  track.fresh = track.sightings >= config_.confirmations ||
-                (track.position() - track.birthplace).norm() > config_.travel;
+  const bool walked = (track.position() - track.birthplace).norm() > config_.travel;
+  if (!track.confirmed) track.fresh = track.sightings >= config_.confirmations || walked;
+  if (walked) {
+    track.birthplace = track.position();
+    track.walked = now_;
+  }
+  if (track.sightings == 0 && now_ - track.walked > config_.stands) track.confirmed = false;
 }
 
 void Tracker::add(const Observation& observation, Source source, double time) {
@@ -174,7 +179,7 @@ void Tracker::add(const Observation& observation, Source source, double time) {
   track.covariance.bottomRightCorner<2, 2>() *= kFirstSpeed * kFirstSpeed;
   learn_height(track, observation);
   track.appearances = seen_by(source, observation.appearance);
-  track.born = time;
+  track.born = track.walked = time;
   track.seen.fill(kNever);
   track.seen[static_cast<std::size_t>(source)] = time;
   track.sightings = source == Source::kLaser ? 0 : 1;
@@ -249,6 +254,7 @@ void Tracker::recognize() {
     Track& hidden = tracks_[hidden_[static_cast<std::size_t>(pairs[i])]];
     track.id = hidden.id;
     track.born = hidden.born;
+    track.sightings += hidden.sightings;
     if (hidden.heights > track.heights)
       track.height = hidden.height, track.heights = hidden.heights;
     track.at_least = std::max(track.at_least, hidden.at_least);

@@ -41,6 +41,7 @@ struct Track {
   double born = 0.0;                    ///< [s]
   std::array<double, kSources> seen{};  ///< [s] last time by each source; -infinity: never
   geometry::Point2 birthplace = geometry::Point2::Zero();
+  double walked = 0.0;  ///< [s] when it got there
   int sightings = 0;
   bool confirmed = false;
   imaging::Appearances appearances;  ///< as Kinect and rear camera showed them lately
@@ -58,6 +59,7 @@ struct TrackerConfig {
   double height_sigma = 0.05;  ///< [m] {0.02..1} by which heights of one person differ
   int confirmations = 4;       ///< {1..30} sightings by a camera until somebody is believed
   double travel = 0.5;         ///< [m] {0..3} that legs must go, seen by the laser alone
+  double stands = 20.0;        ///< [s] {1..600} after which they do not count any more: a chair
   double patience = 0.4;       ///< [s] {0.1..2} until who is not confirmed is forgotten
   double walk = 1.5;           ///< [m/s] {0.5..3} how fast who was hidden may come out elsewhere
   double memory = 6.0;         ///< [s] {0.5..30} until who is not seen any more is forgotten
@@ -69,7 +71,8 @@ Status check(const TrackerConfig& config);
 /// nearest neighbours by position, height and the colors of clothes. Who is hidden is kept for some
 /// seconds where the person would have walked on, more and more uncertain, and found again there;
 /// whose clothes have clearly other colors is another one. Only cameras make people; legs in the
-/// laser must walk before they count.
+/// laser must walk before they count, and count no more when they have stood for long: a chair
+/// that somebody moved.
 class Tracker {
  public:
   static constexpr std::size_t kMost = 64;

@@ -26,6 +26,7 @@ constexpr double kBeside = 0.5;          // [m] from somebody who is followed, i
 constexpr double kShortest = 0.04;       // [s] in which a motion is measured
 constexpr double kLongest = 0.5;         // [s] after which nobody knows it
 constexpr double kRecently = 1.0;        // [s]
+constexpr double kAhead = 0.5;           // [rad]
 constexpr double kNape = 0.10;           // [m] from a face to the body's middle
 constexpr double kFaceHeight = 0.93;     // of the person's
 constexpr double kFarthestFace = 20.0;   // [m]
@@ -46,6 +47,8 @@ TrackerConfig tracker_parameters(runtime::Parameters& p) {
   TrackerConfig c;
   c.travel = p.number("travel", "m", {0.1, 3}, c.travel,
                       "So far must walk whom only the laser sees, before that counts as a person.");
+  c.stands = p.number("stands", "s", {1, 600}, c.stands,
+                      "Whom only the laser sees, and who has not walked for so long, is a thing.");
   c.memory = p.number("memory", "s", {0.5, 30}, c.memory,
                       "So long is remembered who is not seen any more.");
   return c;
@@ -81,6 +84,18 @@ AheadConfig ahead_parameters(runtime::Parameters& p) {
   c.reach = p.number("ahead.reach", "m", {0.5, 8}, c.reach, "So far ahead.");
   c.soon = p.number("ahead.soon", "s", {0, 3}, c.soon, "Who will be there by then is there.");
   return c;
+}
+
+/// A leaning laser meets the floor, and tells nothing of most beams.
+bool knows_ahead(const sensor_msgs::msg::LaserScan& scan) {
+  std::size_t known = 0, ahead = 0;
+  for (std::size_t i = 0; i < scan.ranges().size(); ++i) {
+    const double bearing = scan.angle_min() + scan.angle_increment() * static_cast<double>(i);
+    if (std::abs(bearing) > kAhead) continue;
+    ++ahead;
+    known += std::isnan(scan.ranges()[i]) ? 0 : 1;
+  }
+  return 2 * known >= ahead && ahead > 0;
 }
 
 bool seen_lately(const Track& track, double now) { return now - track.last_seen() < kRecently; }
@@ -122,6 +137,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       ahead_(ahead_parameters(host.parameters())),
       rejected_(host.health().counter("scans: rejected")),
       late_(host.health().counter("images: late")),
+      late_scans_(host.health().counter("scans: late")),
       rejected_faces_(host.health().counter("faces: rejected")),
       rejected_maps_(host.health().counter("maps: rejected")),
       transforms_(host) {
@@ -179,15 +195,16 @@ void Following::update(const sensor_msgs::msg::LaserScan& scan, runtime::Time st
   }
   const auto map_T_odom = localization();
   legs_trouble_ = !legs_->has_map() ? "no map" : !map_T_odom ? "robot not localized" : "";
-  if (*legs_trouble_ != '\0') {
-    tracker_->update(in_seconds(stamp), Source::kLaser, {});
-  } else {
-    looked_[static_cast<std::size_t>(Source::kLaser)] = host_.now();
-    const geometry::Pose2 odom_T_scan = odom_T_base * *base_T_scan;
-    const ScanView view{scan.angle_min(), scan.angle_increment(), scan.ranges()};
-    tracker_->update(in_seconds(stamp), Source::kLaser,
-                     legs_->find(view, *map_T_odom * odom_T_scan, odom_T_scan));
+  const bool usable = *legs_trouble_ == '\0';
+  const geometry::Pose2 odom_T_scan = odom_T_base * *base_T_scan;
+  const ScanView view{scan.angle_min(), scan.angle_increment(), scan.ranges()};
+  const auto legs = usable ? legs_->find(view, *map_T_odom * odom_T_scan, odom_T_scan)
+                           : std::span<const Observation>{};
+  if (!tracker_->update(in_seconds(stamp), Source::kLaser, legs)) {
+    ++late_scans_;
+    return;
   }
+  if (usable && knows_ahead(scan)) looked_[static_cast<std::size_t>(Source::kLaser)] = host_.now();
   note(stamp, odom_T_base);
   publish();
 }
@@ -227,7 +244,6 @@ std::optional<geometry::Pose2> Following::localization() const {
 
 void Following::see(Source source, runtime::Time stamp, std::span<const Sighting> sightings,
                     const geometry::Pose2& odom_T_base, const geometry::Pose2& base_T_foot) {
-  looked_[static_cast<std::size_t>(source)] = host_.now();
   place_sightings(sightings, odom_T_base * base_T_foot, errors_, observations_);
   // Who is followed may lean on a wall.
   if (const auto map_T_odom = localization()) {
@@ -239,6 +255,7 @@ void Following::see(Source source, runtime::Time stamp, std::span<const Sighting
     ++late_;
     return;
   }
+  looked_[static_cast<std::size_t>(source)] = host_.now();
   note(stamp, odom_T_base);
   publish();
 }

@@ -76,6 +76,7 @@ class Following {
   tf2_msgs::msg::TFMessage frames_message_;
   std::uint64_t& rejected_;
   std::uint64_t& late_;
+  std::uint64_t& late_scans_;
   std::uint64_t& rejected_faces_;
   std::uint64_t& rejected_maps_;
 

@@ -38,6 +38,8 @@ class Component : public testing::Test {
       scan.range_min(0.01F);
       scan.range_max(20.0F);
       scan.ranges(room.ranges);
+      for (std::size_t beam = 210; blind_ahead && beam < 331; ++beam)
+        scan.ranges()[beam] = std::numeric_limits<float>::quiet_NaN();
       host.publish(topics::kScanFiltered, scan);
       host.run_for(milliseconds(20));
     }
@@ -59,7 +61,7 @@ class Component : public testing::Test {
                          "robot.half_width: 0.33 m"};
   const Pose2 map_T_odom{0.5, 0.5, 0.3};
   const Pose2 odom_T_base{0.4, 0.6, 0.1};
-  bool localized = false;
+  bool localized = false, blind_ahead = false;
   double time = 0.0;
 };
 
@@ -112,6 +114,9 @@ TEST_F(Component, DoesNotSayThatNobodyIsInTheWayWhereItDoesNotLook) {
   localize();
   run(0.5, standing);
   EXPECT_TRUE(host.last(topics::kPersonAhead)->clear());
+  blind_ahead = true;
+  run(0.5, standing);
+  EXPECT_FALSE(host.last(topics::kPersonAhead)->clear()) << "the laser leans: the floor ahead";
 }
 
 TEST_F(Component, SaysWhyAMapIsRefusedUntilThereIsABetterOne) {
@@ -245,7 +250,8 @@ class SimComponent : public testing::Test {
     message.transforms({wire::transform(host.now(), frames::kMap, frames::kOdom, {})});
     host.publish(topics::kTf, message);
   }
-  void run(int ms, bool people, const char* frame = "kinect_level") {
+  void run(int ms, bool people, const char* frame = "kinect_level",
+           milliseconds late = milliseconds(0)) {
     for (int at = 0; at < ms; at += 33) {
       tf2_msgs::msg::TFMessage places;
       places.transforms().push_back(wire::transform(
@@ -254,7 +260,7 @@ class SimComponent : public testing::Test {
           host.now(), frames::kBaseFootprint, "kinect_level", geometry::to_space({0.2, 0.0, 0.0})));
       host.publish(topics::kTf, places);
       usher_sim_msgs::msg::Sightings seen;
-      seen.header(wire::header(host.now(), frame));
+      seen.header(wire::header(host.now() - late, frame));
       seen.sightings().resize(2);
       seen.sightings()[0].forward(2.5);
       seen.sightings()[0].height(1.7);
@@ -324,6 +330,30 @@ TEST_F(SimComponent, WhoIsFollowedMayLeanOnAWall) {
   ASSERT_EQ(host.last(topics::kPeople)->people().size(), 1U);
   EXPECT_TRUE(host.last(topics::kPeople)->people()[0].by_kinect());
   EXPECT_EQ(host.last(topics::kPeople)->people()[0].id(), 1U);
+}
+
+TEST_F(SimComponent, ACameraWhoseImagesAreAllLeftOutDoesNotLook) {
+  const auto see_with_a_scan = [this](milliseconds late) {
+    for (int i = 0; i < 20; ++i) {
+      run(33, true, "kinect_level", late);
+      sensor_msgs::msg::LaserScan scan;  // without a map the laser looks for nobody
+      scan.header(wire::header(host.now(), "kinect_level"));
+      scan.angle_min(-0.1F);
+      scan.angle_max(0.1F);
+      scan.angle_increment(0.1F);
+      scan.range_min(0.01F);
+      scan.range_max(20.0F);
+      scan.ranges({5.0F, 5.0F, 5.0F});
+      host.publish(topics::kScanFiltered, scan);
+      host.run_for(milliseconds(2));
+    }
+  };
+  see_with_a_scan(milliseconds(0));
+  EXPECT_TRUE(host.last(topics::kPeople)->kinect_looks());
+  see_with_a_scan(milliseconds(400));
+  EXPECT_GT(host.counter("images: late"), 5U);
+  EXPECT_FALSE(host.last(topics::kPeople)->kinect_looks());
+  EXPECT_FALSE(host.last(topics::kPersonAhead)->clear());
 }
 
 TEST_F(SimComponent, SightingsOfAnUnknownFrameAreDroppedAndCounted) {

@@ -53,6 +53,29 @@ TEST(Tracker, BelievesACameraAfterSomeSightingsAndTheLaserWhenLegsWalk) {
   EXPECT_EQ(legs.people().size(), 1U);
 }
 
+TEST(Tracker, WhatTheLaserAloneSeesStandForLongIsAChairThatSomebodyMoved) {
+  Tracker legs({}), seen({});
+  double time = 10.0, y = 0.0;
+  const auto go = [&](double seconds, double speed) {
+    for (const double end = time + seconds; time < end; time += kPeriod, y += speed * kPeriod) {
+      legs.update(time, Source::kLaser, std::vector{at(2, y, 0)});
+      seen.update(time, Source::kLaser, std::vector{at(2, y, 0)});
+    }
+  };
+  go(2.0, 0.8);
+  for (int i = 0; i < 4; ++i) seen.update(time, Source::kRearCamera, std::vector{at(2, y)});
+  ASSERT_EQ(legs.people().size(), 1U);
+  const auto id = legs.people()[0].id;
+  go(15.0, 0.0);
+  EXPECT_EQ(legs.people().size(), 1U) << "somebody waits";
+  go(10.0, 0.0);
+  EXPECT_TRUE(legs.people().empty());
+  EXPECT_EQ(seen.people().size(), 1U) << "a camera saw that it is somebody";
+  go(2.0, 0.8);
+  ASSERT_EQ(legs.people().size(), 1U) << "walks on";
+  EXPECT_EQ(legs.people()[0].id, id);
+}
+
 TEST(Tracker, KnowsPositionAndVelocity) {
   Tracker tracker({});
   Random random(3);

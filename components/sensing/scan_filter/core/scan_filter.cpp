@@ -39,7 +39,8 @@ Result<ScanFilter> ScanFilter::make(const ScanFilterConfig& c) {
                                     {"floor_margin", c.floor_margin, 0, 1, "m"},
                                     {"floor_angle", c.floor_angle, 0, 0.1, "rad"},
                                     {"floor_time", c.floor_time, 0, 0.1, "s"},
-                                    {"max_height", c.max_height, 0.1, 10, "m"}});
+                                    {"max_height", c.max_height, 0.1, 10, "m"},
+                                    {"mixed_from", c.mixed_from, 0, 1000, "m"}});
       !status)
     return Error{status.error()};
   return ScanFilter(c);
@@ -75,7 +76,10 @@ Status ScanFilter::filter(const ScanGeometry& geometry, std::span<const float> r
   out.geometry = {geometry.angle_min + static_cast<double>(first_) * geometry.angle_increment,
                   geometry.angle_increment, 0.5 * geometry.range_min, geometry.range_max + 0.5};
   out.ranges.assign(cos_.size(), kNothing);
-  if (config_.joined) find_surfaces();
+  if (config_.joined) {
+    find_surfaces();
+    drop_mixed();
+  }
   join_ends(out.ranges);
   place_lone_ends(out.ranges);
   fill_free(out.ranges);
@@ -196,6 +200,26 @@ void ScanFilter::find_surfaces() {
     joined_[i] =
         static_cast<std::uint8_t>((kind_[i] == kind_[i + 1]) & (kind_[i] != Kind::kUnknown) &
                                   (across > 0.0f) & (across <= widest_ * along) & (step < limit));
+  }
+}
+
+// A lone end between a nearer and a farther neighbour. A thing in front of both is nearer than
+// they, and a wall that is met at a grazing angle has distances whose inverses lie on a line.
+void ScanFilter::drop_mixed() {
+  const auto from = static_cast<float>(config_.mixed_from);
+  const auto distance = [&](std::size_t i) {
+    return kind_[i] == Kind::kEnd ? away_[i] : kInfinity;
+  };
+  for (std::size_t i = 1; i + 1 < kind_.size(); ++i) {
+    if (kind_[i] != Kind::kEnd || away_[i] < from || joined_[i - 1] != 0 || joined_[i] != 0)
+      continue;
+    if (kind_[i - 1] == Kind::kUnknown || kind_[i + 1] == Kind::kUnknown) continue;
+    const auto [near, far] = std::minmax({distance(i - 1), distance(i + 1)});
+    if (!(near < away_[i] && away_[i] < far)) continue;
+    const float on_a_wall = 2.0f / (1.0f / near + 1.0f / far);
+    if (std::abs(away_[i] - on_a_wall) < kJump) continue;
+    kind_[i] = Kind::kUnknown;
+    ++counts_.mixed;
   }
 }
 

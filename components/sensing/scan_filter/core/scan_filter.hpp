@@ -32,6 +32,9 @@ struct ScanFilterConfig {
   std::size_t least_echoes = 0;  ///< fewer beams with a range say that the sensor is blind
   bool joined =
       true;  ///< beams are so close that two neighbours on one surface stand for all between
+  /// [m] lone ends from here on between a nearer and a farther neighbour are mixed; nearer ones
+  /// are kept: no thing within a stop is left out.
+  double mixed_from = 1.5;
 };
 
 /// What a scan says about its own beams.
@@ -61,6 +64,7 @@ struct FilterCounts {
   std::uint64_t floor = 0;     ///< beams that met the floor or a hole in it
   std::uint64_t high = 0;      ///< beams above max_height
   std::uint64_t invalid = 0;   ///< NaN, negative or nearer than range_min
+  std::uint64_t mixed = 0;     ///< ends between two surfaces, where nothing is
 };
 
 /// Takes the lean out of a planar scan: thesis section 4.3 with its corrections.
@@ -81,6 +85,9 @@ struct FilterCounts {
 ///    sampled again at the regular angles (straight between two ends that belong together, nearest
 ///    angle for those that stand alone), so that walls stay straight and where they are. An upright
 ///    scan comes out unchanged.
+///
+/// 5. A beam whose spot falls on an edge returns from somewhere between both surfaces
+/// [tuley2005artifacts]. It becomes "nothing known" where `joined`, from `mixed_from` on.
 ///
 /// A beam without an echo stays "free" while it keeps between floor and max_height up to its full
 /// range, else nothing is known. No allocation after the first scan; about 6 us for 541 beams.
@@ -119,6 +126,7 @@ class ScanFilter {
   View view(double pitch) const;
   void project(std::span<const float> ranges, const Pitch& at_first, const Pitch& at_last);
   void find_surfaces();
+  void drop_mixed();
   void join_ends(std::vector<float>& out) const;
   void place_lone_ends(std::vector<float>& out) const;
   void fill_free(std::vector<float>& out) const;

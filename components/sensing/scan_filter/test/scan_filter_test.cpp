@@ -69,7 +69,7 @@ TEST(ScanFilter, LeavesAnUprightScanAsItIs) {
   for (float& r : ranges) {
     r = random.uniform() < 0.1 ? kInf : static_cast<float>(random.uniform(0.5, 19.0));
   }
-  ScanFilter f = filter();
+  ScanFilter f = filter({.mixed_from = 20.0});
   PlanarScan out;
   ASSERT_TRUE(f.filter(lms100(), ranges, {}, out).ok());
   EXPECT_EQ(out.base_T_scan, (geometry::Pose2{0.28, 0.0, 0.0}));
@@ -260,6 +260,58 @@ TEST(ScanFilter, DrawsNothingBetweenAPillarAndTheWallBehind) {
     }
     EXPECT_NEAR(on_pillar, 11, 1) << degrees;
   }
+}
+
+/// A pillar 2.6 m ahead before a wall at 3.4 m, its edge between the beams 295 and 296, and the
+/// beam at its edge.
+std::vector<float> pillar_with_an_edge_at(float range) {
+  const std::vector<Wall> far{{0.0, 3.4}};
+  const std::vector<Wall> near{{0.0, 2.6}};
+  auto ranges = see(far, 0.0);
+  const auto pillar = see(near, 0.0);
+  std::copy(pillar.begin() + 285, pillar.begin() + 296, ranges.begin() + 285);
+  ranges[296] = range;
+  return ranges;
+}
+constexpr std::size_t kEdge = 296 - 41;  // of what is within the bearing limit
+
+TEST(ScanFilter, KnowsNothingOfABeamBetweenTwoSurfaces) {
+  PlanarScan out;
+  ScanFilter f = filter();
+  ASSERT_TRUE(f.filter(lms100(), pillar_with_an_edge_at(2.9F), {}, out).ok());
+  EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
+  EXPECT_EQ(f.counts().mixed, 1U);
+  EXPECT_TRUE(std::isfinite(out.ranges[kEdge - 1]) && std::isfinite(out.ranges[kEdge + 1]));
+
+  auto open = pillar_with_an_edge_at(2.9F);  // and nothing behind
+  std::fill(open.begin() + 297, open.end(), kInf);
+  ASSERT_TRUE(f.filter(lms100(), open, {}, out).ok());
+  EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
+}
+
+TEST(ScanFilter, KeepsAThingBeforeTwoSurfacesAndWhateverIsNear) {
+  PlanarScan out;
+  ScanFilter f = filter();
+  ASSERT_TRUE(f.filter(lms100(), pillar_with_an_edge_at(1.9F), {}, out).ok());
+  EXPECT_FLOAT_EQ(out.ranges[kEdge], 1.9F) << "a leg before both";
+
+  auto near = pillar_with_an_edge_at(1.4F);
+  std::fill(near.begin() + 285, near.begin() + 296, 1.0F);
+  ASSERT_TRUE(f.filter(lms100(), near, {}, out).ok());
+  EXPECT_FLOAT_EQ(out.ranges[kEdge], 1.4F) << "within a stop";
+  EXPECT_EQ(f.counts().mixed, 0U);
+}
+
+TEST(ScanFilter, KeepsAWallThatIsMetAtAGrazingAngle) {
+  const std::vector<Wall> beside{{radians(90), 0.2}};
+  PlanarScan out;
+  ScanFilter f = filter();
+  ASSERT_TRUE(f.filter(lms100(), see(beside, 0.0), {}, out).ok());
+  EXPECT_GT(std::count_if(out.ranges.begin(), out.ranges.end(),
+                          [](float r) { return r > 4.0F && r < 15.0F; }),
+            2)
+      << "the wall's far end";
+  EXPECT_LE(f.counts().mixed, 1U) << "its last beam";
 }
 
 TEST(ScanFilter, DropsWhatIsAboveTheRobot) {
