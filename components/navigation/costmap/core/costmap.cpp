@@ -151,7 +151,6 @@ Status Costmap::move_to(const geometry::Pose2& base) {
   static_states_.set_origin(geometry.origin_x, geometry.origin_y);
   shift_cells(static_states_.values(), raster_.width, raster_.height, dx, dy, kUnseen);
   if (!static_stale_) sample_entered(dx, dy);
-  moving_ = true;
   dirty_ = raster_.all();
   return {};
 }
@@ -218,7 +217,6 @@ const grid::Grid<std::uint8_t>& Costmap::update(double now) {
   master_.set_origin(geometry.origin_x, geometry.origin_y);
   social_.paint(raster_, master_);
   dirty_ = {};
-  moved_ = std::exchange(moving_, false);
   return master_;
 }
 

@@ -89,17 +89,11 @@ class Costmap {
   const grid::Grid<std::uint8_t>& costs() const { return master_; }
   /// Cells that the last update wrote: all when the window moved; the others kept their value.
   const CellRect& changed() const { return changed_; }
-  /// The last update moved the window.
-  bool moved() const { return moved_; }
   /// Makes the next update compute everything anew.
   void invalidate();
 
   /// Cost at a point of the costmap's frame; nothing outside of the window (or for NaN).
   std::optional<std::uint8_t> cost_at(const geometry::Point2& point) const;
-  /// What lies under the footprint at a pose in the costmap's frame.
-  FootprintReading footprint_at(const geometry::Pose2& base) const {
-    return footprint_reading(master_, footprint_.corners(), base);
-  }
 
   const geometry::Footprint& footprint() const { return footprint_; }
   const Raster& raster() const { return raster_; }
@@ -126,8 +120,6 @@ class Costmap {
   std::optional<geometry::Pose2> base_;
   CellRect dirty_;
   CellRect changed_;
-  bool moved_ = false;
-  bool moving_ = false;  // the window moved since the last update
 };
 
 }  // namespace usher::costmap

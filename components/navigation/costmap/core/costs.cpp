@@ -1,6 +1,5 @@
 #include "navigation/costmap/core/costs.hpp"
 
-#include <cassert>
 #include <cmath>
 
 namespace usher::costmap {
@@ -11,11 +10,6 @@ std::uint8_t CostDecay::at(double distance) const {
   if (distance <= inscribed_radius + kRounding) return kInscribedCost;
   if (distance > inflation_radius + kRounding) return kFreeCost;
   return static_cast<std::uint8_t>(252.0 * std::exp(-cost_scaling * (distance - inscribed_radius)));
-}
-
-double cost_scaling_for_band(double inscribed_radius, double circumscribed_radius) {
-  assert(circumscribed_radius > inscribed_radius);
-  return std::log(252.0 / kThesisInscribedCost) / (circumscribed_radius - inscribed_radius);
 }
 
 }  // namespace usher::costmap

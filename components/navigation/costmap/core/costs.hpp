@@ -14,7 +14,7 @@ namespace usher::costmap {
 ///     255       unknown    no layer knows the cell, no obstacle within the inscribed radius
 ///     254       lethal     an obstacle is in the cell
 ///     253       inscribed  an obstacle within the inscribed radius: contact at every heading
-///     252 .. 1  near       contact at some headings, ask footprint_reading();
+///     252 .. 1  near       contact at some headings: what the footprint touches decides;
 ///                          trunc(252 exp(-cost_scaling (d - inscribed_radius))), where d is the
 ///                          distance to the nearest lethal cell, centre to centre
 ///     0         free       no obstacle within the inflation radius
@@ -22,13 +22,11 @@ namespace usher::costmap {
 /// The MARVIN thesis (5.2.4) reads the same byte in bands: 254 lethal, 253..128 "inscribed", 127..1
 /// "possibly circumscribed", 0 free, unknown as free until seen. Its "inscribed" band is our 253
 /// and the upper half of our decay: d up to inscribed_radius + ln(252 / 128) / cost_scaling. A
-/// reader with the thesis' threshold 128 is therefore only more careful, never less; with
-/// cost_scaling_for_band() that band ends at the circumscribed radius.
+/// reader with the thesis' threshold 128 is therefore only more careful, never less.
 using grid::kFreeCost;
 using grid::kInscribedCost;
 using grid::kLethalCost;
 using grid::kUnknownCost;
-inline constexpr std::uint8_t kThesisInscribedCost = 128;
 
 /// How costs fall with the distance to the nearest obstacle. All lengths in m.
 struct CostDecay {
@@ -40,10 +38,6 @@ struct CostDecay {
   /// at both radii.
   std::uint8_t at(double distance) const;
 };
-
-/// The cost_scaling [1/m] with which the thesis' "inscribed" band (costs of 128 and more) ends at
-/// the circumscribed radius. The circumscribed radius must be the larger one.
-double cost_scaling_for_band(double inscribed_radius, double circumscribed_radius);
 
 /// Occupancy of a cost as nav_msgs/OccupancyGrid and rviz expect it: unknown -1, free 0,
 /// near 1..98, inscribed 99, lethal 100.

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "navigation/costmap/core/costs.hpp"
-
 namespace usher::costmap {
 
 using geometry::Point2;
@@ -113,28 +111,6 @@ CellSpan PolygonRaster::inner_span(int y) const {
   }
   if (!(left < right)) return {y, 0, 0};
   return {y, static_cast<int>(std::ceil(left)), static_cast<int>(std::floor(right))};
-}
-
-FootprintReading footprint_reading(const grid::Grid<std::uint8_t>& costs,
-                                   std::span<const Point2> footprint, const geometry::Pose2& pose) {
-  FootprintReading reading;
-  if (!pose.finite() || costs.empty()) {
-    reading.leaves_grid = true;
-    return reading;
-  }
-  const PolygonRaster raster(footprint, pose, costs.geometry());
-  reading.leaves_grid = raster.leaves_grid();
-  raster.for_each_span([&](const CellSpan& span) {
-    const std::uint8_t* row = costs.row(span.y);
-    for (int x = span.x0; x < span.x1; ++x) {
-      if (row[x] == kUnknownCost) {
-        reading.touches_unknown = true;
-      } else {
-        reading.highest_cost = std::max(reading.highest_cost, row[x]);
-      }
-    }
-  });
-  return reading;
 }
 
 }  // namespace usher::costmap

@@ -69,19 +69,4 @@ class PolygonRaster {
   bool leaves_grid_ = false;
 };
 
-/// What lies under a footprint.
-struct FootprintReading {
-  std::uint8_t highest_cost = 0;  ///< of the known cells; kLethalCost is contact
-  bool touches_unknown = false;
-  bool leaves_grid = false;  ///< a part is outside of the grid, where nothing is known
-
-  bool operator==(const FootprintReading&) const = default;
-};
-
-/// Reads all cells of a cost grid that the footprint touches at a pose in the grid's frame. A pose
-/// that is not finite reads as outside of the grid.
-FootprintReading footprint_reading(const grid::Grid<std::uint8_t>& costs,
-                                   std::span<const geometry::Point2> footprint,
-                                   const geometry::Pose2& pose);
-
 }  // namespace usher::costmap

@@ -26,12 +26,6 @@ TEST(CostDecay, NeverRisesWithDistance) {
   }
 }
 
-TEST(CostScalingForBand, EndsTheThesisBandAtTheCircumscribedRadius) {
-  const CostDecay decay{0.3, 0.8, cost_scaling_for_band(0.3, 0.45)};
-  EXPECT_GE(decay.at(0.4499), kThesisInscribedCost);
-  EXPECT_LT(decay.at(0.4501), kThesisInscribedCost);
-}
-
 TEST(OccupancyOfCost, IsThatOfRos) {
   EXPECT_EQ(kOccupancyOfCost[kFreeCost], 0);
   EXPECT_EQ(kOccupancyOfCost[1], 1);

@@ -10,6 +10,7 @@
 #include "foundation/geometry/footprint.hpp"
 #include "foundation/random/random.hpp"
 #include "navigation/costmap/core/costs.hpp"
+#include "navigation/costmap/test/footprint_reading.hpp"
 
 namespace usher::costmap {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "foundation/geometry/angle.hpp"
-#include "foundation/result/bounds.hpp"
 
 namespace usher::people_detector {
 
@@ -33,13 +32,6 @@ PlacedCamera place_camera(const geometry::Pose3& base_T_optical) {
   return {{base_T_optical.translation.z(), std::asin(std::clamp(-turned(2, 0), -1.0, 1.0)),
            std::atan2(turned(2, 1), turned(2, 2))},
           {base_T_optical.translation.x(), base_T_optical.translation.y(), yaw}};
-}
-
-Status check(const SightingErrors& e) {
-  return within({{"along", e.along, 0.01, 0.5, "m"},
-                 {"along_growth", e.along_growth, 0.0, 0.2},
-                 {"across", e.across, 0.01, 0.5, "m"},
-                 {"across_growth", e.across_growth, 0.0, 0.2}});
 }
 
 void place_sightings(std::span<const Sighting> sightings, const geometry::Pose2& odom_T_foot,

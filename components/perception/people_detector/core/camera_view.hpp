@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "foundation/geometry/pose3.hpp"
-#include "foundation/result/result.hpp"
 #include "perception/people_detector/core/depth_detector.hpp"
 #include "perception/people_detector/core/tracker.hpp"
 
@@ -27,7 +26,6 @@ struct SightingErrors {
   double across = 0.05;         ///< [m] {0.01..0.5} beside it
   double across_growth = 0.01;  ///< [-] {0..0.2}
 };
-Status check(const SightingErrors& errors);
 
 /// Sightings as observations in odom; `observations` is cleared first. Whoever is close behind
 /// another one has neither height nor colors: they may be the other's.

@@ -4,8 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "foundation/result/bounds.hpp"
-
 namespace usher::people_detector {
 
 namespace {
@@ -32,14 +30,6 @@ OnArc on_arc(const Point2& point, double curvature) {
 }
 
 }  // namespace
-
-Status check(const AheadConfig& c) {
-  return within({{"half_width", c.half_width, 0.1, 1.0, "m"},
-                 {"beside", c.beside, 0.0, 2.0, "m"},
-                 {"reach", c.reach, 0.5, 8.0, "m"},
-                 {"soon", c.soon, 0.0, 3.0, "s"},
-                 {"unseen", c.unseen, 0.1, 5.0, "s"}});
-}
 
 std::optional<PersonInTheWay> person_ahead(std::span<const Track> people, double now,
                                            const geometry::Pose2& odom_T_base,

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "foundation/geometry/pose2.hpp"
-#include "foundation/result/result.hpp"
 #include "perception/people_detector/core/tracker.hpp"
 
 namespace usher::people_detector {
@@ -18,7 +17,6 @@ struct AheadConfig {
   double soon = 1.0;         ///< [s] {0..3} who will be in the way by then is in it
   double unseen = 0.5;       ///< [s] {0.1..5} who was not seen for longer is nowhere
 };
-Status check(const AheadConfig& config);
 
 /// Somebody in the way or close beside the robot, seen from base_footprint.
 struct PersonInTheWay {

@@ -3,9 +3,6 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
-#include <string>
-
-#include "foundation/result/bounds.hpp"
 
 namespace usher::people_detector {
 
@@ -79,20 +76,6 @@ Eigen::Matrix2d covariance_along(double bearing, double along, double across) {
   const Eigen::Vector2d sight(std::cos(bearing), std::sin(bearing));
   return across * across * Eigen::Matrix2d::Identity() +
          (along * along - across * across) * sight * sight.transpose();
-}
-
-Status check(const TrackerConfig& c) {
-  return within({{"acceleration", c.acceleration, 0.1, 5.0},
-                 {"gate", c.gate, 1.0, 50.0},
-                 {"reach", c.reach, 0.2, 3.0},
-                 {"height_sigma", c.height_sigma, 0.02, 1.0},
-                 {"confirmations", static_cast<double>(c.confirmations), 1, 30},
-                 {"travel", c.travel, 0.0, 3.0},
-                 {"stands", c.stands, 1.0, 600.0},
-                 {"patience", c.patience, 0.1, 2.0},
-                 {"walk", c.walk, 0.5, 3.0},
-                 {"memory", c.memory, 0.5, 30.0},
-                 {"coasting", c.coasting, 0.1, 5.0}});
 }
 
 /// White noise on the acceleration; who was not seen for a moment is taken to slow down.

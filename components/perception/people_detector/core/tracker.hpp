@@ -10,7 +10,6 @@
 
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/imaging/appearance.hpp"
-#include "foundation/result/result.hpp"
 #include "perception/people_detector/core/assignment.hpp"
 
 namespace usher::people_detector {
@@ -65,7 +64,6 @@ struct TrackerConfig {
   double memory = 6.0;         ///< [s] {0.5..30} until who is not seen any more is forgotten
   double coasting = 0.8;       ///< [s] {0.1..5} in which who is not seen is taken to slow down
 };
-Status check(const TrackerConfig& config);
 
 /// Follows people over time and sensors: a Kalman filter of constant velocity for each, global
 /// nearest neighbours by position, height and the colors of clothes. Who is hidden is kept for some

@@ -65,11 +65,5 @@ TEST(PlaceSightings, MeasureNobodyCloseBehindAnotherOne) {
   EXPECT_EQ(placed[3].height, 1.7);
 }
 
-TEST(SightingErrors, SayWhatCannotBe) {
-  EXPECT_TRUE(check(SightingErrors{}));
-  EXPECT_NE(check(SightingErrors{.along = 2.0}).error().find("along must be in"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace usher::people_detector

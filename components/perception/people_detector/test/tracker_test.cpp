@@ -328,13 +328,6 @@ TEST(Tracker, IgnoresWhatIsNotFiniteAndTimesOfThePast) {
   EXPECT_LE(tracker.people().size(), Tracker::kMost);
 }
 
-TEST(TrackerConfig, SaysWhatCannotBe) {
-  TrackerConfig config;
-  EXPECT_TRUE(check(config));
-  config.memory = 100.0;
-  EXPECT_NE(check(config).error().find("memory must be in"), std::string::npos);
-}
-
 constexpr std::size_t kPeople = 4;
 constexpr int kColorsEvery = 3;  // images
 constexpr double kApart = 0.05;  // [m] from whose height nobody's is who passes by one followed
