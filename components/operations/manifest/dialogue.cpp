@@ -8,7 +8,7 @@
 #include "interaction/phrases/core/phrase_file.hpp"
 #include "interaction/speech/core/conversation.hpp"
 #include "interaction/tablet/core/tablet.hpp"
-#include "runtime/parameters/interpret.hpp"
+#include "operations/manifest/setting.hpp"
 #include "tasks/guide/core/texts.hpp"
 #include "tasks/meeting/core/texts.hpp"
 
@@ -26,24 +26,6 @@ constexpr Section kSections[] = {{"guide", guide::kTextKeys, true},
                                  {"meeting", meeting::kTextKeys, true},
                                  {"tablet", tablet::kTextKeys, false},
                                  {"speech", speech::kTextKeys, false}};
-
-struct Setting {
-  std::string text;
-  std::string origin;  ///< empty = the contract's default
-};
-
-Setting setting(const runtime::Contract& contract, const runtime::ParameterFile& file,
-                const std::string& name) {
-  for (const auto& parameter : contract.parameters) {
-    if (parameter.name != name) continue;
-    runtime::ParameterValue value{name, parameter.fallback, ""};
-    for (const auto& given : file.values) {
-      if (given.name == name) value = given;
-    }
-    if (const auto read = runtime::interpret(parameter, value)) return {read->text, value.origin};
-  }
-  return {};
-}
 
 struct Speaker {
   const ManifestComponent* component;
@@ -88,15 +70,14 @@ void judge_dialogue(const Contracts& contracts, Deployment& deployment) {
     const auto section =
         std::find_if(std::begin(kSections), std::end(kSections),
                      [&](const Section& s) { return s.name == components[i].type; });
-    const auto contract = contracts.find(components[i].type);
-    if (section == std::end(kSections) || contract == contracts.end()) continue;
-    const auto texts = setting(contract->second, deployment.files[i], "texts");
-    const auto languages = setting(contract->second, deployment.files[i], "languages");
-    const std::filesystem::path file = texts.text;
+    if (section == std::end(kSections) || !contracts.contains(components[i].type)) continue;
+    const auto texts = setting(contracts, deployment, i, "texts").value_or(Setting{});
+    const auto languages = setting(contracts, deployment, i, "languages").value_or(Setting{});
+    const std::filesystem::path file = texts.value.text;
     std::error_code ignored;
     if (!file.empty() && !std::filesystem::is_regular_file(file, ignored))
       continue;  // found before
-    Speaker speaker{&components[i], section->leads, phrases::tags_of(languages.text),
+    Speaker speaker{&components[i], section->leads, phrases::tags_of(languages.value.text),
                     languages.origin};
     if (file.empty()) {
       speaker.tags = {"en"};  // the keys themselves

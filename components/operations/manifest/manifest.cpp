@@ -118,12 +118,6 @@ class Fields {
     return names;
   }
 
-  /// Whether any of them is there.
-  bool any() const {
-    return std::any_of(taken_.begin(), taken_.end(),
-                       [&](const auto& key) { return tree_.find(key) != nullptr; });
-  }
-
   /// Reports the keys that nobody took.
   void finish() {
     for (const auto& [key, value] : tree_.entries) {
@@ -145,7 +139,8 @@ class Fields {
 
 /// The tree of a manifest with everything that it extends below it. `open` are the manifests that
 /// led here.
-Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::string> open) {
+Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::string> open,
+                           std::vector<Finding>& findings) {
   auto tree = read_tree(path.string());
   if (!tree) return tree;
   if (tree->kind != Tree::Kind::kMap)
@@ -166,10 +161,10 @@ Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::s
   if (!std::filesystem::is_regular_file(base_path, ignored))
     return Error{"'extends' names " + base_path.string() + ", which is no file" +
                  suggestion_beside(base_path) + " (" + extends->origin + ")"};
-  auto base = read_extended(base_path, std::move(open));
+  auto base = read_extended(base_path, std::move(open), findings);
   if (!base) return base;
   std::erase_if(tree->entries, [](const auto& entry) { return entry.key == "extends"; });
-  return overlay(std::move(base).value(), *tree);
+  return overlay(std::move(base).value(), *tree, findings);
 }
 
 /// Names become file names, words in lists and names of participants.
@@ -254,11 +249,18 @@ void judge_host(const std::string& who, const std::string& name, const std::stri
   if (manifest.hosts.empty() || manifest.host(name) != nullptr) return;
   std::string known;
   for (const auto& host : manifest.hosts) known += (known.empty() ? "" : ", ") + host.name;
+  if (name.empty()) {
+    manifest.findings.push_back({Verdict::kMissingValue,
+                                 who +
+                                     " has no host, neither here nor in what this manifest "
+                                     "extends; expected one of " +
+                                     known,
+                                 origin});
+    return;
+  }
   manifest.findings.push_back(
       {Verdict::kUnknownHost,
-       who + " runs on the " + (name.empty() ? "host of no name" : "unknown host '" + name + "'") +
-           ", expected one of " + known,
-       origin});
+       who + " runs on the unknown host '" + name + "', expected one of " + known, origin});
 }
 
 ManifestDiscoveryServer read_discovery_server(const Tree& tree, std::vector<Finding>& findings) {
@@ -369,10 +371,10 @@ Result<Manifest> read_manifest(const std::string& path,
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return Error{"there is no such file" + suggestion_beside(path) + " (" + path + ")"};
-  const auto tree = read_extended(path, {});
+  Manifest manifest;
+  const auto tree = read_extended(path, {}, manifest.findings);
   if (!tree) return Error{tree.error()};
 
-  Manifest manifest;
   manifest.path = path;
   manifest.name = std::filesystem::path(path).stem().string();
   Fields fields(*tree, "manifest", manifest.findings);
@@ -392,8 +394,9 @@ Result<Manifest> read_manifest(const std::string& path,
   const Tree* fleet = fields.map("fleet");
   const Tree* hosts = fields.map("hosts", true);
   const Tree* components = fields.map("components", true);
-  if (!fields.any())
-    return Error{"no manifest: expected some of the keys " + fields.known() + " (" + tree->origin +
+  const auto has = [&](const char* key) { return tree->find(key) != nullptr; };
+  if (!has("robot") && !has("site") && !has("hosts"))  // a robot's file may have the other keys
+    return Error{"no manifest: expected the keys robot, site, hosts, components (" + tree->origin +
                  ")"};
   fields.finish();
   if (!robot.empty())
@@ -416,7 +419,8 @@ Result<Manifest> read_manifest(const std::string& path,
   if (!keys.empty()) manifest.keys = beside(manifest.origin_of("security"), keys);
   if (server != nullptr) {
     manifest.discovery_server = read_discovery_server(*server, manifest.findings);
-    judge_host("the discovery server", manifest.discovery_server.host, server->origin, manifest);
+    if (const auto& host = manifest.discovery_server.host; !host.empty())
+      judge_host("the discovery server", host, server->origin, manifest);
   }
   if (fleet != nullptr) manifest.fleet = read_fleet(*fleet, manifest, manifest.findings);
   return manifest;

@@ -9,8 +9,9 @@
 #include "foundation/text/suggestion.hpp"
 #include "idl/topics.hpp"
 #include "operations/manifest/dialogue.hpp"
-#include "operations/manifest/places.hpp"
+#include "operations/manifest/site.hpp"
 #include "operations/manifest/wiring.hpp"
+#include "runtime/guard/port.hpp"
 #include "runtime/parameters/interpret.hpp"
 
 namespace usher::operations {
@@ -283,6 +284,7 @@ class Resolver {
   void judge(const Contract::Parameter& parameter, ParameterValue value,
              runtime::ParameterFile& file) {
     const auto given = runtime::interpret(parameter, value);
+    if (!given && value.name.starts_with("manifest.")) return;  // found where the manifest was read
     if (!given) {
       out_.findings.push_back(finding_of(Verdict::kWrongValue, given.error(), value.origin));
       return;
@@ -296,6 +298,12 @@ class Resolver {
               value.origin);
       }
       value.yaml = Tree::word(given->text, value.origin).yaml();
+    }
+    // A text whose default is a stream's address is one.
+    if (parameter.kind == ParameterKind::kText &&
+        runtime::StreamAddress::parse(parameter.fallback)) {
+      if (const auto address = runtime::StreamAddress::parse(given->text); !address)
+        found(Verdict::kWrongValue, "'" + parameter.name + "': " + address.error(), value.origin);
     }
     file.values.push_back(std::move(value));
   }
@@ -367,7 +375,8 @@ Deployment resolve(const Manifest& manifest, const Contracts& contracts,
   Resolver(manifest, contracts, deployment).run(overrides);
   judge_wiring(manifest, contracts, deployment.findings);
   judge_dialogue(contracts, deployment);
-  judge_titles(deployment);
+  judge_whiskers(contracts, deployment);
+  judge_site(contracts, deployment);
   for (const auto& component : manifest.components) {
     const auto contract = contracts.find(component.type);
     if (contract != contracts.end())

@@ -38,8 +38,8 @@ struct Deployment {
 };
 
 /// Lays contract default < robot < site < manifest < command line, derives the manifest.* facts,
-/// and judges wiring, values and the dialogue's texts. It reads the robot's and the site's file and
-/// the texts, and looks whether other named files exist; it starts nothing.
+/// and judges wiring, values, site and the dialogue's texts. It reads the robot's and the site's
+/// file, the map and the texts, and looks whether other named files exist; it starts nothing.
 Deployment resolve(const Manifest& manifest, const Contracts& contracts,
                    const std::vector<Override>& overrides);
 

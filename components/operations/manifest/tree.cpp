@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 
+#include "foundation/text/suggestion.hpp"
+
 namespace usher::operations {
 
 namespace {
@@ -247,14 +249,21 @@ Result<Tree> read_tree(const std::string& path) {
   return parse_tree(text, path);
 }
 
-Tree overlay(Tree base, const Tree& over) {
+Tree overlay(Tree base, const Tree& over, std::vector<Finding>& findings) {
   if (base.kind != Tree::Kind::kMap || over.kind != Tree::Kind::kMap) return over;
+  std::vector<std::string> known;
+  for (const auto& entry : base.entries) known.push_back(entry.key);
   for (const auto& [key, value] : over.entries) {
     Tree* existing = base.find(key);
     if (value.kind == Tree::Kind::kNull) {
+      if (existing == nullptr)
+        findings.push_back({Verdict::kUnknownKey,
+                            "there is no '" + brief(key) + "' here that null could remove" +
+                                suggestion(key, known),
+                            value.origin});
       std::erase_if(base.entries, [&key = key](const auto& entry) { return entry.key == key; });
     } else if (existing != nullptr) {
-      *existing = overlay(std::move(*existing), value);
+      *existing = overlay(std::move(*existing), value, findings);
     } else {
       base.entries.push_back({key, value});
     }

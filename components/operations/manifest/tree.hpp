@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foundation/result/result.hpp"
+#include "operations/manifest/finding.hpp"
 
 namespace usher::operations {
 
@@ -39,7 +40,8 @@ std::string brief(const std::string& text);
 Result<Tree> read_tree(const std::string& path);
 Result<Tree> parse_tree(const std::string& text, const std::string& where);
 
-/// `over` laid over `base`: maps are merged key by key, anything else is replaced; a null removes.
-Tree overlay(Tree base, const Tree& over);
+/// `over` laid over `base`: maps are merged key by key, anything else is replaced; a null removes,
+/// and is a finding where there is nothing to remove.
+Tree overlay(Tree base, const Tree& over, std::vector<Finding>& findings);
 
 }  // namespace usher::operations

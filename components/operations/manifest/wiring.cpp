@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "idl/topics.hpp"
+#include "operations/manifest/setting.hpp"
 
 namespace usher::operations {
 
@@ -270,6 +271,27 @@ class Judge {
 void judge_wiring(const Manifest& manifest, const Contracts& contracts,
                   std::vector<Finding>& findings) {
   Judge(manifest, contracts, findings).run();
+}
+
+void judge_whiskers(const Contracts& contracts, Deployment& deployment) {
+  const auto& components = deployment.manifest.components;
+  const bool written = std::ranges::any_of(components, [&](const ManifestComponent& component) {
+    const auto contract = contracts.find(component.type);
+    return contract != contracts.end() &&
+           std::ranges::any_of(contract->second.outputs, [](const auto& port) {
+             return port.topic == topics::kWhiskers.name;
+           });
+  });
+  for (std::size_t i = 0; i < components.size() && !written; ++i) {
+    const auto required = setting(contracts, deployment, i, "whiskers_required");
+    if (!required || required->value.number == 0.0) continue;
+    deployment.findings.push_back(
+        {Verdict::kNoWriter,
+         "'" + components[i].name +
+             "' lets nothing move without whiskers, and nobody writes them; a robot that has none "
+             "says whiskers_required: false",
+         required->origin.empty() ? components[i].origin : required->origin});
+  }
 }
 
 }  // namespace usher::operations

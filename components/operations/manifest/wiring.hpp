@@ -10,4 +10,7 @@ namespace usher::operations {
 void judge_wiring(const Manifest& manifest, const Contracts& contracts,
                   std::vector<Finding>& findings);
 
+/// Where nothing may move without whiskers somebody must write them.
+void judge_whiskers(const Contracts& contracts, Deployment& deployment);
+
 }  // namespace usher::operations

@@ -119,6 +119,23 @@ TEST_F(ManifestFile, ExtendsAnother) {
   EXPECT_EQ(shortened(laser->parameters[1].origin), "m.yaml:4");
 }
 
+TEST_F(ManifestFile, RemovesOnlyWhatIsThere) {
+  folder_.file("deploy/base.yaml", std::string(kHead) +
+                                       "components:\n  amcl: {host: nuc}\n"
+                                       "  torso: {host: nuc}\n");
+  EXPECT_THAT(findings("extends: base.yaml\ntorso: ~\ncomponents:\n  torsoo: ~\n  torso: ~\n"),
+              ElementsAre("m.yaml:2: unknown key: there is no 'torso' here that null could remove",
+                          "m.yaml:4: unknown key: there is no 'torsoo' here that null could "
+                          "remove; did you mean torso?"));
+}
+
+TEST_F(ManifestFile, SaysThatAComponentIsInNoManifestBefore) {
+  folder_.file("deploy/base.yaml", std::string(kHead) + "components: {amcl: {host: nuc}}\n");
+  EXPECT_THAT(findings("extends: base.yaml\ncomponents:\n  speech: {parameters: {a: 1}}\n"),
+              ElementsAre("m.yaml:3: missing value: component 'speech' has no host, neither here "
+                          "nor in what this manifest extends; expected one of nuc, tablet"));
+}
+
 TEST_F(ManifestFile, RefusesACircle) {
   folder_.file("deploy/a.yaml", "\nextends: b.yaml\n");
   folder_.file("deploy/b.yaml", "extends: sub/../m.yaml\n");
@@ -161,8 +178,10 @@ TEST_F(ManifestFile, SaysWhichFileWasMeant) {
 
 TEST_F(ManifestFile, IsNoneWithoutAnyOfItsKeys) {
   EXPECT_EQ(error("version: 3\nconfigurePresets: []\n"),
-            "no manifest: expected some of the keys name, robot, site, domain, seed, fresh_start, "
-            "security, discovery_server, fleet, hosts, components (m.yaml:1)");
+            "no manifest: expected the keys robot, site, hosts, components (m.yaml:1)");
+  EXPECT_THAT(error("name: marvin\ntrack: 0.5\ncomponents: {amcl: {max_beams: 3}}\n"),
+              testing::StartsWith("no manifest: "))
+      << "a robot's file";
 }
 
 TEST_F(ManifestFile, ShowsLittleOfWhatItRefuses) {
@@ -175,7 +194,7 @@ TEST_F(ManifestFile, ShowsLittleOfWhatItRefuses) {
 }
 
 TEST_F(ManifestFile, MissesWhatMustBeThere) {
-  EXPECT_THAT(findings("name: x\n"),
+  EXPECT_THAT(findings("hosts: {}\n"),
               ElementsAre("m.yaml:1: missing value: manifest: 'robot' must be given",
                           "m.yaml:1: missing value: manifest: 'site' must be given",
                           "m.yaml:1: missing value: manifest: 'hosts' must be given",
@@ -228,7 +247,7 @@ TEST_F(ManifestFile, FindsWrongValues) {
 TEST_F(ManifestFile, WantsMapsWhereMapsBelong) {
   EXPECT_THAT(findings(std::string(kHead) + "components: {amcl: 5}\n"),
               ElementsAre(HasSubstr("wrong value: component 'amcl': must be a map, got 5"),
-                          HasSubstr("unknown host: component 'amcl' runs on the host of no name")));
+                          HasSubstr("missing value: component 'amcl' has no host")));
   EXPECT_THAT(findings(std::string(kHead) + "components: [amcl]\n"),
               ElementsAre(HasSubstr("'components' must be a map, got [amcl]")));
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: nuc\ncomponents: {a: {host: nuc}}\n"),

@@ -224,6 +224,43 @@ TEST_F(Resolving, FindsWrongValues) {
               ElementsAre("command line: wrong value: legs.gain: a key must be a word"));
 }
 
+TEST_F(Resolving, FindsAddressesThatAreNone) {
+  contracts_.at("legs").parameters.push_back(of_kind("line", ParameterKind::kText));
+  contracts_.at("legs").parameters.back().fallback = "serial:///dev/ttyUSB0?baud=9600";
+  const auto with = [&](const std::string& address) {
+    return findings("  legs: {host: nuc, parameters: {line: \"" + address + "\"}}\n");
+  };
+  EXPECT_THAT(with("tcp://192.168.0.1:2112"), IsEmpty());
+  for (const auto* bad : {"tcp//192.168.0.1:2112", "seral:///dev/ttyUSB0?baud=9600", "none", ""})
+    EXPECT_THAT(with(bad), ElementsAre(HasSubstr("deploy/m.yaml:5: wrong value: 'line': a stream "
+                                                 "is tcp://")))
+        << bad;
+}
+
+TEST_F(Resolving, SaysOnceThatAComponentHasNoHost) {
+  EXPECT_THAT(findings("  judge: {host: nuc}\n  legs: {}\n"),
+              ElementsAre(HasSubstr("deploy/m.yaml:6: missing value: component 'legs' has no "
+                                    "host")));
+}
+
+TEST_F(Resolving, FindsARobotThatWaitsForWhiskersForEver) {
+  contracts_.at("judge").parameters.push_back(of_kind("whiskers_required", ParameterKind::kFlag));
+  auto& required = contracts_.at("judge").parameters.back();
+  required.fallback = "true";
+  EXPECT_THAT(findings("  judge: {host: nuc}\n"),
+              ElementsAre("deploy/m.yaml:5: no writer: 'judge' lets nothing move without whiskers, "
+                          "and nobody writes them; a robot that has none says whiskers_required: "
+                          "false"));
+  robot_ += "components: {judge: {whiskers_required: true}}\n";
+  EXPECT_THAT(findings("  judge: {host: nuc}\n"),
+              ElementsAre(HasSubstr("config/robots/r.yaml:3: no writer: ")));
+  EXPECT_THAT(findings("  judge: {host: nuc, parameters: {whiskers_required: false}}\n"),
+              IsEmpty());
+  contracts_.at("legs").outputs.emplace_back().topic = "whiskers";
+  const auto beside = findings("  judge: {host: nuc}\n  legs: {host: nuc}\n");
+  EXPECT_THAT(beside, testing::Not(testing::Contains(HasSubstr("without whiskers"))));
+}
+
 TEST_F(Resolving, FindsWhatMustBeSet) {
   robot_ = "arm: {length: 0.3 m}\n";
   EXPECT_THAT(findings("  legs: {host: nuc}\n"),

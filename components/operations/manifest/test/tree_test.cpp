@@ -160,7 +160,9 @@ TEST(Tree, ReadsBackWhatItWrites) {
 TEST(Overlay, MergesMapsAndReplacesAllElse) {
   const Tree base = parse_tree("a: {x: 1, y: [1, 2]}\nb: 5\n", "base.yaml").value();
   const Tree over = parse_tree("\na: {y: [3], z: 4}\nc: 6\n", "over.yaml").value();
-  const Tree merged = overlay(base, over);
+  std::vector<Finding> findings;
+  const Tree merged = overlay(base, over, findings);
+  EXPECT_TRUE(findings.empty());
   EXPECT_EQ(merged.yaml(), "{a: {x: 1, y: [3], z: 4}, b: 5, c: 6}");
   EXPECT_EQ(merged.find("a")->find("x")->origin, "base.yaml:1");
   EXPECT_EQ(merged.find("a")->find("y")->origin, "over.yaml:2");
@@ -170,12 +172,18 @@ TEST(Overlay, MergesMapsAndReplacesAllElse) {
 
 TEST(Overlay, RemovesWithNull) {
   const Tree base = parse_tree("a: {x: 1, y: 2}\nb: 5\n", "base.yaml").value();
-  EXPECT_EQ(overlay(base, parsed("a: {x: ~}\nb:\nnobody: ~\n")).yaml(), "{a: {y: 2}}");
+  std::vector<Finding> findings;
+  EXPECT_EQ(overlay(base, parsed("a: {x: ~}\nb:\n"), findings).yaml(), "{a: {y: 2}}");
+  EXPECT_TRUE(findings.empty());
+  EXPECT_EQ(overlay(base, parsed("a: {xx: ~}\n"), findings).yaml(), base.yaml());
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].origin, "x.yaml:1");
 }
 
 TEST(Overlay, ReplacesAMapByAWordAndBack) {
   const Tree base = parse_tree("a: {x: 1}\nb: 5\n", "base.yaml").value();
-  EXPECT_EQ(overlay(base, parsed("a: 2\nb: {y: 3}\n")).yaml(), "{a: 2, b: {y: 3}}");
+  std::vector<Finding> findings;
+  EXPECT_EQ(overlay(base, parsed("a: 2\nb: {y: 3}\n"), findings).yaml(), "{a: 2, b: {y: 3}}");
 }
 
 }  // namespace
