@@ -195,11 +195,10 @@ void TabletComponent::tick() {
   if (++ticks_ % kShowEvery != 0) return;
   show();
   using runtime::HealthState;
-  const bool robot = supervisor_.fresh() != nullptr;
-  host_.health().set(robot && dialogue() ? HealthState::kOk : HealthState::kDegraded,
-                     !robot        ? "the robot is out of reach"
-                     : !dialogue() ? "nobody leads the dialogue"
-                                   : "");
+  const std::string reason = supervisor_.fresh() == nullptr ? "the robot is out of reach"
+                             : !dialogue()                  ? "nobody leads the dialogue"
+                                                            : window_.hidden();
+  host_.health().set(reason.empty() ? HealthState::kOk : HealthState::kDegraded, reason);
 }
 
 void TabletComponent::show() {

@@ -23,6 +23,8 @@ class Window {
     std::string pictures;  ///< folder for a picture of every screen; empty: none
   };
   virtual ~Window() = default;
+  /// Why nobody can see it; empty: somebody can.
+  virtual std::string hidden() const { return {}; }
   virtual void open(const Settings& settings) = 0;
   /// What was touched since the last call, oldest first.
   virtual std::vector<Touch> take_touches() = 0;
@@ -35,7 +37,7 @@ class Window {
 };
 
 /// No display: for tests and simulations in one thread, which inject touches.
-class NullWindow final : public Window {
+class NullWindow : public Window {
  public:
   void open(const Settings&) override {}
   std::vector<Touch> take_touches() override { return std::exchange(touches, {}); }

@@ -130,6 +130,29 @@ TEST_F(Component, ShowsTheDialogueAndSaysWhenTheRobotIsAway) {
   EXPECT_EQ(window_.view.page, Page::kButtons) << "comes back by itself";
 }
 
+TEST(ComponentWithoutADisplay, IsDegraded) {
+  struct HiddenWindow final : NullWindow {
+    std::string hidden() const override { return "no display"; }
+  } window;
+  runtime::TestHost host(
+      {"tablet",
+       [&](runtime::Host& h) {
+         return std::unique_ptr<runtime::Component>(std::make_unique<TabletComponent>(h, window));
+       }},
+      "");
+  for (int i = 0; i < 3; ++i) {
+    usher_msgs::msg::SupervisorStatus supervisor;
+    supervisor.header(wire::header(host.now(), ""));
+    host.publish(topics::kSupervisorStatus, supervisor, "supervisor");
+    usher_msgs::msg::GuideStatus status;
+    status.header(wire::header(host.now(), ""));
+    host.publish(topics::kGuideStatus, status, "guide");
+    host.run_for(milliseconds(110));
+  }
+  EXPECT_EQ(host.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_DEGRADED);
+  EXPECT_EQ(host.heartbeat().reason(), "no display");
+}
+
 TEST_F(Component, RepeatsAnAnswerUntilTheScreenNamesIt) {
   hear();
   show(screen(5, "guide_ask", {"yes", "no"}));

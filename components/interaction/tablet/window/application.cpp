@@ -46,22 +46,24 @@ QQuickItem* visible_item(QQuickItem* item, const QString& name) {
 }
 
 /// Without a session Qt would end the program; without a graphics driver it draws by itself.
-void choose_platform() {
+/// Whether it found neither a session nor anybody's choice.
+bool choose_platform() {
   const bool session =
       qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
-  if (!session && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) {
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-  }
+  const bool none = !session && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM");
+  if (none) qputenv("QT_QPA_PLATFORM", "offscreen");
   if (qgetenv("QT_QPA_PLATFORM") == "offscreen" && !qEnvironmentVariableIsSet("QT_QUICK_BACKEND")) {
     qputenv("QT_QUICK_BACKEND", "software");
   }
+  return none;
 }
 
 }  // namespace
 
 class Application::Implementation final : public Window {
  public:
-  Implementation(int& argc, char** argv) : application(argc, argv) {
+  Implementation(int& argc, char** argv, bool has_no_display)
+      : no_display(has_no_display), application(argc, argv) {
     qml_register_types_Usher_Tablet();
     engine.addImportPath("qrc:/");
     engine.setInitialProperties({{"model", QVariant::fromValue(&model)}});
@@ -85,6 +87,10 @@ class Application::Implementation final : public Window {
     QObject::connect(&picture_timer, &QTimer::timeout, &model, [this] { take_picture(); });
   }
 
+  std::string hidden() const override {
+    return no_display ? "no display: draws into memory (QT_QPA_PLATFORM=offscreen asks for that)"
+                      : "";
+  }
   void open(const Settings& given) override {
     later([this, given] {
       settings = given;
@@ -181,6 +187,7 @@ class Application::Implementation final : public Window {
     picture.save(name);
   }
 
+  const bool no_display;
   std::mutex mutex;
   std::vector<Touch> touches;  ///< under the mutex
   QGuiApplication application;
@@ -196,8 +203,8 @@ class Application::Implementation final : public Window {
 };
 
 Application::Application(int& argc, char** argv) {
-  choose_platform();
-  implementation_ = std::make_unique<Implementation>(argc, argv);
+  const bool no_display = choose_platform();
+  implementation_ = std::make_unique<Implementation>(argc, argv, no_display);
 }
 Application::~Application() = default;
 

@@ -12,7 +12,8 @@ class ScreenModel;
 /// Qt on the main thread, the component on another one.
 class Application {
  public:
-  /// Without a display (no X11 or Wayland session, no platform chosen) it draws into memory.
+  /// Without a display (no X11 or Wayland session, no platform chosen) it draws into memory,
+  /// and its window says so.
   Application(int& argc, char** argv);
   ~Application();
 
