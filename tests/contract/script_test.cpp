@@ -28,7 +28,7 @@ class Script : public testing::Test {
     program("tools/dpkg-query",
             "printf 'cmake installed\\ng++ installed\\nlibgtest-dev installed\\n'");
     program("tools/ninja", "echo 'ninja: no work to do.'");
-    for (const std::string name : {"cmake", "apt-get", "sudo"})
+    for (const std::string name : {"cmake", "ctest", "cpack", "apt-get", "sudo"})
       program("tools/" + name, "echo \"" + name + " $*\" >>" + folder_.path() + "/calls");
     // The script reads nothing else with cat than the system's name and its own help.
     program("tools/cat", "[ $# -eq 0 ] && exec /bin/cat; /bin/cat " + folder_.path() + "/system");
@@ -39,6 +39,7 @@ class Script : public testing::Test {
     const std::string path = folder_.file(name, "#!/bin/sh\n" + text + "\n");
     fs::permissions(path, fs::perms::owner_all);
   }
+  void file(const std::string& name) { folder_.file(name, ""); }
   void system(const std::string& release) { folder_.file("system", release); }
   /// A tree that was built: the program says how it was called.
   void built() {
@@ -120,6 +121,47 @@ TEST_F(Script, ReplacesNothingUnderARobotThatRuns) {
   EXPECT_EQ(calls, "cmake --build build/release --target usher-programs\n");
 }
 
+TEST_F(Script, BuildsNothingUnderARobotThatRuns) {
+  built(), edited();
+  {
+    const auto robot = launched();
+    for (const std::string command : {"build", "test", "install", "package"}) {
+      EXPECT_EQ(run({command}), 2) << command;
+      EXPECT_EQ(errors,
+                "usher: a robot runs with the programs in build/release: stop it, then build\n");
+      EXPECT_EQ(calls, "") << command;
+    }
+    program("tools/readlink", "exit 1");  // as of a service of root's
+    EXPECT_EQ(run({"build"}), 2);
+    EXPECT_EQ(run({"check", "x"}), 0) << errors;
+    EXPECT_EQ(calls, "");
+    program("tools/ninja", "echo 'ninja: no work to do.'");
+    EXPECT_EQ(run({"build"}), 0) << "nothing would be replaced" << errors;
+  }
+  edited();
+  EXPECT_EQ(run({"build"}), 0) << errors;
+  EXPECT_EQ(calls, "cmake --build build/release --target all\n");
+}
+
+TEST_F(Script, RunsTheTestsThatAreMeant) {
+  built();
+  const std::string log = "build/release/Testing/Temporary/LastTest.log";
+  file(log);
+  EXPECT_EQ(run({"test", "--label", "unit", "--label", "data", "--only", "amcl"}), 0) << errors;
+  EXPECT_THAT(calls, HasSubstr("ctest --no-tests=error --output-on-failure -j "));
+  EXPECT_THAT(calls, HasSubstr(" -L ^(unit|data)$ -R amcl\n"));
+  EXPECT_EQ(run({"test"}), 0) << errors;
+  EXPECT_THAT(calls, Not(HasSubstr(" -R ")));
+}
+
+TEST_F(Script, HandsOnAnOptionThatStandsBeforeItsCommand) {
+  built();
+  EXPECT_EQ(run({"--keys", "k", "status", "--domain", "3"}), 0) << errors;
+  EXPECT_EQ(output, "program status --keys k --domain 3\n");
+  EXPECT_EQ(run({"--keys=k", "check", "x"}), 0) << errors;
+  EXPECT_EQ(output, "program check --keys=k x\n");
+}
+
 TEST_F(Script, SaysThatThereIsNothingToTake) {
   EXPECT_EQ(run({"launch", "x"}, "USHER_NO_BUILD=1"), 2);
   EXPECT_EQ(errors, "usher: USHER_NO_BUILD is set, and nothing is built in build/release\n");
@@ -127,7 +169,7 @@ TEST_F(Script, SaysThatThereIsNothingToTake) {
 
 TEST_F(Script, AStopWaitsForNoCompiler) {
   built(), edited(), lacks_packages();
-  for (const std::string command : {"stop", "move", "status", "teleop", "meet"}) {
+  for (const std::string command : {"stop", "move", "status", "locate", "teleop", "meet"}) {
     EXPECT_EQ(run({command, "--domain", "42"}), 0) << errors;
     EXPECT_EQ(calls, "") << command;
     EXPECT_EQ(output, "program " + command + " --domain 42\n");
@@ -186,6 +228,7 @@ TEST_F(Script, AWrongOptionEndsItBeforeItBuilds) {
   EXPECT_EQ(run({"install", "--prefix"}), 2);
   EXPECT_EQ(errors, "usher: --prefix needs a directory\n");
   EXPECT_EQ(run({"test", "--label"}), 2);
+  EXPECT_EQ(run({"test", "--only"}), 2);
   EXPECT_EQ(calls, "");
 }
 
