@@ -40,6 +40,8 @@ TEST(WrongUsage, EndsWithTwoWhateverTheCommand) {
                                                {"goto", "kitchen", "--max-speed", "99"},
                                                {"goto", "--pose", "nan", "0", "0"},
                                                {"goto", "kitchen", "--pose", "1", "2", "3"},
+                                               {"locate", "1", "2"},
+                                               {"locate", "-1", "-2", "7"},
                                                {"teleop", "--hold", "1"},
                                                {"map"},
                                                {"meet", "--persons", "0"},
@@ -87,14 +89,43 @@ TEST(Teleop, NeedsATerminal) {
 }
 
 TEST(Help, NamesTheExitCodes) {
-  for (const Words& words :
-       std::vector<Words>{{"--help"}, {"bench", "--help"}, {"experiment", "--help"}}) {
+  for (const Words& words : std::vector<Words>{{"--help"},
+                                               {"bench", "--help"},
+                                               {"experiment", "--help"},
+                                               {"status", "--help"},
+                                               {"stop", "--help"},
+                                               {"map", "save", "--help"}}) {
     Words all{kProgram};
     all.insert(all.end(), words.begin(), words.end());
     test::Process help(all);
     EXPECT_EQ(help.wait(), 0);
     EXPECT_THAT(help.output(), HasSubstr("Exit codes: 0 ")) << testing::PrintToString(words);
   }
+}
+
+/// What a command says on stdout; it has to end with 0.
+std::string output_of(Words words) {
+  words.insert(words.begin(), kProgram);
+  test::Process command(words);
+  EXPECT_EQ(command.wait(), 0) << command.output() << command.errors();
+  return command.output();
+}
+
+TEST(Install, TellsEachHostItsOwnUnit) {
+  const test::Folder folder;
+  const std::string text =
+      output_of({"install", "--systemd", std::string(USHER_SOURCE_DIR) + "/deploy/marvin.yaml",
+                 "--to", folder.path()});
+  EXPECT_THAT(text, HasSubstr("\non nuc: systemctl daemon-reload && systemctl enable --now "
+                              "usher-nuc.service\non tablet: systemctl daemon-reload && systemctl "
+                              "enable --now usher-tablet.service\n"));
+}
+
+TEST(Keys, SayWhatAHostNeeds) {
+  const test::Folder folder;
+  const std::string text = output_of({"keys", folder.path() + "/keys", "--manifest", kDemo});
+  EXPECT_THAT(text, HasSubstr("a host needs ca.pem, governance.smime and the folders launcher, "
+                              "operator and those of what runs there\n"));
 }
 
 }  // namespace

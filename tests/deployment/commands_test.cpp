@@ -124,6 +124,13 @@ TEST_F(Commands, AGotoThatCannotBeAsksNobodyAnything) {
   EXPECT_EQ(robot_->status()->last_request(), asked) << "a visit that runs goes on";
 }
 
+TEST_F(Commands, LocateTellsTheRobotWhereItStands) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const auto text = output({"locate", "4.6", "4.4", "1.5"});
+  EXPECT_TRUE(contains(text, "by its scan it stands at 4.")) << text;
+  EXPECT_TRUE(contains(errors({"locate", "-900", "2", "0"}), "(-900.00, 2.00) m is outside"));
+}
+
 TEST_F(Commands, AWordThatIsNoCommandIsNamed) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"nosuch"}, {"nosuch", "--domain", "3"}}) {

@@ -9,7 +9,7 @@ void add_deployment_commands(CLI::App& app, int& exit_code);  ///< check compone
 void add_launch_command(CLI::App& app, int& exit_code);       ///< launch
 void add_inspection_commands(CLI::App& app, int& exit_code);  ///< status topics
 void add_goto_command(CLI::App& app, int& exit_code);         ///< goto
-void add_operator_commands(CLI::App& app, int& exit_code);    ///< stop move clear map
+void add_operator_commands(CLI::App& app, int& exit_code);    ///< stop move clear locate map
 void add_meeting_command(CLI::App& app, int& exit_code);      ///< meet
 void add_teleop_command(CLI::App& app, int& exit_code);       ///< teleop
 void add_host_commands(CLI::App& app, int& exit_code);        ///< keys install doctor

@@ -87,26 +87,6 @@ Status judge_location(const GoalArguments& arguments, const navigator::Locations
   return Error{found.error() + "\nlocations: " + names};
 }
 
-/// Whether a pose lies in the running robot's map. Where no map comes the planner will say so.
-Status judge_place(Observer& observer, const std::vector<double>& pose) {
-  if (pose.empty()) return {};
-  auto reader = observer.reader(topics::kMap);
-  if (!reader) return Error{reader.error()};
-  const auto map = reader->take(kPatience);
-  if (!map) return {};
-  const auto origin = wire::to_planar(map->info().origin());
-  if (!origin) return {};
-  const double resolution = map->info().resolution();
-  const double width = resolution * map->info().width();
-  const double height = resolution * map->info().height();
-  const geometry::Point2 there = geometry::inverse(*origin) * geometry::Point2(pose[0], pose[1]);
-  if (there.x() >= 0.0 && there.y() >= 0.0 && there.x() < width && there.y() < height) return {};
-  return Error{"--pose " + format("(%.2f, ", pose[0]) +
-               format("%.2f) m is outside the map", pose[1]) + format(" of %.2f", width) +
-               format(" x %.2f m", height) + format(" from (%.2f, ", origin->x) +
-               format("%.2f) on", origin->y)};
-}
-
 /// Whether the running robot can go that fast. Where nothing tells its limit, that holds as it is.
 Status ask_pace(Observer& observer, double pace) {
   if (pace == 0.0) return {};
@@ -348,8 +328,10 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   if (!locations) return fail(locations.error());
   if (arguments.location.empty() && arguments.pose.empty()) return list(*locations);
   if (const auto known = judge_location(arguments, *locations); !known) return fail(known.error());
-  if (const auto inside = judge_place(**observer, arguments.pose); !inside)
-    return fail(inside.error());
+  if (!arguments.pose.empty()) {
+    if (const auto inside = judge_place(**observer, arguments.pose[0], arguments.pose[1]); !inside)
+      return fail("--pose " + inside.error());
+  }
   struct sigaction action {};
   action.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &action, nullptr);

@@ -60,9 +60,15 @@ int keys(const KeysArguments& arguments) {
     table.add(
         {entry.name, component != nullptr ? component->host : "-", entry.made ? "new" : "kept"});
   }
-  std::cout << table.text() << "permissions and governance are signed for domain "
-            << manifest->domain << "; a host needs ca.pem, governance.smime and its own folders\n"
-            << "keep " << arguments.folder << "/ca.key off the robot\n";
+  std::cout
+      << table.text() << "permissions and governance are signed for domain " << manifest->domain
+      << "; a host needs ca.pem, governance.smime and the folders launcher, operator and those "
+         "of what runs there"
+      << (manifest->discovery_server.host.empty()
+              ? ""
+              : ", discovery_server on " + manifest->discovery_server.host)
+      << "\n"
+      << "keep " << arguments.folder << "/ca.key off the robot\n";
   return 0;
 }
 
@@ -96,7 +102,7 @@ int install_units(const InstallArguments& arguments) {
   const Manifest& manifest = deployment->manifest;
   if (!arguments.host.empty() && manifest.host(arguments.host) == nullptr)
     return fail("unknown host '" + arguments.host + "' (" + manifest.path + ")");
-  std::vector<std::string> names;
+  std::string remark;  // one line for each host: nobody pastes the unit of another one
   for (const auto& host : manifest.hosts) {
     if (!arguments.host.empty() && host.name != arguments.host) continue;
     const bool used = std::any_of(manifest.components.begin(), manifest.components.end(),
@@ -109,18 +115,20 @@ int install_units(const InstallArguments& arguments) {
                    .keys = keys_folder(),
                    .user = arguments.user});
     if (!write(arguments.folder + "/" + unit.name, unit.text)) return 1;
-    names.push_back(unit.name);
+    remark += "on " + host.name + ": systemctl daemon-reload && systemctl enable --now " +
+              unit.name + "\n";
   }
-  std::cout << "on each host: systemctl daemon-reload && systemctl enable --now";
-  for (const auto& name : names) std::cout << " " << name;
-  std::cout << "\n";
+  std::cout << remark;
   return 0;
 }
 
 int install(const InstallArguments& arguments) {
   if (!arguments.systemd && !arguments.sysctl)
     return misused("nothing to install: expected --systemd MANIFEST or --sysctl");
-  if (arguments.sysctl && !write(kSysctlPath, sysctl_file())) return 1;
+  if (arguments.sysctl) {
+    if (!write(kSysctlPath, sysctl_file())) return 1;
+    std::cout << "`sysctl --system` applies it now, a boot from then on\n";
+  }
   return arguments.systemd ? install_units(arguments) : 0;
 }
 
@@ -155,7 +163,8 @@ void add_host_commands(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   install_command->add_option("--user", installing->user, "Who runs it; root unless given");
   install_command->add_flag("--sysctl", installing->sysctl,
-                            "Write the UDP buffer sizes to " + std::string(kSysctlPath));
+                            "Write the UDP buffer sizes to " + std::string(kSysctlPath) +
+                                "; `sysctl --system` applies them");
   install_command->callback([installing, &exit_code] { exit_code = install(*installing); });
 
   auto domain = std::make_shared<std::uint32_t>(0);

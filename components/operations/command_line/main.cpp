@@ -7,10 +7,12 @@ namespace {
 /// Each command that heeds an option of the program says so: its own help is all that many read.
 void name_program_options(CLI::App& app) {
   const CLI::Option* keys = app.get_option("--keys");
-  for (const char* name : {"check", "launch", "install", "doctor", "status", "topics", "goto",
-                           "stop", "move", "clear", "map", "meet", "teleop", "calibrate"}) {
+  for (const char* name :
+       {"check", "launch", "install", "doctor", "status", "topics", "goto", "stop", "move", "clear",
+        "locate", "map", "meet", "teleop", "calibrate"}) {
     CLI::App* command = app.get_subcommand(name);
-    const std::string text = "Of every command: --keys FOLDER\n  " + keys->get_description();
+    const std::string text = "Of every command: --keys FOLDER\n  " + keys->get_description() +
+                             "\n\n" + usher::operations::kExitCodes;
     command->footer(text);
     for (CLI::App* below : command->get_subcommands({})) below->footer(text);
   }

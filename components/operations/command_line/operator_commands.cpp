@@ -6,8 +6,10 @@
 #include "idl/topics.hpp"
 #include "mapping/map_server/core/map_from_log.hpp"
 #include "operations/command_line/commands.hpp"
+#include "operations/command_line/locating.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/supervisor_client.hpp"
+#include "operations/command_line/table.hpp"
 #include "operations/command_line/usage.hpp"
 #include "runtime/dds/observer.hpp"
 #include "wire/conversions.hpp"
@@ -43,6 +45,23 @@ int move_on(std::uint32_t domain) {
     return fail("the stop is lifted, but the robot stands: " + status->reason() +
                 " (`usher clear` clears a fault whose cause is gone)");
   std::cout << "the stop is lifted\n";
+  return 0;
+}
+
+struct Standing {
+  double x = 0.0, y = 0.0, yaw = 0.0;
+};
+
+/// Tells a robot that is lost where it stands.
+int locate(std::uint32_t domain, const Standing& here) {
+  auto observer = Observer::create(reach_robot(kOperatorName, domain));
+  if (!observer) return fail(observer.error());
+  if (const auto inside = judge_place(**observer, here.x, here.y); !inside)
+    return fail(inside.error());
+  const auto found = tell_pose(**observer, {here.x, here.y, here.yaw});
+  if (!found) return fail(found.error());
+  std::cout << "by its scan it stands at " << format("%.2f", found->x) << " "
+            << format("%.2f", found->y) << " " << format("%.2f", found->yaw) << "\n";
   return 0;
 }
 
@@ -110,6 +129,17 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
       ->callback([=, &exit_code] {
         exit_code = ask_supervisor(meant_domain(*domain), COMMAND_CLEAR, "cleared");
       });
+
+  auto here = std::make_shared<Standing>();
+  auto* locate_command = with_domain(
+      app.add_subcommand("locate", "Tell a robot that is lost where it stands in the map"));
+  const auto coordinate = [&](const char* name, double& value, double most, const char* text) {
+    locate_command->add_option(name, value, text)->required()->check(within(-most, most));
+  };
+  coordinate("x", here->x, 1e4, "[m], to half a meter");
+  coordinate("y", here->y, 1e4, "[m]");
+  coordinate("yaw", here->yaw, 6.3, "[rad], to a quarter of a radian; 0 looks along x");
+  locate_command->callback([=, &exit_code] { exit_code = locate(meant_domain(*domain), *here); });
 
   auto path = std::make_shared<std::string>();
   auto* map_command = app.add_subcommand("map", "Work with maps");

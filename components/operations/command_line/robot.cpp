@@ -3,15 +3,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 
 #include "foundation/text/suggestion.hpp"
+#include "idl/topics.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/command_line/usage.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/security/permissions.hpp"
 #include "runtime/parameters/parameter_file.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 
@@ -97,6 +100,23 @@ std::string nobody_writes(const std::string& topic, std::uint32_t domain,
                           const std::vector<std::string>& written) {
   return "nobody writes " + topic + " in domain " + std::to_string(domain) +
          suggestion(topic, written);
+}
+
+Status judge_place(runtime::Observer& observer, double x, double y) {
+  auto reader = observer.reader(topics::kMap);
+  if (!reader) return Error{reader.error()};
+  const auto map = reader->take(std::chrono::seconds(3));
+  if (!map) return {};
+  const auto origin = wire::to_planar(map->info().origin());
+  if (!origin) return {};
+  const double resolution = map->info().resolution();
+  const double width = resolution * map->info().width();
+  const double height = resolution * map->info().height();
+  const geometry::Point2 there = geometry::inverse(*origin) * geometry::Point2(x, y);
+  if (there.x() >= 0.0 && there.y() >= 0.0 && there.x() < width && there.y() < height) return {};
+  return Error{format("(%.2f, ", x) + format("%.2f) m is outside the map", y) +
+               format(" of %.2f", width) + format(" x %.2f m", height) +
+               format(" from (%.2f, ", origin->x) + format("%.2f) on", origin->y)};
 }
 
 Status judge_pace(double pace, float fastest) {

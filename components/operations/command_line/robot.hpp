@@ -46,6 +46,10 @@ std::string nobody_there(const std::string& who, std::uint32_t domain);
 std::string nobody_writes(const std::string& topic, std::uint32_t domain,
                           const std::vector<std::string>& written);
 
+/// Refuses a place [m] outside the running robot's map: "(40.00, 2.00) m is outside ...". Where no
+/// map comes within 3 s nothing is known of it.
+Status judge_place(runtime::Observer& observer, double x, double y);
+
 /// Refuses a pace [m/s] above `fastest`, the robot's own limit where nothing is near.
 Status judge_pace(double pace, float fastest);
 

@@ -21,6 +21,7 @@
 #include <set>
 
 #include "foundation/cpu/cpu.hpp"
+#include "operations/launcher/precedence.hpp"
 #include "operations/security/authority.hpp"
 
 namespace usher::operations {
@@ -209,6 +210,13 @@ Diagnosis examine_limits() {
   return {"open files", Verdict::kGood, std::to_string(files.rlim_cur), ""};
 }
 
+/// `usher launch` goes on without, and says so.
+Diagnosis examine_precedence() {
+  if (may_go_first()) return {"precedence", Verdict::kGood, "the drive chain may go first", ""};
+  return {"precedence", Verdict::kWarning, "no right to go before other programs",
+          "`USER - nice -11` in /etc/security/limits.d/usher.conf, then a new login"};
+}
+
 Diagnosis examine_processor() {
   const long cores = ::sysconf(_SC_NPROCESSORS_ONLN);
   constexpr const char* kSets[] = {"no SIMD", "SSE4.1", "AVX2"};
@@ -272,6 +280,7 @@ std::vector<Diagnosis> examine_host(const std::string& run_directory) {
   found.push_back(examine_run_directory(run_directory));
   found.push_back(examine_devices());
   found.push_back(examine_limits());
+  found.push_back(examine_precedence());
   found.push_back(examine_processor());
   return found;
 }

@@ -24,7 +24,8 @@ std::string to_string(Diagnosis::Verdict verdict);
 inline constexpr int kSocketBuffer = 4 << 20;
 
 /// Examines socket buffers, the sysctl file, multicast on each interface, the clock, shared memory,
-/// rights, run directory and disk. Changes nothing; takes less than 2 s.
+/// rights of serial devices, run directory and disk, limits and precedence. Changes nothing; takes
+/// less than 2 s.
 std::vector<Diagnosis> examine_host(const std::string& run_directory);
 
 /// The keys of a folder: readable, private, and valid today, by what they say about themselves.

@@ -16,7 +16,8 @@ namespace usher::operations {
 //   NAME/key.pem           its private key, mode 0600
 //   NAME/permissions.smime what it may write and read
 //
-// A host needs ca.pem, governance.smime and the folders of what runs there.
+// A host needs ca.pem, governance.smime and the folders of what runs there, the launcher with it.
+// An operator's commands need that of the operator.
 
 struct KeysOptions {
   int days = 3650;     ///< that certificates and permissions are valid
@@ -41,7 +42,7 @@ bool has_keys(const std::string& folder);
 
 /// Judges the keys that a manifest names: nothing when it names none. A component without identity
 /// is told where this machine has keys of its host at all, or of no host; those of other hosts are
-/// theirs to have.
+/// theirs to have. Every host needs the launcher's.
 void judge_keys(const Manifest& manifest, const Contracts& contracts,
                 std::vector<Finding>& findings);
 

@@ -119,7 +119,7 @@ TEST(Doctor, ExaminesThisMachine) {
         << diagnosis.subject;
   }
   for (const auto* subject : {"receive buffer", "send buffer", "sysctl file", "clock",
-                              "shared memory", "run directory", "multicast on lo"})
+                              "shared memory", "run directory", "precedence", "multicast on lo"})
     EXPECT_THAT(subjects, Contains(subject));
 }
 

@@ -207,6 +207,20 @@ TEST_F(Keys, OfAnotherHostNeedNotBeHere) {
       << "this one belongs here";
 }
 
+TEST_F(Keys, OfTheLauncherAndOfADiscoveryServerBelongToTheirHosts) {
+  manifest_.discovery_server = {.host = "nuc", .address = "10.0.0.1"};
+  ASSERT_TRUE(make());
+  std::filesystem::remove_all(manifest_.keys + "/operator");
+  EXPECT_THAT(findings(), IsEmpty()) << "whose commands may come from elsewhere";
+  std::filesystem::remove_all(manifest_.keys + "/launcher");
+  EXPECT_THAT(findings(), ElementsAre(HasSubstr("/launcher/certificate.pem")));
+  ASSERT_TRUE(make());
+  std::filesystem::remove_all(manifest_.keys + "/discovery_server");
+  EXPECT_THAT(findings(), ElementsAre(HasSubstr("/discovery_server/certificate.pem")));
+  std::filesystem::remove_all(manifest_.keys + "/movement_control");
+  EXPECT_THAT(findings(), IsEmpty()) << "this is the tablet";
+}
+
 TEST_F(Keys, AreNotMadeWhereNothingCanBeWritten) {
   folder_.file("occupied", "");
   const auto made =
