@@ -109,13 +109,16 @@ void add_calibrate_faces(CLI::App& calibrate_command, int& exit_code) {
       "Fits how far away a face of some size is, from recordings of people who step back from "
       "0.3 to 3.5 m, in the middle of the image and at its sides");
   faces
-      ->add_option("recordings", settings->recordings,
-                   "Folders of libfreenect's fakenect-record (with --raw), or NAME.pgm with NAME.ppm")
+      ->add_option(
+          "recordings", settings->recordings,
+          "Folders of libfreenect's fakenect-record (with --raw), or NAME.pgm with NAME.ppm")
       ->required();
   faces->add_option("--cascade", settings->cascade, "The one that the robot uses")
       ->check(CLI::IsMember(face_detector::cascade_names()));
   faces->add_option("--cascades", settings->cascades, "Folder with haarcascades and lbpcascades");
-  faces->add_flag("--raw", settings->raw, "The depth images hold 11-bit values of the device, as fakenect-record writes them");
+  faces->add_flag(
+      "--raw", settings->raw,
+      "The depth images hold 11-bit values of the device, as fakenect-record writes them");
   faces->add_option("--out", settings->out, "File for the robot's values; FILE.png for the plot");
   faces->callback([=, &exit_code] { exit_code = calibrate(*settings); });
 }
