@@ -41,6 +41,7 @@ Result<Pitch> PitchHistory::at(Stamp stamp) const {
   for (std::size_t i = 1; i < count_; ++i) {
     const Sample& a = back(i);
     if (stamp < a.stamp) continue;
+    if (stamp == a.stamp) return a.pitch;
     const Sample& b = back(i - 1);
     if (b.stamp - a.stamp > kGap) {
       return Error{"the pitch has a gap of " + milliseconds(b.stamp - a.stamp) + " there"};

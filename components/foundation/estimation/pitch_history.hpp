@@ -31,7 +31,7 @@ class PitchHistory {
   Status add(Stamp stamp, const Pitch& pitch);
 
   /// The pitch at a time, or the reason why it is not known: before the memory, beyond the reach,
-  /// or between two samples more than 0.1 s apart.
+  /// or between (not at) two samples more than 0.1 s apart.
   Result<Pitch> at(Stamp stamp) const;
 
   std::size_t size() const { return count_; }

@@ -52,6 +52,7 @@ TEST(PitchHistory, DrawsNoLineOverAGap) {
   ASSERT_TRUE(history.add(milliseconds(0), {}).ok());
   ASSERT_TRUE(history.add(milliseconds(150), {}).ok());
   EXPECT_THAT(history.at(milliseconds(70)).error(), HasSubstr("gap of 150 ms"));
+  EXPECT_TRUE(history.at(milliseconds(0)).ok()) << "a sample's own time";
 }
 
 TEST(PitchHistory, RefusesNonsense) {
