@@ -9,11 +9,13 @@
 #include <memory>
 #include <string>
 
+#include "foundation/grid/costs.hpp"
 #include "operations/command_line/installation.hpp"
 #include "operations/experiments/errand.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "support/folder.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 namespace {
@@ -43,19 +45,37 @@ obstacles:
   - {name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}
 )";
 
-// What the laser sees; what only the ultrasonic sensors hear, which are deaf 0.15 m before it, so
-// that the costs forget it after a while; what only the depth camera sees.
+// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees.
 const Way kWays[] = {
     {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7, false},
     {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49, true},
     {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8, false},
 };
 
+// 0.07 m before the ultrasonic sensors, which tell of 0.15 m then; the planner stands.
+const Way kNearGlass = {
+    "NearGlass", "glass-corridor.yaml", "[4.14, 0.6, 0.0]", "goal", 0.0, nullptr, 0.1, true};
+
 struct Outcome {
   RunRecord::Summary summary;
   double way = 0.0, fastest = 0.0, speed = 0.0;  ///< [m], [m/s], the latter at the end
   bool held = false;                             ///< by the guard, while it was fast
+  double stood = 0.0;                            ///< [s] at the end
+  bool barred = false;                           ///< by the local costs, at the end
 };
+
+/// Something lethal is before the middle of the robot's front, within 0.4 m.
+bool barred(const usher_msgs::msg::Costmap& message, const geometry::Pose2& odom_T_base) {
+  const auto costs = wire::from_message(message);
+  if (!costs) return false;
+  for (double x = 0.3; x < 0.7; x += 0.025) {
+    for (double y = -0.1; y <= 0.1; y += 0.025) {
+      const grid::Cell cell = costs->geometry().cell_at(odom_T_base * geometry::Point2(x, y));
+      if (costs->value_or(cell, 0) == grid::kLethalCost) return true;
+    }
+  }
+  return false;
+}
 
 Outcome drive_blindly(const Way& way, bool guard) {
   const std::string share = std::string(USHER_BINARY_DIR) + "/share/usher";
@@ -108,12 +128,24 @@ Outcome drive_blindly(const Way& way, bool guard) {
     outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
                                     status.velocity_measured_linear() > 0.5F);
   });
-  while (world.elapsed() < std::chrono::seconds(20) && !errand.over()) {
+  geometry::Pose2 odom_T_base;
+  world.observe(topics::kOdom, [&](const auto& odom, const auto&) {
+    if (const auto pose = wire::to_planar(odom.pose().pose())) odom_T_base = *pose;
+  });
+  world.observe(topics::kLocalCosts, [&](const auto& costs, const auto&) {
+    outcome.barred = barred(costs, odom_T_base);
+  });
+  while (world.elapsed() < std::chrono::seconds(30) && !errand.over()) {
     errand.step();
     world.run_for(milliseconds(200));
   }
   const auto& samples = (*run)->record().samples();
-  for (const auto& sample : samples) outcome.fastest = std::max(outcome.fastest, sample.v);
+  auto rolled = samples.front().stamp;
+  for (const auto& sample : samples) {
+    outcome.fastest = std::max(outcome.fastest, sample.v);
+    if (std::abs(sample.v) >= 0.1) rolled = sample.stamp;
+  }
+  outcome.stood = runtime::seconds(samples.back().stamp - rolled);
   outcome.speed = samples.back().v;
   outcome.way = geometry::distance(samples.front().truth, samples.back().truth);
   outcome.summary = (*run)->record().summary();
@@ -129,10 +161,18 @@ TEST_P(BlindPlanner, IsStoppedBeforeIt) {
   EXPECT_LT(std::abs(outcome.speed), 0.1);
   EXPECT_TRUE(outcome.held);
   EXPECT_EQ(outcome.summary.contacts + outcome.summary.touches, 0U) << outcome.summary.contact_with;
+  EXPECT_GT(outcome.stood, 10.0);
+  EXPECT_TRUE(outcome.barred) << "the costs still know of it";
 }
 
 TEST_P(BlindPlanner, HitsItWithoutTheGuard) {
   EXPECT_GT(drive_blindly(GetParam(), false).summary.contacts, 0U);
+}
+
+TEST(NearGlass, StaysInTheCosts) {
+  const Outcome outcome = drive_blindly(kNearGlass, true);
+  EXPECT_GT(outcome.stood, 10.0);
+  EXPECT_TRUE(outcome.barred);
 }
 
 INSTANTIATE_TEST_SUITE_P(Into, BlindPlanner, testing::ValuesIn(kWays),

@@ -33,7 +33,8 @@ struct Feedback {
   geometry::Pose2 pose;    ///< of base_footprint in odom; begins at zero, never jumps
   geometry::Twist2 twist;  ///< measured
   double battery_percent = std::numeric_limits<double>::quiet_NaN();  ///< {0..100, NaN unknown}
-  /// [m] +infinity: no echo, NaN: no sonar there, or not heard lately.
+  /// [m] as measured; +infinity: no echo, NaN: no sonar there, or it has not fired since the last
+  /// report.
   std::array<float, kSonarSlots> sonar{};
 };
 

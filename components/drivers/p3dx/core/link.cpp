@@ -37,13 +37,6 @@ std::optional<std::size_t> slot_of(std::uint8_t number) {
 
 }  // namespace
 
-Tracker::Tracker(const Parameters& parameters) : parameters_(parameters) { reset(); }
-
-void Tracker::reset() {
-  last_.reset();
-  sonar_.fill(std::numeric_limits<float>::quiet_NaN());
-}
-
 /// The controller's own frame turns with its origin; what counts is how it moved in the body.
 void Tracker::move(const Information& information) {
   const double x = way(last_->x, information.x), y = way(last_->y, information.y);
@@ -68,18 +61,13 @@ Feedback Tracker::take(const Information& information, Time now) {
   feedback.battery_percent = std::clamp(100.0 * (information.battery - parameters_.empty_battery) /
                                             (parameters_.full_battery - parameters_.empty_battery),
                                         0.0, 100.0);
+  feedback.sonar.fill(std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < information.sonar_count; ++i) {
     const SonarReading& reading = information.sonar[i];
     const auto slot = slot_of(reading.number);
     if (!slot) continue;
-    sonar_[*slot] = reading.range >= kNoEcho ? std::numeric_limits<float>::infinity()
-                                             : 1e-3F * static_cast<float>(reading.range);
-    heard_[*slot] = now;
-  }
-  feedback.sonar = sonar_;
-  for (std::size_t slot = 0; slot < kSonarSlots; ++slot) {
-    if (std::chrono::duration<double>(now - heard_[slot]).count() > parameters_.sonar_memory)
-      feedback.sonar[slot] = std::numeric_limits<float>::quiet_NaN();
+    feedback.sonar[*slot] = reading.range >= kNoEcho ? std::numeric_limits<float>::infinity()
+                                                     : 1e-3F * static_cast<float>(reading.range);
   }
   return feedback;
 }

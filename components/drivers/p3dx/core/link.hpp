@@ -12,18 +12,17 @@
 
 namespace usher::p3dx {
 
-/// Turns information packets into the way of the robot: unwraps positions, keeps sonar readings.
+/// Turns information packets into the way of the robot: unwraps positions, sorts sonar readings.
 class Tracker {
  public:
   struct Parameters {
     double track = 0.357;         ///< [m] {> 0} effective: half wheel difference x 0.0056 rad/mm
     double full_battery = 12.8;   ///< [V]
     double empty_battery = 11.0;  ///< [V]
-    double sonar_memory = 0.5;    ///< [s] a sonar that fires in turn is heard every 0.32 s
     double longest_step = 0.5;    ///< [m] between two packets; more is a reset of the origin
   };
-  explicit Tracker(const Parameters& parameters);
-  void reset();
+  explicit Tracker(const Parameters& parameters) : parameters_(parameters) {}
+  void reset() { last_.reset(); }
   Feedback take(const Information& information, Time now);
 
  private:
@@ -31,8 +30,6 @@ class Tracker {
   Parameters parameters_;
   std::optional<Information> last_;
   geometry::Pose2 pose_;
-  std::array<float, kSonarSlots> sonar_{};
-  std::array<Time, kSonarSlots> heard_{};
 };
 
 /// The dialogue with the base's controller over its serial line (ARCOS): three handshakes, open,

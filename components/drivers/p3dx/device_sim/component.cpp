@@ -8,6 +8,7 @@ namespace usher::p3dx {
 
 namespace {
 constexpr auto kSilence = std::chrono::milliseconds(150);
+constexpr auto kFiring = std::chrono::milliseconds(40);
 constexpr double kLongestStep = 0.5;  // [m] between two reports; more is no way
 }  // namespace
 
@@ -20,8 +21,7 @@ P3dxSimComponent::P3dxSimComponent(runtime::Host& host)
       sonar_(host.input(
           topics::kSimSensorBoard,
           {.max_age = kSilence, .on_loss = "publishes no sonar ranges", .optional = true},
-          [this](const auto& message, const auto&) { take_sonar(message); },
-          [this] { feedback_.sonar.fill(std::numeric_limits<float>::quiet_NaN()); })) {
+          [this](const auto& message, const auto&) { take_sonar(message); })) {
   feedback_.sonar.fill(std::numeric_limits<float>::quiet_NaN());
   base_.listen([this](const auto& message) { take(message); },
                [this](const std::string& reason) { driver_.disconnected(reason); });
@@ -51,6 +51,7 @@ void P3dxSimComponent::take(const usher_sim_msgs::msg::BaseFeedback& message) {
   feedback_.twist = wheels_.forward({message.left_velocity(), message.right_velocity()});
   feedback_.battery_percent = message.battery_percent();
   driver_.take(feedback_);
+  feedback_.sonar.fill(std::numeric_limits<float>::quiet_NaN());
 }
 
 void P3dxSimComponent::take_sonar(const usher_sim_msgs::msg::SensorBoardReading& message) {
@@ -58,9 +59,11 @@ void P3dxSimComponent::take_sonar(const usher_sim_msgs::msg::SensorBoardReading&
     ++rejected_;
     return;
   }
+  const Time stamp = wire::from_message(message.header().stamp()).time_since_epoch();
+  if (stamp < fires_at_) return;
+  fires_at_ = stamp + kFiring;
   for (std::size_t slot = 0; slot < kSonarSlots; ++slot) {
-    feedback_.sonar[slot] =
-        is_sonar(slot) ? message.ranges()[slot] : std::numeric_limits<float>::quiet_NaN();
+    if (is_sonar(slot)) feedback_.sonar[slot] = message.ranges()[slot];
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace usher::p3dx {
 
-/// The driver over a simulated base.
+/// The driver over a simulated base. Its sonars fire all at once, those of a real one in turn.
 class P3dxSimComponent final : public runtime::Component {
  public:
   explicit P3dxSimComponent(runtime::Host& host);
@@ -20,6 +20,7 @@ class P3dxSimComponent final : public runtime::Component {
   kinematics::DifferentialDrive wheels_;
   std::optional<kinematics::WheelSpeeds> travel_;  ///< [m] of the last feedback
   Feedback feedback_;
+  Time fires_at_{};  ///< all sonars, again
   std::uint64_t& rejected_;
   drive::SimulatedBase base_;
   BaseDriver driver_;

@@ -1,5 +1,8 @@
 #include "drivers/p3dx/shell/base_driver.hpp"
 
+#include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
 
 #include "wire/conversions.hpp"
@@ -29,8 +32,6 @@ BaseDriver::BaseDriver(runtime::Host& host, drive::BaseDevice device)
                                    "Ring of the ultrasonic sensors above the axle's middle.")),
       mounts_(host.output(topics::kTfStatic)),
       sonar_(host.output(topics::kUltrasonic)) {
-  sonar_timer_ =
-      host.timer("sonar", std::chrono::milliseconds(50), [this](auto) { publish_sonar(); });
   place_frames();
 }
 
@@ -47,6 +48,7 @@ void BaseDriver::take(const Feedback& feedback) {
   feedback_ = feedback;
   heard_ = true;
   host_.health().set(warning_.empty() ? HealthState::kOk : HealthState::kDegraded, warning_);
+  take_sonar(feedback);
 }
 
 void BaseDriver::disconnected(const std::string& reason) {
@@ -67,19 +69,32 @@ void BaseDriver::predict() {
                 .battery_percent = feedback_.battery_percent});
 }
 
-void BaseDriver::publish_sonar() {
-  if (!base_.connected()) return;
-  constexpr float kRangeMin = 0.15F, kRangeMax = 5.0F, kPeriod = 0.05F;  // [m], [s]
+/// Sonars that fired together may have fired apart before, and a scan has one time.
+void BaseDriver::take_sonar(const Feedback& feedback) {
+  std::map<Time, std::array<float, kSonarSlots>> scans;
+  for (std::size_t slot = 0; slot < kSonarSlots; ++slot) {
+    if (std::isnan(feedback.sonar[slot])) continue;
+    const auto median = filters_[slot].update(feedback.sonar[slot], feedback.stamp);
+    const auto [scan, fresh] = scans.try_emplace(median.stamp);
+    if (fresh) scan->second.fill(std::numeric_limits<float>::quiet_NaN());
+    scan->second[slot] = median.range;
+  }
+  for (const auto& [stamp, ranges] : scans) publish_sonar(stamp, ranges);
+}
+
+void BaseDriver::publish_sonar(Time stamp, const std::array<float, kSonarSlots>& ranges) {
+  constexpr float kRangeMin = 0.15F, kRangeMax = 5.0F;  // [m]
+  constexpr float kTurn = 0.32F;                        // [s] from one firing to its next
   const auto ring = static_cast<float>(ring_radius_);
   sensor_msgs::msg::LaserScan scan;
-  scan.header(wire::header(runtime::Time(feedback_.stamp), kRing));
+  scan.header(wire::header(runtime::Time(stamp), kRing));
   scan.angle_min(static_cast<float>(-0.5 * geometry::kPi));
   scan.angle_max(static_cast<float>(0.5 * geometry::kPi));
   scan.angle_increment(static_cast<float>(kSonarSpacing));
-  scan.scan_time(kPeriod);
+  scan.scan_time(kTurn);
   scan.range_min(kRangeMin + ring);
   scan.range_max(kRangeMax + ring);
-  for (const float range : feedback_.sonar) scan.ranges().push_back(range + ring);
+  for (const float range : ranges) scan.ranges().push_back(range + ring);
   sonar_.publish(scan);
 }
 

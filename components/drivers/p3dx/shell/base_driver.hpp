@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "drivers/base_obedience/shell/obedient_base.hpp"
 #include "drivers/p3dx/core/device.hpp"
+#include "foundation/estimation/median_filter.hpp"
 
 namespace usher::p3dx {
 
@@ -22,7 +24,8 @@ class BaseDriver {
 
  private:
   void predict();
-  void publish_sonar();
+  void take_sonar(const Feedback& feedback);
+  void publish_sonar(Time stamp, const std::array<float, kSonarSlots>& ranges);
   void place_frames();
 
   runtime::Host& host_;
@@ -31,10 +34,10 @@ class BaseDriver {
   Feedback feedback_;
   bool heard_ = false;
   std::string warning_;
+  std::array<estimation::MedianFilter, kSonarSlots> filters_;
 
   runtime::Output<tf2_msgs::msg::TFMessage> mounts_;
   runtime::Output<sensor_msgs::msg::LaserScan> sonar_;
-  runtime::Timer sonar_timer_;
 };
 
 }  // namespace usher::p3dx

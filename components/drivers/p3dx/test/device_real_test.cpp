@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "drivers/p3dx/device_real/component.hpp"
 #include "support/right_to_drive.hpp"
 
@@ -11,6 +13,7 @@ using namespace usher_msgs::msg::BaseStatus_Constants;
 constexpr const char* kRing = "robot.ultrasonic.mount_x: 0.2 m\nrobot.ultrasonic.mount_z: 0.1 m";
 
 /// The controller: echoes the handshake, then reports ten times a second and does what it is told.
+/// A sonar fires every 40 ms.
 class Device final : public runtime::LockstepDevice {
  public:
   void opened() override { running = motors = false; }
@@ -47,8 +50,15 @@ class Device final : public runtime::LockstepDevice {
     for (const int v : {x_, 0, 0, velocity, velocity}) u16(v);
     b.push_back(120);
     for (const int v : {0, 0, motors ? 1 : 0}) u16(v);
-    b.insert(b.end(), {0, 1, 3});
-    u16(1500);
+    const int fired = asked_ / 4 - fired_;
+    b.insert(b.end(), {0, static_cast<std::uint8_t>(deaf ? 0 : fired)});
+    for (int i = 0; i < fired; ++i) {
+      const auto number = static_cast<std::uint8_t>(fired_++ % 8);
+      if (deaf) continue;
+      b.push_back(number);
+      u16(crossed > 0 ? 900 : 1500);
+      --crossed;
+    }
     for (int i = 0; i < 5; ++i) b.push_back(0);
     runtime::Bytes packet = {0xFA, 0xFB, static_cast<std::uint8_t>(b.size() + 2)};
     packet.insert(packet.end(), b.begin(), b.end());
@@ -59,12 +69,14 @@ class Device final : public runtime::LockstepDevice {
   }
 
   bool running = false, motors = false, silent = false;
-  int velocity = 0;  ///< [mm/s] last ordered
+  bool deaf = false;  ///< no sonar fires
+  int crossed = 0;    ///< so many firings hear another robot's
+  int velocity = 0;   ///< [mm/s] last ordered
   int emergency_stops = 0;
 
  private:
   Decoder decoder_;
-  int asked_ = 0, x_ = 0;
+  int asked_ = 0, x_ = 0, fired_ = 0;
 };
 
 class DeviceReal : public testing::Test {
@@ -106,6 +118,45 @@ TEST_F(DeviceReal, ItsStatusIsAsOldAsTheReportThatItTells) {
   EXPECT_EQ(stamp(), heard);
   EXPECT_GT(wire::from_message(host.last(topics::kOdom)->header().stamp()), heard)
       << "the pose is predicted";
+}
+
+TEST_F(DeviceReal, BelievesNoEchoAlone) {
+  host.run_for(milliseconds(4000));
+  host.clear();
+  device->crossed = 8;  // each sonar once
+  host.run_for(milliseconds(3200));
+  EXPECT_LE(device->crossed, 0);
+  int ranges = 0;
+  for (const auto& scan : host.written(topics::kUltrasonic)) {
+    for (const float range : scan.ranges()) {
+      if (std::isnan(range)) continue;
+      EXPECT_FLOAT_EQ(range, 1.7F) << "from the middle of the ring";
+      ++ranges;
+    }
+  }
+  EXPECT_NEAR(ranges, 80, 3) << "each firing is told once";
+}
+
+TEST_F(DeviceReal, ItsSonarsAreAsOldAsTheMiddleMeasurement) {
+  host.run_for(milliseconds(4000));
+  for (int i = 0; i < 200; ++i) {
+    host.clear();
+    host.run_for(milliseconds(10));
+    for (const auto& scan : host.written(topics::kUltrasonic)) {
+      const auto age = host.now() - wire::from_message(scan.header().stamp());
+      EXPECT_GE(age, milliseconds(300)) << "fired before";
+      EXPECT_LE(age, milliseconds(420)) << "costs take none older than 500 ms";
+    }
+  }
+}
+
+TEST_F(DeviceReal, TellsNothingOfSonarsThatDoNotFire) {
+  host.run_for(milliseconds(4000));
+  device->deaf = true;
+  host.run_for(milliseconds(100));
+  host.clear();
+  host.run_for(milliseconds(500));
+  EXPECT_TRUE(host.written(topics::kUltrasonic).empty());
 }
 
 TEST_F(DeviceReal, StandsWhenCommandOrGrantFallSilent) {

@@ -173,7 +173,7 @@ TEST(Tracker, WrapsNeverAndJumpsNever) {
   EXPECT_NEAR(geometry::shortest_turn(pose.yaw, 10000 * 2 * geometry::kPi / 4096), 0.0, 1e-6);
 }
 
-TEST(Tracker, SonarsKeepTheirPlacesAndAreForgotten) {
+TEST(Tracker, SonarsKeepTheirPlacesAndAreToldOnce) {
   Tracker tracker(Tracker::Parameters{});
   Information info;
   info.sonar = {SonarReading{0, 700}, SonarReading{4, 1200}, SonarReading{7, 32000}};
@@ -184,7 +184,7 @@ TEST(Tracker, SonarsKeepTheirPlacesAndAreForgotten) {
   EXPECT_TRUE(std::isinf(sonar[0]));
   EXPECT_TRUE(std::isnan(sonar[1]) && std::isnan(sonar[8])) << "nothing looks to 70 deg";
   info.sonar_count = 0;
-  sonar = tracker.take(info, milliseconds(1600)).sonar;
+  sonar = tracker.take(info, milliseconds(1100)).sonar;
   EXPECT_TRUE(std::isnan(sonar[4]));
 }
 

@@ -24,7 +24,7 @@ struct Whiskers {
 struct Reading {
   Time stamp{};  ///< on the host's clock
   std::array<float, kSonars>
-      ranges{};  ///< [m] right to left; +infinity: no echo, NaN: sensor fault
+      ranges{};  ///< [m] right to left, as measured; +infinity: no echo, NaN: sensor fault
   Whiskers whiskers;
   double tilt = 0.0;     ///< [rad] where the tilt servo stands, on its way, too; up is positive
   bool measured = true;  ///< ranges and tilt are of the stamp; else of the reading before

@@ -30,14 +30,9 @@ float range_of(std::uint16_t millimeters) {
 
 Link::Link() : Link(Parameters{}) {}
 
-Link::Link(const Parameters& parameters) : parameters_(parameters), dialogue_({}, kParts) {
-  filters_.fill(MedianFilter(parameters.median_window));
-}
+Link::Link(const Parameters& parameters) : parameters_(parameters), dialogue_({}, kParts) {}
 
-void Link::opened(Time now) {
-  dialogue_.opened(now);
-  for (MedianFilter& filter : filters_) filter.reset();
-}
+void Link::opened(Time now) { dialogue_.opened(now); }
 
 void Link::closed() { dialogue_.closed(); }
 
@@ -68,9 +63,8 @@ Whiskers Link::corners(std::uint8_t mask) const {
 void Link::take(const Sensors& sensors, Time now) {
   reading_.stamp = now;
   reading_.measured = true;
-  for (std::size_t i = 0; i < kSonars; ++i) {
-    reading_.ranges[i] = filters_[i].update(range_of(sensors.ranges_mm[i]));
-  }
+  std::transform(sensors.ranges_mm.begin(), sensors.ranges_mm.end(), reading_.ranges.begin(),
+                 range_of);
   reading_.whiskers = corners(sensors.whisker_mask);
   reading_.tilt = geometry::radians(sensors.tilt * 0.1);
 }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "drivers/sensor_board/core/device.hpp"
-#include "drivers/sensor_board/core/median_filter.hpp"
 #include "drivers/sensor_board/core/protocol.hpp"
 #include "drivers/serial_frame/core/dialogue.hpp"
 
@@ -19,7 +18,6 @@ namespace usher::sensor_board {
 class Link {
  public:
   struct Parameters {
-    std::size_t median_window = 3;           ///< {1..15} of each ultrasonic sensor
     double tilt_limit = 0.3490658503988659;  ///< [rad] 20 deg to either side
     /// Switches of each whisker as bits of the mask: two to a whisker.
     std::uint8_t front_left = 0x03;
@@ -67,7 +65,6 @@ class Link {
 
   Parameters parameters_;
   serial_frame::Dialogue dialogue_;
-  std::array<MedianFilter, kSonars> filters_;
   std::optional<std::int16_t> tilt_;  ///< [0.1 deg] wanted
   bool tilt_due_ = false;
   std::uint64_t told_after_ = 0;  ///< hellos: the board knows the tilt since then

@@ -6,17 +6,8 @@ namespace {
 constexpr auto kTick = std::chrono::milliseconds(20);
 }
 
-Link::Parameters SensorBoardComponent::read_parameters(runtime::Parameters& parameters) {
-  Link::Parameters p;
-  p.median_window = static_cast<std::size_t>(
-      parameters.integer("median_window", "-", {1, 15}, static_cast<std::int64_t>(p.median_window),
-                         "Rolling window of each ultrasonic sensor."));
-  return p;
-}
-
 SensorBoardComponent::SensorBoardComponent(runtime::Host& host)
     : host_(host),
-      link_(read_parameters(host.parameters())),
       publisher_(host, [this](double tilt) { link_.set_tilt(tilt); }),
       lost_(host.health().counter("messages: lost")),
       damaged_(host.health().counter("frames: damaged")) {
@@ -43,9 +34,9 @@ void SensorBoardComponent::tick() {
   if (!output.empty()) stream_->write(output);
   lost_ = link_.dialogue().lost_messages();
   damaged_ = link_.dialogue().damaged();
-  const bool healthy = link_.healthy(now());
-  host_.health().set(healthy ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
-                     healthy ? "" : link_.reason(now()));
+  const std::string reason = link_.reason(now());
+  host_.health().set(reason.empty() ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
+                     reason);
 }
 
 }  // namespace usher::sensor_board

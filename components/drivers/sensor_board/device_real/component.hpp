@@ -11,7 +11,6 @@ class SensorBoardComponent final : public runtime::Component {
   explicit SensorBoardComponent(runtime::Host& host);
 
  private:
-  static Link::Parameters read_parameters(runtime::Parameters& parameters);
   Time now() const { return host_.now().time_since_epoch(); }
   void tick();
 

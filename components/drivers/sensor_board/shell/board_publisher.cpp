@@ -34,9 +34,11 @@ BoardPublisher::BoardPublisher(runtime::Host& host, std::function<void(double)> 
   spacing_ = static_cast<float>(p.number("robot.ultrasonic.spacing", "rad", {0.05, 1.6},
                                          "Angle between two ultrasonic sensors."));
   range_min_ =
-      static_cast<float>(p.number("range_min", "m", {0, 1}, 0.16, "Nearer things read this."));
+      static_cast<float>(p.number("range_min", "m", {0, 1}, 0.15, "Nearer ranges are none."));
   range_max_ =
       static_cast<float>(p.number("range_max", "m", {1, 10}, 6.0, "Farther things are not seen."));
+  filters_.fill(estimation::MedianFilter(static_cast<std::size_t>(
+      p.integer("median_window", "-", {1, 15}, 3, "Rolling window of each ultrasonic sensor."))));
   geometry::Pose3 base_T_ring;
   base_T_ring.translation.z() = p.number("robot.ultrasonic.mount_z", "m", {-1, 3},
                                          "Ring of the ultrasonic sensors above the axle's middle.");
@@ -63,7 +65,6 @@ void BoardPublisher::publish(const Reading& reading) {
   tilt_.publish(tilt);
 
   sensor_msgs::msg::LaserScan scan;
-  scan.header(wire::header(stamp, kFrame));
   const float outermost = spacing_ * static_cast<float>(kSonars - 1) / 2.0F;
   scan.angle_min(-outermost);
   scan.angle_max(outermost);
@@ -72,8 +73,11 @@ void BoardPublisher::publish(const Reading& reading) {
   scan.range_min(range_min_ + ring_radius_);
   scan.range_max(range_max_ + ring_radius_);
   scan.ranges().resize(kSonars);
-  for (std::size_t i = 0; i < kSonars; ++i)
-    scan.ranges()[i] = reading.ranges[i] + ring_radius_;  // infinity and NaN stay
+  for (std::size_t i = 0; i < kSonars; ++i) {
+    const auto median = filters_[i].update(reading.ranges[i], reading.stamp);
+    scan.header(wire::header(runtime::Time(median.stamp), kFrame));  // of all: measured together
+    scan.ranges()[i] = median.range + ring_radius_;                  // infinity and NaN stay
+  }
   ultrasonic_.publish(scan);
 }
 

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "drivers/sensor_board/core/device.hpp"
+#include "foundation/estimation/median_filter.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
 namespace usher::sensor_board {
 
-/// What the real and the simulated board have in common: five ultrasonic ranges become one scan
-/// seen from the middle of their ring, the switches become whiskers, the mount a static transform,
-/// and the servo of the camera's tilt goes where it is told to.
+/// What the real and the simulated board have in common: the medians of five ultrasonic sensors
+/// become one scan seen from the middle of their ring, the switches become whiskers, the mount a
+/// static transform, and the servo of the camera's tilt goes where it is told to.
 class BoardPublisher {
  public:
   /// `set_tilt` is called with each command for the servo that is finite, [rad] up is positive; the
@@ -20,6 +22,7 @@ class BoardPublisher {
   void publish(const Reading& reading);
 
  private:
+  std::array<estimation::MedianFilter, kSonars> filters_;
   float ring_radius_, spacing_, range_min_, range_max_;
   std::uint64_t& rejected_tilts_;
   runtime::Output<sensor_msgs::msg::LaserScan> ultrasonic_;

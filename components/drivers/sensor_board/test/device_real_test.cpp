@@ -86,6 +86,46 @@ TEST_F(DeviceReal, PublishesRangesAndTiltOfEveryMeasurement) {
   EXPECT_FLOAT_EQ(host.last(topics::kUltrasonic)->scan_time(), 0.05F);
 }
 
+TEST_F(DeviceReal, BelievesNoEchoAlone) {
+  host.run_for(milliseconds(4000));
+  host.clear();
+  device->sensors.ranges_mm[2] = 900;
+  host.run_for(milliseconds(50));
+  device->sensors.ranges_mm[2] = 2000;
+  host.run_for(milliseconds(500));
+  EXPECT_GT(host.written(topics::kUltrasonic).size(), 9U);
+  for (const auto& scan : host.written(topics::kUltrasonic))
+    EXPECT_FLOAT_EQ(scan.ranges()[2], 2.2F);
+}
+
+TEST_F(DeviceReal, ItsRangesAreAsOldAsTheMiddleMeasurement) {
+  host.run_for(milliseconds(4000));
+  const auto time_of = [](const auto& message) {
+    return wire::from_message(message.header().stamp());
+  };
+  EXPECT_EQ(time_of(*host.last(topics::kKinectTilt)) - time_of(*host.last(topics::kUltrasonic)),
+            milliseconds(50));
+}
+
+TEST_F(DeviceReal, WhatIsNearerThanASensorMeasuresIsARange) {
+  device->sensors.ranges_mm.fill(152);  // what it says of all that is nearer
+  host.run_for(milliseconds(4000));
+  const auto scan = host.last(topics::kUltrasonic);
+  ASSERT_TRUE(scan);
+  EXPECT_GE(scan->ranges()[2], scan->range_min());
+}
+
+TEST_F(DeviceReal, SaysWhatTroublesTheBoard) {
+  host.run_for(milliseconds(4000));
+  device->sensors.status = kSonarBusFault | kSupplyLow;
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kDegraded));
+  EXPECT_EQ(host.heartbeat().reason(), "supply low, ultrasonic bus fault");
+  device->sensors.status = 0;
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+}
+
 TEST_F(DeviceReal, PublishesNoRangesOfAWhisker) {
   host.run_for(milliseconds(4000));
   host.clear();

@@ -28,5 +28,19 @@ TEST(DeviceSim, MeasuresAtTheRateOfARealBoardAndTellsItsWhiskersAtOnce) {
   EXPECT_FLOAT_EQ(host.last(topics::kUltrasonic)->scan_time(), 0.05F);
 }
 
+TEST(DeviceSim, BelievesNoEchoAlone) {
+  runtime::TestHost host{runtime::component_factory<SensorBoardSimComponent>("sensor_board_sim"),
+                         kRing};
+  for (int i = 0; i < 100; ++i) {
+    usher_sim_msgs::msg::SensorBoardReading reading;
+    reading.header(wire::header(host.now(), "base_link"));
+    reading.ranges({2.0F, 2.0F, i == 50 ? 0.9F : 2.0F, 2.0F, 2.0F});  // it is measured
+    host.publish(topics::kSimSensorBoard, reading);
+    host.run_for(milliseconds(20));
+  }
+  for (const auto& scan : host.written(topics::kUltrasonic))
+    EXPECT_FLOAT_EQ(scan.ranges()[2], 2.2F);
+}
+
 }  // namespace
 }  // namespace usher::sensor_board

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "drivers/sensor_board/core/median_filter.hpp"
 #include "support/bytes.hpp"
 
 namespace usher::sensor_board {
@@ -78,40 +77,6 @@ TEST(Protocol, RefusesUnknownTypesAndWrongLengths) {
       const bool right = (type == 0x10 && length == 20) || (type == 0x11 && length == 8) ||
                          (type == 0x60 && length == 4) || (type == 0x61 && length == 5);
       EXPECT_EQ(parse(content).has_value(), right) << type << " " << length;
-    }
-  }
-}
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct MedianRow {
-  std::vector<float> in;
-  float out;
-};
-
-TEST(MedianFilter, TakesTheMiddleOfTheLastThree) {
-  const MedianRow rows[] = {
-      {{1.0F}, 1.0F},
-      {{1.0F, 3.0F}, 1.0F},
-      {{1.0F, 9.0F, 1.1F}, 1.1F},
-      {{9.0F, 9.0F, 9.0F, 1.0F}, 9.0F},
-      {{9.0F, 9.0F, 9.0F, 1.0F, 1.2F}, 1.2F},
-      {{1.0F, kInfinity, kInfinity}, kInfinity},
-      {{1.0F, kInfinity, 2.0F}, 2.0F},
-      {{kNan}, kNan},
-      {{kNan, 2.0F, kNan}, 2.0F},
-      {{kNan, 2.0F, 1.0F}, 1.0F},
-      {{2.0F, kNan, kNan, kNan}, kNan},
-  };
-  for (const MedianRow& row : rows) {
-    MedianFilter filter(3);
-    float out = 0.0F;
-    for (const float range : row.in) out = filter.update(range);
-    if (std::isnan(row.out)) {
-      EXPECT_TRUE(std::isnan(out));
-    } else {
-      EXPECT_EQ(out, row.out);
     }
   }
 }
