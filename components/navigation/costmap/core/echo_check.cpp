@@ -8,9 +8,10 @@
 namespace usher::costmap {
 
 namespace {
-constexpr float kArc = 0.9F;    // [m] nearer, the axis alone: arcs beside a door post bar the door
-constexpr double kBody = 0.6;   // [m] from where somebody is, and the width of a cone
-constexpr int kNeighbours = 3;  // beams that agree; glass sends back one now and then
+constexpr float kArc = 0.9F;  // [m] nearer, the axis alone: arcs beside a door post bar the door
+constexpr double kBehind = 0.15;  // [m] both sensors' errors: glass may stand before a wall
+constexpr double kBody = 0.6;     // [m] from where somebody is, and the width of a cone
+constexpr int kNeighbours = 3;    // beams that agree; glass sends back one now and then
 }  // namespace
 
 void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar, double half_cone,
@@ -30,7 +31,8 @@ void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar,
     const double bearing = std::atan2(end.y(), end.x());
     for (std::size_t i = 0; i < echoes.size(); ++i) {
       const double axis = sonar.angle_min + sonar.angle_increment * static_cast<double>(i);
-      const bool explains = std::abs(distance - echoes[i]) <= tolerance &&
+      const double behind = distance - echoes[i];
+      const bool explains = behind >= -tolerance && behind <= kBehind &&
                             std::abs(geometry::shortest_turn(axis, bearing)) <= half_cone;
       agree[i] = explains ? agree[i] + 1 : 0;
       if (std::isfinite(echoes[i]) && agree[i] >= kNeighbours)

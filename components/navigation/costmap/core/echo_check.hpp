@@ -18,12 +18,14 @@ struct ComparedScan {
 
 /// An ultrasonic echo comes from anywhere in a wide cone: put on the cone's axis, a wall that is
 /// met at an angle seems to stand inside the corridor. What the laser sees in the cone at that
-/// distance, with three neighbouring beams, explains the echo, and the laser's own layer has it at
-/// its right place; what it sees nearer, or behind, does not. What remains is what ultrasonic
+/// distance or a little nearer, with three neighbouring beams, explains the echo, and the laser's
+/// own layer has it at its right place; what it sees much nearer, or behind, does not. What remains
+/// is what ultrasonic
 /// sensors are for: glass, which the laser looks through but for a beam here and there.
 ///
 /// Sets every range of `echoes` to NaN (nothing known) that `laser` explains within `half_cone`
-/// [rad] and `tolerance` [m]. Without a laser scan nothing is explained. O(echoes x beams).
+/// [rad] and so much nearer, `tolerance` [m]. Without a laser scan nothing is explained. O(echoes x
+/// beams).
 void drop_explained_echoes(const ComparedScan& laser, const ComparedScan& sonar, double half_cone,
                            double tolerance, std::span<float> echoes);
 

@@ -105,8 +105,8 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                         "Half of an ultrasonic cone, where the laser explains echoes.");
   ultrasonic_cone_ = parameters.number("ultrasonic_cone", "rad", {0, 0.8}, 0.28,
                                        "Full width of a cone: an echo may come from all of it.");
-  echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.15,
-                                      "How far apart laser and echo may be.");
+  echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.3,
+                                      "So much nearer than an echo may be what explains it.");
 
   const auto judge = [&host](Beams& beams, runtime::Duration max_age, const std::string& name) {
     beams.max_age = max_age;

@@ -25,7 +25,7 @@ std::vector<float> wall_beside(double offset) {
 std::vector<float> after_check(const std::vector<float>& laser, std::vector<float> echoes,
                                const geometry::Pose2& laser_pose = {}) {
   drop_explained_echoes({laser_pose, -90 * kDegree, kDegree, laser},
-                        {{}, -60 * kDegree, 30 * kDegree, {}}, 12 * kDegree, 0.15, echoes);
+                        {{}, -60 * kDegree, 30 * kDegree, {}}, 12 * kDegree, 0.3, echoes);
   return echoes;
 }
 
@@ -54,6 +54,12 @@ TEST(EchoCheck, GlassBeforeAPanelStays) {
   const std::vector<float> panel(181, 1.25F);
   const auto echoes = after_check(panel, {kInfinity, kInfinity, 1.0F, kInfinity, kInfinity});
   EXPECT_FLOAT_EQ(echoes[2], 1.0F);
+}
+
+TEST(EchoCheck, WhoComesNearerIsExplained) {
+  const std::vector<float> who_walks(181, 1.3F);  // the echo is some time old
+  EXPECT_TRUE(
+      std::isnan(after_check(who_walks, {kInfinity, kInfinity, 1.5F, kInfinity, kInfinity})[2]));
 }
 
 TEST(EchoCheck, GlassBehindAChairsLegStays) {
