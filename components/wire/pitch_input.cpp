@@ -14,18 +14,28 @@ constexpr auto kFuture = milliseconds(20);
 PitchInput::PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch)
     : host_(host),
       on_pitch_(std::move(on_pitch)),
+      upright_(host.parameters().choice("robot.base", {"segway", "pioneer"}, "segway",
+                                        "What kind of base it is.") == "pioneer"),
       refused_(host.health().counter("base/status: refused")),
       base_(host.input(
           topics::kBaseStatus, {.max_age = kMaxAge, .on_loss = on_loss},
           [this](const auto& status, const auto&) { take(status); },
           [this] { host_.health().set(HealthState::kDegraded, "no pitch"); })) {}
 
+Result<estimation::Pitch> PitchInput::at(Time stamp) const {
+  if (!upright_) return history_.at(stamp.time_since_epoch());
+  if (!current()) return Error{"nothing was heard of the base for 100 ms"};
+  return estimation::Pitch{};
+}
+
 bool PitchInput::current() const { return host_.now() - heard_ <= kMaxAge; }
 
 void PitchInput::take(const usher_msgs::msg::BaseStatus& status) {
   const bool connected =
       status.state() != usher_msgs::msg::BaseStatus_Constants::STATE_DISCONNECTED;
-  const Status added = connected ? add(status) : Error{"the base is disconnected"};
+  const Status added = !connected ? Error{"the base is disconnected"}
+                       : upright_ ? Status{}
+                                  : add(status);
   if (added) {
     heard_ = host_.now();
     on_pitch_();

@@ -13,6 +13,9 @@ namespace usher::wire {
 /// gives no pitch (not finite, not newer than the one before, stamped more than 20 ms ahead of now,
 /// which would make all later ones old) is refused and counted ("base/status: refused"). After
 /// 100 ms without a pitch, for whatever reason, the component is degraded with that reason.
+///
+/// A Pioneer (`robot.base`) stands upright whenever it is connected. Its statuses have the stamps
+/// of the reports that they tell, ten a second: scans would wait for the next one.
 class PitchInput {
  public:
   /// `on_loss` is for the contract; `on_pitch` runs after each pitch that is new.
@@ -21,7 +24,7 @@ class PitchInput {
   PitchInput& operator=(const PitchInput&) = delete;
 
   /// The pitch at a time, or the reason why it is not known.
-  Result<estimation::Pitch> at(Time stamp) const { return history_.at(stamp.time_since_epoch()); }
+  Result<estimation::Pitch> at(Time stamp) const;
   /// Whether one came within the last 100 ms.
   bool current() const;
 
@@ -31,6 +34,7 @@ class PitchInput {
 
   runtime::Host& host_;
   std::function<void()> on_pitch_;
+  const bool upright_;
   estimation::PitchHistory history_;
   Time heard_{};  ///< when the newest pitch came
   std::uint64_t& refused_;

@@ -15,6 +15,7 @@ using namespace usher_msgs::msg::BaseStatus_Constants;
 
 /// What the newest Leaning heard.
 int pitches = 0;
+const PitchInput* leaning = nullptr;
 
 class Leaning final : public runtime::Component {
  public:
@@ -22,7 +23,9 @@ class Leaning final : public runtime::Component {
       : pitch_(host, "falls over", [&host] {
           ++pitches;
           host.health().set(runtime::HealthState::kOk);
-        }) {}
+        }) {
+    leaning = &pitch_;
+  }
 
  private:
   PitchInput pitch_;
@@ -56,6 +59,31 @@ TEST_F(PitchInputTest, OneStatusFromTheFutureDoesNotMakeTheLaterOnesOld) {
   host.run_for(milliseconds(1));
   EXPECT_EQ(pitches, 5);
   EXPECT_EQ(refused(), 1U);
+}
+
+TEST(UprightPitch, IsKnownAtAnyTimeWhileTheBaseIsConnected) {
+  runtime::TestHost host{runtime::component_factory<Leaning>("leaning"), "robot.base: pioneer"};
+  const auto report = [&](runtime::Time stamp, std::uint8_t state) {
+    usher_msgs::msg::BaseStatus message;
+    message.header(header(stamp, "base_link"));
+    message.state(state);
+    for (int i = 0; i < 10; ++i) {  // ten statuses tell of one report
+      host.run_for(milliseconds(12));
+      host.publish(topics::kBaseStatus, message);
+    }
+    host.run_for(milliseconds(1));
+  };
+  for (int i = 0; i < 5; ++i) {
+    report(host.now(), STATE_BALANCING);
+    const auto pitch = leaning->at(host.now());
+    ASSERT_TRUE(pitch.ok()) << pitch.error();
+    EXPECT_EQ(pitch->angle, 0.0);
+  }
+  EXPECT_EQ(host.counter("base/status: refused"), 0U);
+  report(host.now(), STATE_DISCONNECTED);
+  EXPECT_FALSE(leaning->at(host.now()).ok());
+  host.run_for(milliseconds(100));
+  EXPECT_EQ(host.heartbeat().reason(), "no pitch: the base is disconnected");
 }
 
 TEST_F(PitchInputTest, AClockThatIsALittleAheadCounts) {

@@ -24,6 +24,7 @@ constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kSeenLately = 0.5;    // [s] who was not seen for longer gets no room
 constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;  // [m]
+constexpr double kFelt = 0.2;          // [m] from where a contact is put
 constexpr auto kContactsKept = std::chrono::seconds(60);
 constexpr std::size_t kMostContacts = 64;
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
@@ -36,6 +37,17 @@ grid::OccupancyGrid viewed(const grid::Grid<std::uint8_t>& costs) {
   grid::OccupancyGrid view(costs.geometry());
   for (std::size_t i = 0; i < costs.size(); ++i) view[i] = kOccupancyOfCost[costs[i]];
   return view;
+}
+
+/// Whether the costs know an obstacle so near that it may be what bends a whisker.
+bool bars_near(const grid::Grid<std::uint8_t>& costs, const geometry::Point2& place) {
+  const grid::Cell middle = costs.geometry().cell_at(place);
+  const int reach = static_cast<int>(std::ceil(kFelt / costs.resolution()));
+  for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+    for (int x = middle.x - reach; x <= middle.x + reach; ++x)
+      if (costs.value_or({x, y}, kFreeCost) == kLethalCost) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -422,8 +434,8 @@ void CostmapComponent::place_whiskers(const usher_msgs::msg::Whiskers& message, 
   remember_contacts(touched, stamp);
 }
 
-/// On the map: what only a whisker feels is in no other layer, and once the robot has backed off
-/// the next plan would lead there again.
+/// On the map: what nothing but a whisker feels is in no other layer, and once the robot has backed
+/// off the next plan would lead there again.
 void CostmapComponent::remember_contacts(std::span<const geometry::Point2> in_odom,
                                          runtime::Time stamp) {
   if (!global_.costs || (in_odom.empty() && contacts_.empty())) return;
@@ -432,9 +444,7 @@ void CostmapComponent::remember_contacts(std::span<const geometry::Point2> in_od
   std::erase_if(contacts_, [&](const Contact& one) { return stamp - one.stamp > kContactsKept; });
   for (const geometry::Point2& point : in_odom) {
     const geometry::Point2 place = *map_T_odom * point;
-    std::erase_if(contacts_, [&](const Contact& one) {
-      return (one.place - place).norm() < global_.costs->costs().resolution();
-    });
+    if (bars_near(global_.costs->costs(), place)) continue;
     if (contacts_.size() == kMostContacts) contacts_.erase(contacts_.begin());
     contacts_.push_back({place, stamp});
   }

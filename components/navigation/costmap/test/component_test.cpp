@@ -296,6 +296,20 @@ TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
   EXPECT_LT(global_cost(0.42, 0.32), 252);
 }
 
+TEST_F(Component, PlansBesideTheWallThatAWhiskerTouches) {
+  map.at(map.geometry().cell_at(0.42, 0.42)) = grid::kOccupied;
+  give_map();
+  run(500);
+  const int before = global_cost(0.42, 0.32);
+  usher_msgs::msg::Whiskers whiskers;
+  whiskers.header(wire::header(last_scan, frames::kBaseLink));
+  whiskers.front_left(true);
+  host.publish(topics::kWhiskers, whiskers);
+  run(1500);
+  EXPECT_EQ(global_cost(0.42, 0.32), before);
+  EXPECT_EQ(local_cost(0.42, 0.32), kLethalCost);
+}
+
 TEST_F(Component, CountsPeopleOfAnotherFrame) {
   give_map();
   run(500);
