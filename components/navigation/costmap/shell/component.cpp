@@ -298,6 +298,7 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   add_layers(global_);
   if (const auto status = global_.costs->set_static_map(*map); !status)
     host_.fault("map: " + status.error());
+  contacts_.clear();  // they were in the former map
   global_.static_known = true;
   if (static_in_local_) waiting_map_ = *map;
   global_.newest = wire::from_message(message.header().stamp());

@@ -296,6 +296,25 @@ TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
   EXPECT_LT(global_cost(0.42, 0.32), 252);
 }
 
+TEST_F(Component, AnotherMapHasNoContactsOfTheOneBefore) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  whiskers.header(wire::header(last_scan, frames::kBaseLink));
+  whiskers.front_left(true);
+  host.publish(topics::kWhiskers, whiskers);
+  run(1500);
+  ASSERT_EQ(global_cost(0.42, 0.32), 252);
+  give_map();
+  base.x -= 1.0;
+  run(100);
+  whiskers.header(wire::header(last_scan, frames::kBaseLink));
+  whiskers.front_left(false);
+  host.publish(topics::kWhiskers, whiskers);
+  run(1500);
+  EXPECT_LT(global_cost(0.42, 0.32), 252);
+}
+
 TEST_F(Component, PlansBesideTheWallThatAWhiskerTouches) {
   map.at(map.geometry().cell_at(0.42, 0.42)) = grid::kOccupied;
   give_map();

@@ -105,9 +105,13 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
   whiskers_ = host.input(
       topics::kWhiskers,
       {.max_age = kWhiskerAge, .on_loss = "takes nothing for touched", .optional = true});
-  people_ = host.input(topics::kPeople, {.max_age = kPeopleAge,
-                                         .on_loss = "foresees nobody; the costs hold who is there",
-                                         .optional = true});
+  people_ = host.input(topics::kPeople,
+                       {.max_age = kPeopleAge,
+                        .on_loss = "foresees nobody; the costs hold who is there",
+                        .optional = true},
+                       [this](const auto& people, const auto&) {
+                         if (people.header().frame_id() != frames::kOdom) ++rejected_;
+                       });
   command_ = host.output(topics::kCmdVelNavigation);
   status_ = host.output(topics::kFollowStatus);
   view_ = host.output(topics::kLocalPlan);
@@ -232,11 +236,7 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
 void FollowerComponent::place_people(const geometry::Point2& here) {
   everybody_.clear();
   const auto* message = people_.fresh();
-  if (message == nullptr) return;
-  if (message->header().frame_id() != frames::kOdom) {
-    ++rejected_;
-    return;
-  }
+  if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
   const double age = runtime::seconds(host_.now() - people_.info()->effective);
   for (const auto& person : message->people()) {
     const geometry::Point2 velocity{person.vx(), person.vy()};
