@@ -11,8 +11,8 @@
 namespace usher::operations {
 
 /// The guard process in front of a simulated base. It decides as on a robot (runtime::Guard); what
-/// the driver writes is on its way to the base already, so that only its zeros are added. A new
-/// life of the driver gets a new guard, as there.
+/// the driver writes is on its way to the base already, so that only its own words are added. A
+/// new life of the driver gets a new guard, as there.
 ///
 /// The world must outlive it, and it the world's run. One per base.
 class SimulatedGuard {

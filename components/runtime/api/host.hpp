@@ -58,16 +58,17 @@ class Stream {
   virtual bool open() const = 0;
   /// Closes and opens anew after `delay`.
   virtual void reopen(Duration delay) = 0;
-  /// What the guard shall send for so long, before `safe`, when it finds this component silent: one
-  /// whole message, for example "stand, and turn on while you roll". The newest counts, and nothing
-  /// where there is no guard.
+  /// What the guard shall send for so long, before `safe`, when this component is silent or ends:
+  /// one whole message, for example "stand, and turn on while you roll". The newest counts, and
+  /// nothing where there is no guard, or where the component reopens the stream.
   virtual void last_will(std::span<const std::uint8_t> /*message*/, Duration /*lasts*/) {}
 };
 /// A guard process beside the driver: it owns the port, so that the device hears something safe
-/// though the driver dies or hangs. It sends `safe` at once when the driver ends, and thrice in a
-/// `silence` while the driver has written nothing for that long (first its last will); before the
+/// though the driver dies or hangs. It sends `safe` (first the driver's last will) at once when the
+/// driver ends, and thrice in a `silence` while it has written nothing for that long; before the
 /// driver's first write only twice, as its first words to the port. A guard that ends is replaced
-/// at once, one that shows no life for 0.15 s is killed first; the stream is closed meanwhile.
+/// at once, one that shows no life for 0.15 s is killed first; the stream is closed meanwhile. One
+/// guard at a time has a port: that of a driver that ended leaves it to the next one at once.
 struct StreamGuard {
   Bytes safe;  ///< one whole message to the device, for example "velocity zero"; empty = no guard
   Duration silence{};  ///< {>= 1 ms}

@@ -271,6 +271,10 @@ class Connection final : public Stream {
     return false;
   }
   void close_until(Clock::time_point due) {
+    if (descriptor_ >= 0 && guarded()) {  // whoever still moves the device decides himself
+      constexpr std::array<std::uint8_t, 3> kNoWill{static_cast<std::uint8_t>(Outbox::Kind::kWill)};
+      static_cast<void>(::send(descriptor_, kNoWill.data(), kNoWill.size(), MSG_NOSIGNAL));
+    }
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
     outbox_.clear();

@@ -1,5 +1,6 @@
 #include "runtime/guard/guard.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -36,12 +37,16 @@ void Guard::will(std::span<const std::uint8_t> message, Time lasts) {
   will_lasts_ = lasts;
 }
 
+bool Guard::willed(Time now) const {
+  return silent_since_ && !will_.empty() && now - *silent_since_ < will_lasts_ && !leaves(now);
+}
+
 void Guard::overrule(Time now) {
   overruling_ = true;
+  if (!silent_since_) silent_since_ = now;
+  if (leaves(now)) --farewells_;
   outbox_.drop_unsent();
-  const bool willed =
-      silent_since_ && !gone_ && !will_.empty() && now - *silent_since_ < will_lasts_;
-  const bool taken = outbox_.push(Outbox::Kind::kLatest, willed ? will_ : safe_);
+  const bool taken = outbox_.push(Outbox::Kind::kLatest, willed(now) ? will_ : safe_);
   assert(taken);
   static_cast<void>(taken);
   safe_at_ = now;
@@ -50,23 +55,29 @@ void Guard::overrule(Time now) {
 void Guard::gone(Time now) {
   if (gone_) return;
   gone_ = true;
+  farewell_at_ = now;
   if (!heard_at_) return;
-  farewells_ = kFarewells - 1;
+  farewells_ = kFarewells;
+  if (!will_.empty()) farewell_at_ = std::max(now, silent_since_.value_or(now) + will_lasts_);
+  overrule(now);
+}
+
+void Guard::succeeded(Time now) {
+  if (!gone_ || leaves(now)) return;
+  farewell_at_ = now;
   overrule(now);
 }
 
 void Guard::tick(Time now) {
   const auto next = due();
-  if (!next || now < *next) return;
-  if (gone_) --farewells_;
-  if (!silent_since_) silent_since_ = now;
-  overrule(now);
+  if (next && now >= *next) overrule(now);
 }
 
 std::optional<Guard::Time> Guard::due() const {
   if (!heard_at_) return std::nullopt;
-  if (gone_) return farewells_ > 0 ? std::optional<Time>(safe_at_ + kFarewellEvery) : std::nullopt;
-  return overruling_ ? safe_at_ + repeat_ : *heard_at_ + silence_;
+  if (!gone_) return overruling_ ? safe_at_ + repeat_ : *heard_at_ + silence_;
+  if (farewells_ == 0) return std::nullopt;
+  return leaves(safe_at_) ? safe_at_ + kFarewellEvery : std::min(safe_at_ + repeat_, farewell_at_);
 }
 
 }  // namespace usher::runtime

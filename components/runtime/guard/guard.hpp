@@ -11,7 +11,7 @@
 namespace usher::runtime {
 
 /// What a guard process sends to the port that it owns: everything that the driver writes, and the
-/// safe bytes instead as soon as the driver is gone or has written nothing for `silence`.
+/// safe bytes instead when the driver is gone or has written nothing for `silence`.
 ///
 /// A driver that was silent is passed on again from its next write on: what it writes then was
 /// decided then. The first words to a port that was just opened are safe ones, since this guard may
@@ -20,8 +20,8 @@ namespace usher::runtime {
 /// slow are dropped for the safe ones, but never a part of what is already on its way.
 ///
 /// A driver may leave a will: what a device that still moves shall hear instead of the safe bytes
-/// for a while, where the driver is silent. One that ended is followed by another one soon, which
-/// decides itself.
+/// for a while. After that the guard of one that ended says farewell; at once where the next one
+/// waits for the port.
 ///
 /// Fixed memory, no allocation after the constructor, no clock of its own.
 class Guard {
@@ -48,6 +48,8 @@ class Guard {
   void will(std::span<const std::uint8_t> message, Time lasts);
   /// The driver ended.
   void gone(Time now);
+  /// Another guard wants the port: of a driver that ended the will is void.
+  void succeeded(Time now);
   /// Puts a safe message up when one is due.
   void tick(Time now);
 
@@ -60,11 +62,15 @@ class Guard {
   std::optional<Time> due() const;
   /// The driver is gone and the port was told so: the guard may end.
   bool finished() const { return gone_ && farewells_ == 0 && outbox_.empty(); }
+  /// When that begins, of a driver that is gone.
+  Time farewell_at() const { return farewell_at_; }
   /// The driver is being overruled.
   bool overruling() const { return overruling_; }
 
  private:
   void overrule(Time now);
+  bool willed(Time now) const;
+  bool leaves(Time now) const { return gone_ && now >= farewell_at_; }
 
   const std::vector<std::uint8_t> safe_;
   const Time silence_;
@@ -74,9 +80,10 @@ class Guard {
   Time safe_at_{};
   std::vector<std::uint8_t> will_;
   Time will_lasts_{};
-  std::optional<Time> silent_since_;  ///< while a silent driver is overruled
+  std::optional<Time> silent_since_;  ///< while a driver is overruled
   bool overruling_ = false;
   bool gone_ = false;
+  Time farewell_at_{};
   int farewells_ = 0;
 };
 

@@ -4,8 +4,9 @@
 // writes the safe bytes and answers with one message: a zero octet, or a one octet and why it could
 // not. From then on it passes messages both ways (guard.hpp). Each begins with one octet, the
 // driver's with its kind (outbox.hpp), its own with zero; nothing but that is a sign of life, and
-// its own comes every 30 ms. It ends when the driver's end of the pair is closed, when the port
-// fails, and by no signal that can be ignored; a driver that sees no life kills it.
+// its own comes every 30 ms. It ends when the driver's end of the pair is closed, as soon as the
+// driver's will is done or the next guard knocks (tenure.hpp), when the port fails, and by no
+// signal that can be ignored; a driver that sees no life kills it.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -25,6 +26,7 @@
 
 #include "runtime/guard/guard.hpp"
 #include "runtime/guard/port.hpp"
+#include "runtime/guard/tenure.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -78,8 +80,8 @@ Result<int> open_for_good(const std::string& uri) {
 
 class Process {
  public:
-  Process(int driver, int port, Guard guard)
-      : driver_(driver), port_(port), guard_(std::move(guard)) {}
+  Process(int driver, int port, const Tenure& tenure, Guard guard)
+      : driver_(driver), port_(port), tenure_(tenure), guard_(std::move(guard)) {}
 
   /// The safe bytes are on their way before the driver knows of the port. False when it failed.
   bool greet() {
@@ -90,8 +92,9 @@ class Process {
   /// Exit code.
   int run() {
     while (!guard_.finished()) {
-      if (gone_at_ && now() - *gone_at_ > kLongestFarewell) return 1;
+      if (gone_ && now() > guard_.farewell_at() + kLongestFarewell) return 1;
       wait();
+      if (tenure_.wanted()) guard_.succeeded(now());
       if (!from_driver() || !from_port()) return 1;
       show_life();
       guard_.tick(now());
@@ -102,10 +105,11 @@ class Process {
 
  private:
   void wait() {
-    entries_[0] = {gone_at_ ? -1 : driver_, POLLIN, 0};
+    entries_[0] = {gone_ ? -1 : driver_, POLLIN, 0};
     entries_[1] = {port_, static_cast<short>(guard_.output().empty() ? POLLIN : POLLIN | POLLOUT),
                    0};
-    Time due = gone_at_ ? *gone_at_ + kLongestFarewell : life_at_;
+    entries_[2] = {tenure_.descriptor(), POLLIN, 0};
+    Time due = gone_ ? guard_.farewell_at() + kLongestFarewell : life_at_;
     if (const auto tick = guard_.due()) due = std::min(due, *tick);
     if (line_full_) {
       entries_[1].events = POLLIN;
@@ -127,8 +131,8 @@ class Process {
       const ssize_t count = ::recv(driver_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
       if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
       if (count <= 0) {
-        gone_at_ = now();
-        guard_.gone(*gone_at_);
+        gone_ = true;
+        guard_.gone(now());
         return true;
       }
       const std::span message(buffer_.data() + 1, static_cast<std::size_t>(count) - 1);
@@ -168,7 +172,7 @@ class Process {
   /// A driver that does not read loses what it does not read; the port is never held up.
   void tell_driver(std::size_t size) {
     life_at_ = now() + kLifeEvery;
-    if (gone_at_) return;
+    if (gone_) return;
     static_cast<void>(!::send(driver_, buffer_.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL));
   }
 
@@ -195,11 +199,12 @@ class Process {
 
   const int driver_;
   const int port_;
+  const Tenure& tenure_;
   Guard guard_;
-  std::optional<Time> gone_at_;
+  bool gone_ = false;  // the driver
   Time life_at_{};
   bool line_full_ = false;
-  std::array<pollfd, 2> entries_{};
+  std::array<pollfd, 3> entries_{};
   std::array<std::uint8_t, Outbox::kMostBytes + 1> buffer_{};
 };
 
@@ -222,10 +227,12 @@ int guard_main(int argc, char** argv) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2})
     ::signal(number, SIG_IGN);
   ::prctl(PR_SET_TIMERSLACK, 1000UL);
+  const auto tenure = Tenure::begin(argv[4]);
+  if (!tenure) return answer(driver, tenure.error());
   const auto port = open_for_good(argv[4]);
   if (!port) return answer(driver, port.error());
   ::fcntl(*port, F_SETFL, O_NONBLOCK);
-  static Process process(driver, *port,
+  static Process process(driver, *port, *tenure,
                          Guard(std::move(safe), std::chrono::milliseconds(silence_ms)));
   if (!process.greet())
     return answer(driver, std::string("writing to ") + argv[4] + ": " + std::strerror(errno));

@@ -225,13 +225,24 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
 }
 
 /// The part of a wish's turn that goes with this `part` of its speed. A base that is still faster
-/// than it may be, or was told to be, rolls on with its speed: so does its turn.
+/// than it may be, or was told to be, rolls on with its speed: so does its turn. Where it is to
+/// stand, a turn is the arc that it rolls out on: it turns on as it was told, as far as it is
+/// meant.
 double MovementControl::turn(const Wish& wish, double part, double most,
                              const Inputs& inputs) const {
+  const auto [wished_v, wished_w] = wish.twist;
+  const double cut = wished_w * part;
+  if (guards(wish.source)) return cut;
   const double measured = inputs.measured ? inputs.measured->v : 0.0;
+  if (wished_v == 0.0) {
+    const bool rolls = std::abs(measured) >= kinematics::RollOut::kStanding;
+    if (!rolls || last_.w * wished_w <= 0.0) return cut;
+    const double kept = std::min({std::abs(last_.w), std::abs(wished_w), most});
+    return std::copysign(std::max(std::abs(cut), kept), wished_w);
+  }
   const double v = std::abs(last_.v) > std::abs(measured) ? last_.v : measured;
-  if (guards(wish.source) || !(v * wish.twist.v > 0.0)) return wish.twist.w * part;
-  return std::clamp(wish.twist.w * std::max(part, std::min(1.0, v / wish.twist.v)), -most, most);
+  if (!(v * wished_v > 0.0)) return cut;
+  return std::clamp(wished_w * std::max(part, std::min(1.0, v / wished_v)), -most, most);
 }
 
 /// A base that rolls and goes on turning so meets something that was seen before it stands,

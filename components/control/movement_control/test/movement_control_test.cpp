@@ -529,6 +529,30 @@ TEST_F(Guarded, ANavigationThatSeesNothingAheadCreeps) {
   EXPECT_EQ(settled(inputs, parameters).twist, (Twist2{0.8, 0.3}));
 }
 
+// The laser freezes in a bend: the planner brakes, with the turn that keeps the base on its arc
+// while it rolls out, and means no turn on the spot (window 8273).
+TEST_F(Guarded, ABlindPlannersRobotRollsOutOnItsArc) {
+  const auto turn_of = [&](double measured, double wish) {
+    MovementControl control(parameters);
+    inputs.navigation = inputs.measured = Twist2{0.5, -0.5};
+    inputs.view = {.sees = true};
+    int ms = 0;
+    for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
+    inputs.navigation = Twist2{0.0, wish};
+    inputs.measured = Twist2{measured, -0.5};
+    inputs.view = {};
+    for (int i = 0; i < 20; ++i) control.decide(inputs, milliseconds(ms += 20));
+    EXPECT_EQ(control.status().current.v, 0.0);
+    return control.status().current.w;
+  };
+  const double creeps = 0.1 / parameters.guard.outline.circumscribed_radius();
+  EXPECT_NEAR(turn_of(0.47, -0.5), -0.5, 1e-9);
+  EXPECT_NEAR(turn_of(0.47, -0.4), -0.4, 1e-9) << "no more than it is meant";
+  EXPECT_NEAR(turn_of(0.47, -0.8), -0.5, 1e-9) << "no more than it was told";
+  EXPECT_NEAR(turn_of(0.05, -0.5), -creeps, 1e-9) << "it stands and turns on the spot";
+  EXPECT_NEAR(turn_of(0.47, 0.5), creeps, 1e-9) << "another way than it goes";
+}
+
 // In a bend along a wall the stick is let go: straight on the robot would roll into the wall.
 TEST_F(Guarded, RollsOutOnTheArcWhereItWouldMeetSomethingElse) {
   MovementControl control(parameters);

@@ -35,7 +35,7 @@ class BaseLine {
   /// What the link shall make of it in its next cycle.
   void want(const geometry::Twist2& twist) { wanted_ = twist; }
 
-  /// What its guard shall tell the base for so long where this driver hangs.
+  /// What its guard shall tell the base for so long where this driver hangs or ends.
   void last_will(const geometry::Twist2& twist, runtime::Duration lasts) {
     will_ = twist;
     will_lasts_ = lasts;

@@ -21,7 +21,7 @@ struct BaseDevice {
   std::function<void(const geometry::Twist2&)> drive;
   std::function<void()> emergency_stop;
   std::function<void()> reset;
-  /// What its guard shall tell it for so long where this driver hangs; nothing for a base without.
+  /// What its guard shall tell it for so long where this driver hangs or ends; nothing for a base without.
   std::function<void(const geometry::Twist2&, runtime::Duration)> last_will{};
 };
 

@@ -113,13 +113,48 @@ TEST(Guard, SendsTheWillOfASilentDriverBeforeWhatIsSafe) {
   EXPECT_EQ(bench.tick(700), "0.") << "longer than any";
 }
 
-TEST(Guard, WhoEndedIsFollowedSoonByAnotherOneWhoDecides) {
+/// A driver that left a will of a second and was heard last at 0 ms.
+Bench willed() {
   Bench bench;
   bench.hear("go", 0);
   bench.guard.will(std::vector<std::uint8_t>{'w'}, milliseconds(1000));
   bench.take();
+  return bench;
+}
+
+TEST(Guard, SendsTheWillOfADriverThatEndedBeforeItSaysFarewell) {
+  Bench bench = willed();
   bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(), "w") << "at once";
+  EXPECT_EQ(bench.guard.farewell_at(), at(1003));
+  std::string heard;
+  for (int ms = 4; ms < 1003; ++ms) heard += bench.tick(ms);
+  EXPECT_EQ(heard, std::string(29, 'w')) << "three times in a silence";
+  for (const int ms : {1003, 1013, 1023}) EXPECT_EQ(bench.tick(ms), "0.");
+  EXPECT_TRUE(bench.guard.finished());
+
+  Bench silent = willed();
+  EXPECT_EQ(silent.tick(100), "w");
+  silent.guard.gone(at(800));
+  EXPECT_EQ(silent.take(), "w");
+  EXPECT_EQ(silent.guard.farewell_at(), at(1100)) << "it was silent before";
+  Bench longer = willed();
+  longer.tick(100);
+  longer.guard.gone(at(2000));
+  EXPECT_EQ(longer.take(), "0.");
+}
+
+TEST(Guard, TheNextOneDecides) {
+  Bench bench = willed();
+  bench.guard.succeeded(at(1));
+  EXPECT_EQ(bench.take(), "") << "nobody succeeds a driver that lives";
+  bench.guard.gone(at(3));
+  EXPECT_EQ(bench.take(), "w");
+  bench.guard.succeeded(at(5));
+  bench.guard.succeeded(at(6));
   EXPECT_EQ(bench.take(), "0.");
+  for (const int ms : {15, 25}) EXPECT_EQ(bench.tick(ms), "0.");
+  EXPECT_TRUE(bench.guard.finished());
 }
 
 TEST(Guard, AnEmptyMessageIsALifeSignToo) {
