@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "foundation/geometry/pose2.hpp"
+#include "foundation/kinematics/stopping_distance.hpp"
 
 namespace usher::kinematics {
 
@@ -70,18 +71,22 @@ class RollOut {
     if (told.v != 0.0) rolled_at_ = now;
   }
 
-  /// What to tell the base, and for how long, where from now on nobody measures and tells: as
-  /// stop() would. No time where it stands or goes straight.
+  /// What to tell the base, and for how long, where from now on nobody measures and tells: it turns
+  /// by as much as along its arc until it stands, for kBlind at most. No time where it stands or
+  /// goes straight.
   struct Rest {
     geometry::Twist2 twist;
     std::chrono::nanoseconds lasts{};
   };
-  Rest rest() const {
-    const double v = stops_ ? onset_.v : rolls_;
+  Rest rest(const StoppingDistance& stopping) const {
+    const double v = stops_ ? onset_.v * share_ : rolls_;
     const double w = stops_ ? onset_.w * share_ : driven_w_;
     if (!(std::abs(v) > kStanding) || std::abs(w) < kStraight) return {};
+    const std::chrono::duration<double> stops(stopping.distance(v) / std::abs(v));
     const std::chrono::nanoseconds rolled = rolled_at_ ? passed_ - *rolled_at_ : passed_;
-    const auto left = std::min<std::chrono::nanoseconds>(kBlind, longest(v) - rolled);
+    const auto left = std::min<std::chrono::nanoseconds>(
+        {kBlind, std::chrono::duration_cast<std::chrono::nanoseconds>(stops),
+         longest(stops_ ? onset_.v : v) - rolled});
     return {{0.0, w}, std::max(left, std::chrono::nanoseconds::zero())};
   }
 

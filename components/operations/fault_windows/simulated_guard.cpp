@@ -44,10 +44,10 @@ void SimulatedGuard::watch() {
   world_.at(world_.now() + kPeriod, [this] { watch(); });
 }
 
-/// What the driver writes goes its own way: nothing but a zero is ever left to be sent.
+/// What the driver writes goes its own way: only the guard's own words are left to be sent.
 void SimulatedGuard::hear(const geometry::Twist2& told) {
   roll_out_.drive(told, now());
-  const auto rest = roll_out_.rest();
+  const auto rest = roll_out_.rest(stopping_);
   will_ = rest.twist;
   guard_->will({&kWill, 1}, rest.lasts);
   guard_->heard(runtime::Outbox::Kind::kLatest, kDriven, now());

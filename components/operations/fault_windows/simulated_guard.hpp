@@ -34,7 +34,8 @@ class SimulatedGuard {
   const runtime::Guard::Time silence_;
   std::uint64_t life_ = 0;  ///< of the driver, whose guard it is
   std::optional<runtime::Guard> guard_;
-  kinematics::RollOut roll_out_;  ///< by what the driver told the base
+  const kinematics::StoppingDistance stopping_;  ///< MARVIN's
+  kinematics::RollOut roll_out_;                 ///< by what the driver told the base
   geometry::Twist2 will_;
 };
 

@@ -58,9 +58,9 @@ class Stream {
   virtual bool open() const = 0;
   /// Closes and opens anew after `delay`.
   virtual void reopen(Duration delay) = 0;
-  /// What the guard shall send for so long, before `safe`, when this component is silent or ends:
-  /// one whole message, for example "stand, and turn on while you roll". The newest counts, and
-  /// nothing where there is no guard, or where the component reopens the stream.
+  /// What the guard shall send for so long, a second at most, before `safe`, when this component is
+  /// silent or ends: one whole message, for example "stand, and turn on while you roll". The newest
+  /// counts, and nothing where there is no guard, or where the component reopens the stream.
   virtual void last_will(std::span<const std::uint8_t> /*message*/, Duration /*lasts*/) {}
 };
 /// A guard process beside the driver: it owns the port, so that the device hears something safe

@@ -34,7 +34,8 @@ class Guard {
   /// Safe messages to a port that was just opened: the device may take the first one for the rest
   /// of what an earlier guard left half sent.
   static constexpr int kGreetings = 2;
-  static constexpr std::size_t kLongestWill = 256;  ///< bytes
+  static constexpr std::size_t kMostWillBytes = 256;
+  static constexpr auto kLongestWill = std::chrono::seconds(1);
 
   Guard(std::vector<std::uint8_t> safe, Time silence);
 
@@ -43,13 +44,14 @@ class Guard {
   /// The driver wrote one message. False when the port is so slow that 64 kB, or 1024
   /// messages, wait for it.
   bool heard(Outbox::Kind kind, std::span<const std::uint8_t> message, Time now);
-  /// What to send for so long, from when the driver is found silent; the newest counts, an empty
-  /// one is none, a longer one than kLongestWill is none either. No sign of life.
+  /// What to send for so long, kLongestWill at most, from when the driver is found silent or ended;
+  /// the newest counts, an empty one is none, one of more than kMostWillBytes is none either. No
+  /// sign of life.
   void will(std::span<const std::uint8_t> message, Time lasts);
   /// The driver ended.
   void gone(Time now);
   /// Another guard wants the port: of a driver that ended the will is void.
-  void succeeded(Time now);
+  void port_wanted(Time now);
   /// Puts a safe message up when one is due.
   void tick(Time now);
 
@@ -69,8 +71,8 @@ class Guard {
 
  private:
   void overrule(Time now);
-  bool willed(Time now) const;
-  bool leaves(Time now) const { return gone_ && now >= farewell_at_; }
+  bool will_counts(Time now) const;
+  bool says_farewell(Time now) const { return gone_ && now >= farewell_at_; }
 
   const std::vector<std::uint8_t> safe_;
   const Time silence_;

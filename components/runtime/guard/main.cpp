@@ -62,20 +62,17 @@ bool read_hex(std::string_view text, Bytes& bytes) {
   return text.size() % 2 == 0 && !bytes.empty();
 }
 
-/// The opened port, or why not.
-Result<int> open_for_good(const std::string& uri) {
-  const auto address = StreamAddress::parse(uri);
-  if (!address) return Error{address.error()};
-  const int port = open_port(*address);
-  int error = port < 0 ? errno : 0;
-  if (port >= 0 && address->kind == StreamAddress::Kind::kTcp) {
-    pollfd entry{port, POLLOUT, 0};
-    socklen_t size = sizeof(error);
-    if (::poll(&entry, 1, kConnectMs) <= 0) error = ETIMEDOUT;
-    if (error == 0) ::getsockopt(port, SOL_SOCKET, SO_ERROR, &error, &size);
-  }
-  if (error == 0) return port;
-  return Error{"cannot open " + uri + ": " + std::strerror(error)};
+/// Why a port that was just opened is none; zero: it is one. A driver that ends meanwhile is
+/// followed by another one, which wants it.
+int failure_of(int port, const StreamAddress& address, int driver) {
+  if (port < 0) return errno;
+  if (address.kind != StreamAddress::Kind::kTcp) return 0;
+  std::array<pollfd, 2> entries{{{port, POLLOUT, 0}, {driver, 0, 0}}};
+  if (::poll(entries.data(), entries.size(), kConnectMs) <= 0) return ETIMEDOUT;
+  if ((entries[1].revents & POLLHUP) != 0) return ECANCELED;
+  int error = 0;
+  socklen_t size = sizeof(error);
+  return ::getsockopt(port, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
 }
 
 class Process {
@@ -94,7 +91,7 @@ class Process {
     while (!guard_.finished()) {
       if (gone_ && now() > guard_.farewell_at() + kLongestFarewell) return 1;
       wait();
-      if (tenure_.wanted()) guard_.succeeded(now());
+      if (tenure_.take_knock()) guard_.port_wanted(now());
       if (!from_driver() || !from_port()) return 1;
       show_life();
       guard_.tick(now());
@@ -227,12 +224,18 @@ int guard_main(int argc, char** argv) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGUSR1, SIGUSR2})
     ::signal(number, SIG_IGN);
   ::prctl(PR_SET_TIMERSLACK, 1000UL);
-  const auto tenure = Tenure::begin(argv[4]);
-  if (!tenure) return answer(driver, tenure.error());
-  const auto port = open_for_good(argv[4]);
-  if (!port) return answer(driver, port.error());
-  ::fcntl(*port, F_SETFL, O_NONBLOCK);
-  static Process process(driver, *port, *tenure,
+  // The driver's sockets, which its successor needs.
+  ::close_range(static_cast<unsigned>(driver) + 1, ~0U, 0);
+  const auto address = StreamAddress::parse(argv[4]);
+  if (!address) return answer(driver, address.error());
+  const std::string cannot = std::string("cannot open ") + argv[4] + ": ";
+  const auto tenure = Tenure::begin(*address);
+  if (!tenure) return answer(driver, cannot + tenure.error());
+  const int port = open_port(*address);
+  if (const int error = failure_of(port, *address, driver); error != 0)
+    return answer(driver, cannot + std::strerror(error));
+  ::fcntl(port, F_SETFL, O_NONBLOCK);
+  static Process process(driver, port, *tenure,
                          Guard(std::move(safe), std::chrono::milliseconds(silence_ms)));
   if (!process.greet())
     return answer(driver, std::string("writing to ") + argv[4] + ": " + std::strerror(errno));

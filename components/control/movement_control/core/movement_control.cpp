@@ -172,6 +172,11 @@ bool MovementControl::smooth(Source source) const {
   return parameters_.jerk.v > 0.0 && source != Source::kNavigation;
 }
 
+/// The base is to stand, or to turn on the spot.
+bool MovementControl::stands(const Wish& wish) {
+  return std::abs(wish.twist.v) < kinematics::RollOut::kStanding;
+}
+
 /// Who does not look ahead himself.
 bool MovementControl::guards(Source source) const {
   return parameters_.guarded && source != Source::kNavigation;
@@ -226,20 +231,18 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
 
 /// The part of a wish's turn that goes with this `part` of its speed. A base that is still faster
 /// than it may be, or was told to be, rolls on with its speed: so does its turn. Where it is to
-/// stand, a turn is the arc that it rolls out on: it turns on as it was told, as far as it is
-/// meant.
+/// stand, its turn is the arc that it rolls out on, as far as that is meant.
 double MovementControl::turn(const Wish& wish, double part, double most,
                              const Inputs& inputs) const {
   const auto [wished_v, wished_w] = wish.twist;
   const double cut = wished_w * part;
   if (guards(wish.source)) return cut;
-  const double measured = inputs.measured ? inputs.measured->v : 0.0;
-  if (wished_v == 0.0) {
-    const bool rolls = std::abs(measured) >= kinematics::RollOut::kStanding;
-    if (!rolls || last_.w * wished_w <= 0.0) return cut;
-    const double kept = std::min({std::abs(last_.w), std::abs(wished_w), most});
+  if (stands(wish)) {
+    if (!(kept_turn_ * wished_w > 0.0)) return cut;
+    const double kept = std::min({std::abs(kept_turn_), std::abs(wished_w), most});
     return std::copysign(std::max(std::abs(cut), kept), wished_w);
   }
+  const double measured = inputs.measured ? inputs.measured->v : 0.0;
   const double v = std::abs(last_.v) > std::abs(measured) ? last_.v : measured;
   if (!(v * wished_v > 0.0)) return cut;
   return std::clamp(wished_w * std::max(part, std::min(1.0, v / wished_v)), -most, most);
@@ -288,6 +291,8 @@ MovementControl::Limited MovementControl::limited(const Wish& wish, const Bound&
 /// A wish, by limits, guard, ramps and whiskers.
 void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound,
                             Decision& decision) {
+  const bool rolls_out = !guards(wish.source) && stands(wish);
+  kept_turn_ = rolls_out ? kept_arc_.stop(inputs.measured, now).w : 0.0;
   Limited may = limited(wish, bound, inputs);
   geometry::Twist2& wanted = may.twist;
   if (may.by != Limit::kNone) decision.limit = may.by;
@@ -324,12 +329,13 @@ void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bo
   geometry::Twist2 ramped = ramp(wanted, wish.source, now);
   if (planned < 1.0) {
     if (std::abs(ramped.v) > std::abs(wanted.v)) ramped.v = wanted.v;
-    if (wish.twist.v == 0.0 && std::abs(ramped.w) > std::abs(wanted.w)) ramped.w = wanted.w;
+    if (stands(wish) && std::abs(ramped.w) > std::abs(wanted.w)) ramped.w = wanted.w;
   }
   if (ramped != wanted && decision.limit == Limit::kNone) decision.limit = Limit::kAcceleration;
   const geometry::Twist2 uncut = ramped;
   guard(ramped);
   if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
+  if (!guards(wish.source) && !rolls_out) kept_arc_.drive(ramped, now);
   decision.twist = reflex(ramped, inputs);
   if (decision.twist != ramped) decision.limit = Limit::kWhisker;
   // What was cut short speeds up anew.

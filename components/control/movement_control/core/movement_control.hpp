@@ -192,6 +192,7 @@ class MovementControl {
   Bound bound(const Inputs& inputs, const Wish& wish) const;
   geometry::Twist2 ramp(const geometry::Twist2& wanted, Source source, Time now);
   bool smooth(Source source) const;
+  static bool stands(const Wish& wish);
   bool guards(Source source) const;
   bool blind(const Wish& wish, const Inputs& inputs) const;
   double planned_share(const geometry::Twist2& twist, const Inputs& inputs, Source source);
@@ -210,6 +211,7 @@ class MovementControl {
   drive::ResponseWatch watch_;
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower
+  double kept_turn_ = 0.0;        ///< [rad/s] of a planner's, now
   geometry::Twist2 last_;
   double direction_ = 0.0;         ///< [m/s] the last velocity that was not zero
   geometry::Twist2 acceleration_;  ///< [m/s^2] [rad/s^2] of the command

@@ -532,25 +532,32 @@ TEST_F(Guarded, ANavigationThatSeesNothingAheadCreeps) {
 // The laser freezes in a bend: the planner brakes, with the turn that keeps the base on its arc
 // while it rolls out, and means no turn on the spot (window 8273).
 TEST_F(Guarded, ABlindPlannersRobotRollsOutOnItsArc) {
-  const auto turn_of = [&](double measured, double wish) {
+  // From 0.47 m/s on; it is as fast as `measured` after 0.4 s, and told to turn after `seconds`.
+  const auto turn_of = [&](const Twist2& wish, double measured, double seconds = 0.8) {
     MovementControl control(parameters);
-    inputs.navigation = inputs.measured = Twist2{0.5, -0.5};
+    inputs.navigation = inputs.measured = Twist2{0.47, -0.5};
     inputs.view = {.sees = true};
     int ms = 0;
     for (; ms < 3000; ms += 20) control.decide(inputs, milliseconds(ms));
-    inputs.navigation = Twist2{0.0, wish};
-    inputs.measured = Twist2{measured, -0.5};
+    inputs.navigation = wish;
     inputs.view = {};
-    for (int i = 0; i < 20; ++i) control.decide(inputs, milliseconds(ms += 20));
-    EXPECT_EQ(control.status().current.v, 0.0);
+    for (const int end = ms + static_cast<int>(1e3 * seconds); ms < end; ms += 20) {
+      if (ms == 3400) inputs.measured = Twist2{measured, -0.5};
+      control.decide(inputs, milliseconds(ms));
+    }
+    EXPECT_NEAR(control.status().current.v, wish.v, 1e-3);
     return control.status().current.w;
   };
   const double creeps = 0.1 / parameters.guard.outline.circumscribed_radius();
-  EXPECT_NEAR(turn_of(0.47, -0.5), -0.5, 1e-9);
-  EXPECT_NEAR(turn_of(0.47, -0.4), -0.4, 1e-9) << "no more than it is meant";
-  EXPECT_NEAR(turn_of(0.47, -0.8), -0.5, 1e-9) << "no more than it was told";
-  EXPECT_NEAR(turn_of(0.05, -0.5), -creeps, 1e-9) << "it stands and turns on the spot";
-  EXPECT_NEAR(turn_of(0.47, 0.5), creeps, 1e-9) << "another way than it goes";
+  EXPECT_NEAR(turn_of({0.0, -0.5}, 0.47), -0.5, 1e-9);
+  EXPECT_NEAR(turn_of({0.0, -0.4}, 0.47), -0.4, 1e-9) << "no more than it is meant";
+  EXPECT_NEAR(turn_of({0.0, -0.8}, 0.47), -0.5, 1e-9) << "no more than it was told";
+  EXPECT_NEAR(turn_of({0.0, -0.5}, 0.3), -0.5 * 0.3 / 0.47, 1e-9) << "the arc";
+  EXPECT_NEAR(turn_of({0.0, -0.5}, 0.05), -creeps, 1e-9) << "it stands and turns on the spot";
+  EXPECT_NEAR(turn_of({0.0, -0.5}, -0.2), -creeps, 1e-9) << "it sways back";
+  EXPECT_NEAR(turn_of({0.0, 0.5}, 0.47), creeps, 1e-9) << "another way than it goes";
+  EXPECT_NEAR(turn_of({0.001, 0.5}, 0.47), creeps, 2e-3) << "and nearly nothing is nothing";
+  EXPECT_NEAR(turn_of({0.0, -0.5}, 0.47, 3.0), -creeps, 1e-9) << "no base rolls for so long";
 }
 
 // In a bend along a wall the stick is let go: straight on the robot would roll into the wall.

@@ -6,6 +6,7 @@
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/stopping.hpp"
 
 namespace usher::drive {
 
@@ -47,6 +48,7 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       device_(std::move(device)),
       cycled_(std::move(cycled)),
       obedience_(read_limits(host.parameters())),
+      stopping_(wire::read_stopping(host)),
       wheel_radius_(host.parameters().number("robot.wheel_radius", "m", {0.05, 0.5}, wheel_radius,
                                              "Of the driven wheels; also the axle's height.")),
       odometry_memory_(host, kOdometryKey),
@@ -122,23 +124,24 @@ void ObedientBase::cycle() {
   cycled_();
 }
 
+/// Without motors it keeps no arc.
+bool ObedientBase::slides() const {
+  return motors_off_ || report_.state == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
+}
+
 void ObedientBase::drive() {
   const Time now = host_.now().time_since_epoch();
   // A verdict on a foreign command changes nothing, and what is driven beside it may be alive.
   if (obedience_.permitted(now).reason == Reason::kObeyed) {
     roll_out_.drive(decision_.twist, now);
-  } else if (motors_off_ ||
-             report_.state == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY) {
-    decision_.twist = {};  // it slides, and keeps no arc
+  } else if (slides()) {
+    decision_.twist = {};
   } else {
     const bool known = connected() && now - report_.stamp < kReportAge;
     decision_.twist = roll_out_.stop(known ? std::optional(report_.twist) : std::nullopt, now);
   }
   device_.drive(decision_.twist);
-  if (!device_.last_will) return;
-  const bool slides =
-      motors_off_ || report_.state == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
-  const auto rest = slides ? kinematics::RollOut::Rest{} : roll_out_.rest();
+  const auto rest = slides() ? kinematics::RollOut::Rest{} : roll_out_.rest(stopping_);
   device_.last_will(rest.twist, rest.lasts);
 }
 
@@ -153,6 +156,7 @@ void ObedientBase::take_request(const usher_msgs::msg::BaseRequest& request,
   last_request_ = request.id();
   if (request.command() == COMMAND_EMERGENCY_STOP) {
     motors_off_ = true;
+    drive();  // and no older will
     device_.emergency_stop();
   } else if (request.command() == COMMAND_RESET) {
     motors_off_ = false;

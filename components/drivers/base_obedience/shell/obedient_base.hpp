@@ -21,8 +21,9 @@ struct BaseDevice {
   std::function<void(const geometry::Twist2&)> drive;
   std::function<void()> emergency_stop;
   std::function<void()> reset;
-  /// What its guard shall tell it for so long where this driver hangs or ends; nothing for a base without.
-  std::function<void(const geometry::Twist2&, runtime::Duration)> last_will{};
+  /// What its guard shall tell it for so long where this driver hangs or ends.
+  std::function<void(const geometry::Twist2&, runtime::Duration)> last_will =
+      [](const geometry::Twist2&, runtime::Duration) {};
 };
 
 /// What a base says of itself.
@@ -69,6 +70,7 @@ class ObedientBase {
   void cycle();
   /// What the base gets: the permitted command, or a stop.
   void drive();
+  bool slides() const;
   void take_request(const usher_msgs::msg::BaseRequest& request, const runtime::Guid& writer);
   void publish_status();
   void publish_battery();
@@ -78,6 +80,7 @@ class ObedientBase {
   BaseDevice device_;
   std::function<void()> cycled_;
   BaseObedience obedience_;
+  kinematics::StoppingDistance stopping_;
   double wheel_radius_;
   Decision decision_;
   kinematics::RollOut roll_out_;

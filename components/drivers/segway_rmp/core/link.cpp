@@ -90,7 +90,10 @@ std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time n
   };
   const Step& step = steps[step_ % kSteps];
   ++step_;
-  output_ = command({}, parameters_.calibration, step.setting, step.value);
+  // A base that balances may still roll on its arc, after the driver before this one.
+  const bool rolls_out = wanted.v == 0.0 && reported_ == Mode::kBalancing;
+  const geometry::Twist2 turn{0.0, rolls_out ? wanted.w : 0.0};
+  output_ = command(turn, parameters_.calibration, step.setting, step.value);
   return output_;
 }
 

@@ -46,7 +46,7 @@ class Link {
   }
 
   /// The frames to send in this cycle (50 Hz or more), valid until the next call; empty while the
-  /// line is closed. Nothing but zero goes out while the base is being configured or in emergency.
+  /// line is closed. Nothing drives while the base is being configured or in emergency.
   std::span<const std::uint8_t> cycle(const geometry::Twist2& wanted, Time now);
 
   /// The frame that commands this and sets nothing.

@@ -301,7 +301,7 @@ TEST(Status, MeansWhatTheBitsSay) {
 /// A base that keeps what it is told.
 struct Base {
   std::map<std::uint16_t, std::uint16_t> settings;
-  std::int16_t speed = 0;
+  std::int16_t speed = 0, turn = 0;
   bool off = false;
   Cycle cycle;
 
@@ -314,6 +314,7 @@ struct Base {
     if (word(6) == kIdShutdown) off = true;
     if (word(6) != kIdCommand) return;
     speed = static_cast<std::int16_t>(word(9));
+    turn = static_cast<std::int16_t>(word(11));
     if (word(13) != 0) settings[word(13)] = word(15);
     if (word(13) == 16 && word(15) == kModeBalance) off = false;
     cycle.status_1 = off ? 0 : kMotorsEnabled | kBalanceMode;
@@ -432,6 +433,22 @@ TEST(Link, ABaseThatStillBalancesIsConfiguredAnewWhenItsLineIsBack) {
   bench.run(500, {0.5, 0.0});
   EXPECT_EQ(bench.base.settings, settings);
   EXPECT_EQ(bench.base.speed, 164);
+}
+
+// The driver before this one ended while the base drove along a bend.
+TEST(Link, ABaseThatStillRollsKeepsItsArcWhileItIsConfigured) {
+  Bench bench;
+  bench.link.balanced_before();
+  bench.base.cycle.status_1 = kMotorsEnabled | kBalanceMode;
+  bench.run(240, {0.0, 0.5});
+  EXPECT_EQ(bench.base.turn, 0) << "not before it says that it balances";
+  bench.run(60, {0.0, 0.5});
+  EXPECT_FALSE(bench.link.configured());
+  EXPECT_NE(bench.base.turn, 0);
+  bench.run(50, {0.5, 0.5});
+  EXPECT_FALSE(bench.link.configured());
+  EXPECT_EQ(bench.base.turn, 0) << "it does not drive before it is configured";
+  EXPECT_EQ(bench.base.speed, 0);
 }
 
 TEST(Link, DamagedFramesAfterOpeningAreNoFall) {

@@ -137,22 +137,27 @@ geometry::Twist2 stop_until(RollOut& roll_out, int from_ms, int to_ms,
 
 TEST(RollOut, LeavesWhatABaseIsToldWhereNobodyTellsItAnyMore) {
   using std::chrono::milliseconds;
+  const StoppingDistance marvin;
   RollOut base;
   base.drive({0.5, 0.6}, milliseconds(1000));
   base.drive({0.5, 0.6}, milliseconds(1100));
-  EXPECT_EQ(base.rest().twist, (geometry::Twist2{0.0, 0.6}));
-  EXPECT_EQ(base.rest().lasts, milliseconds(1000));
+  EXPECT_EQ(base.rest(marvin).twist, (geometry::Twist2{0.0, 0.6}));
+  EXPECT_EQ(base.rest(marvin).lasts, milliseconds(1000));
   base.stop(geometry::Twist2{0.5, 0.6}, milliseconds(1110));
   base.stop(geometry::Twist2{0.25, 0.3}, milliseconds(1300));
-  EXPECT_NEAR(base.rest().twist.w, 0.3, 1e-9) << "half as fast";
-  EXPECT_LT(base.rest().lasts, milliseconds(1001));
+  EXPECT_NEAR(base.rest(marvin).twist.w, 0.3, 1e-9) << "half as fast";
+  EXPECT_EQ(base.rest(marvin).lasts, milliseconds(990)) << "no stop from 0.5 m/s takes longer";
   base.stop(geometry::Twist2{0.0, 0.0}, milliseconds(1500));
-  EXPECT_EQ(base.rest().lasts, milliseconds(0)) << "it stands";
+  EXPECT_EQ(base.rest(marvin).lasts, milliseconds(0)) << "it stands";
+  const StoppingPoint point{0.5, 0.25};
+  base.drive({0.5, 0.6}, milliseconds(1600));
+  EXPECT_EQ(base.rest(StoppingDistance::make({&point, 1}).value()).lasts, milliseconds(500))
+      << "no farther round than along its arc";
   RollOut straight, on_the_spot;
   straight.drive({0.5, 0.01}, milliseconds(1000));
   on_the_spot.drive({0.0, 0.6}, milliseconds(1000));
-  EXPECT_EQ(straight.rest().lasts, milliseconds(0));
-  EXPECT_EQ(on_the_spot.rest().lasts, milliseconds(0));
+  EXPECT_EQ(straight.rest(marvin).lasts, milliseconds(0));
+  EXPECT_EQ(on_the_spot.rest(marvin).lasts, milliseconds(0));
 }
 
 TEST(RollOut, KeepsTheArcWhileTheSpeedFalls) {

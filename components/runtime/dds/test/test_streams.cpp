@@ -437,19 +437,18 @@ void drive_and_end(Server& server, std::chrono::milliseconds lasts) {
 TEST(GuardedStreams, SayTheLastWillOfADriverThatEnded) {
   Server server;
   drive_and_end(server, 290ms);
-  EXPECT_EQ(server.read(1000), "[turn][turn][turn][stop][stop][stop]");
+  EXPECT_THAT(server.read(1000),
+              testing::MatchesRegex("(\\[turn\\])+\\[stop\\]\\[stop\\]\\[stop\\]"));
 }
 
 TEST(GuardedStreams, TheNextDriverHasThePortWithoutWaitingForAWill) {
   Server server;
-  drive_and_end(server, 10s);
+  drive_and_end(server, 1s);
   EXPECT_EQ(server.read(6), "[turn]");
   Log log;
   Streams streams;
   streams.open(server.uri(), guarded(log, 10s));
-  std::string rest = server.read(1000);
-  while (rest.starts_with("[turn]")) rest.erase(0, 6);
-  EXPECT_EQ(rest, "[stop][stop][stop]");
+  EXPECT_THAT(server.read(1000), testing::EndsWith("[stop][stop][stop]"));
   server.accept_guard();
   EXPECT_TRUE(log.wait([&] { return log.opened == 1; }));
   EXPECT_THAT(log.closed, testing::IsEmpty()) << "at the first go";
@@ -464,7 +463,7 @@ TEST(GuardedStreams, OneDriverHasAPort) {
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   others.open(server.uri(), guarded(second, 10s));
   ASSERT_TRUE(second.wait([&] { return !second.closed.empty(); }));
-  EXPECT_THAT(second.closed[0], HasSubstr("the guard of another driver has it"));
+  EXPECT_THAT(second.closed[0], HasSubstr("another driver's guard has it"));
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(5), "drive");
 }
@@ -477,7 +476,7 @@ TEST(GuardedStreams, AReopeningDriverHasNoWill) {
   server.accept_guard();
   ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
   EXPECT_TRUE(stream.write(bytes("drive")));
-  stream.last_will(bytes("[turn]"), 10s);
+  stream.last_will(bytes("[turn]"), 1s);
   EXPECT_EQ(server.read(5), "drive");
   stream.reopen({});
   EXPECT_EQ(server.read(1000), "[stop][stop][stop]");

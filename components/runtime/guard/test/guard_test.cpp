@@ -146,12 +146,12 @@ TEST(Guard, SendsTheWillOfADriverThatEndedBeforeItSaysFarewell) {
 
 TEST(Guard, TheNextOneDecides) {
   Bench bench = willed();
-  bench.guard.succeeded(at(1));
+  bench.guard.port_wanted(at(1));
   EXPECT_EQ(bench.take(), "") << "nobody succeeds a driver that lives";
   bench.guard.gone(at(3));
   EXPECT_EQ(bench.take(), "w");
-  bench.guard.succeeded(at(5));
-  bench.guard.succeeded(at(6));
+  bench.guard.port_wanted(at(5));
+  bench.guard.port_wanted(at(6));
   EXPECT_EQ(bench.take(), "0.");
   for (const int ms : {15, 25}) EXPECT_EQ(bench.tick(ms), "0.");
   EXPECT_TRUE(bench.guard.finished());
