@@ -19,6 +19,7 @@ using geometry::Twist2;
 constexpr double kStanding = 0.05;          // [m/s] slower than this the robot stands
 constexpr double kSlowEnoughToTurn = 0.15;  // [m/s] below this a turn in place may begin
 constexpr double kDodgeReach = 1.0;         // [s] of turning faster or slower, while it brakes
+constexpr int kWorthATurn = 4;         // steps, where no arc is free, that another one must lead on
 constexpr double kLongestCycle = 0.2;  // [s] a command is ramped for at most this long after a gap
 constexpr double kLookAhead =
     0.5;  // [m] the direction of the path is that to the point this far along
@@ -242,19 +243,25 @@ Decision DynamicWindow::brake(const Input& input) {
   note(among_people_);
   if (!found && leave_out_people(input)) found = run({&whole_, &narrow_});
   note(without_people_);
-  if (!found) run({&center_, &whole_});
+  if (!found) found = run({&center_, &whole_});
   const auto turn = [&](const Trajectory& trajectory) {
     return turns_[static_cast<std::size_t>(trajectory.turn)].target;
   };
   // The turn rate falls with the speed, else an arc ends in a turn on the spot.
   const double along = braked_arc_ ? *braked_arc_ * v : input.last_command.w;
-  const auto best =
+  const auto bend = [&](const Trajectory& trajectory) {
+    return std::abs(turn(trajectory) - along);
+  };
+  auto best =
       std::ranges::min_element(rollout_.trajectories(), {}, [&](const Trajectory& trajectory) {
         const auto index = static_cast<std::size_t>(&trajectory - rollout_.trajectories().data());
         const bool hard = v * std::abs(turn(trajectory)) > config_.lateral_acceleration;
         return std::tuple(-trajectory.free_steps, -without_people_[index], -among_people_[index],
-                          hard, trajectory.close > 0.0F, std::abs(turn(trajectory) - along));
+                          hard, trajectory.close > 0.0F, bend(trajectory));
       });
+  // What bars every arc may be an echo from beside the way: the one that it is on was free.
+  const auto same = std::ranges::min_element(rollout_.trajectories(), {}, bend);
+  if (!found && best->free_steps < same->free_steps + kWorthATurn) best = same;
   arc_ = turn(*best) / v;
   decision.command.w = ramped(input, {0.0, turn(*best)}, config_.braking).w;
   return decision;
