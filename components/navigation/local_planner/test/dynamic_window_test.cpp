@@ -397,6 +397,23 @@ TEST(Decide, BrakesPastAPostThatOnlyAHardTurnLeavesFree) {
   EXPECT_NEAR(decision.command.w, -0.7, 1e-9) << "away from it as fast as it may";
 }
 
+// An echo from the edge of a pane bars the whole opening beside it (window 1364).
+TEST(Decide, BrakesOnItsArcWhereNoneIsFreeAndNoneLeadsMuchFarther) {
+  const auto turn_of = [](double beside) {
+    World world(-3, -3, 3, 3);
+    world.add(Box{1.1, 0.3, 1.15, 3});
+    world.add(Box{beside, -3, beside + 0.05, 0.3});
+    world.finish(0.305);
+    DynamicWindow planner = planner_to(8.0);
+    const Twist2 rolls{0.9, 0.3};
+    const Decision decision = planner.decide(world.costs(), {}, rolls, rolls, 0.05);
+    EXPECT_EQ(decision.reason, Reason::kBraking);
+    return decision.command.w;
+  };
+  EXPECT_NEAR(turn_of(1.2), 0.3, 0.05);
+  EXPECT_NEAR(turn_of(1.6), 0.2, 1e-9) << "there it has more time: as fast as it may";
+}
+
 TEST(Decide, BrakesThroughAGapThatOnlyTheCentersOfCellsLeaveFree) {
   // Bending right, toward the wall beside it.
   World world(-3, -3, 3, 3);
