@@ -410,7 +410,7 @@ TEST(Decide, BrakesOnItsArcWhereNoneIsFreeAndNoneLeadsMuchFarther) {
     EXPECT_EQ(decision.reason, Reason::kBraking);
     return decision.command.w;
   };
-  EXPECT_NEAR(turn_of(1.2), 0.3, 0.05);
+  EXPECT_NEAR(turn_of(1.3), 0.3, 0.05);
   EXPECT_NEAR(turn_of(1.6), 0.2, 1e-9) << "there it has more time: as fast as it may";
 }
 
