@@ -8,19 +8,22 @@ namespace {
 using runtime::HealthState;
 using std::chrono::milliseconds;
 constexpr auto kMaxAge = milliseconds(100);
+constexpr auto kUprightAge = milliseconds(250);  // statuses as old as its reports, ten a second
 constexpr auto kFuture = milliseconds(20);
 }  // namespace
 
-PitchInput::PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch)
+PitchInput::PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch,
+                       HealthState without)
     : host_(host),
       on_pitch_(std::move(on_pitch)),
+      without_(without),
       upright_(host.parameters().choice("robot.base", {"segway", "pioneer"}, "segway",
                                         "What kind of base it is.") == "pioneer"),
       refused_(host.health().counter("base/status: refused")),
       base_(host.input(
-          topics::kBaseStatus, {.max_age = kMaxAge, .on_loss = on_loss},
+          topics::kBaseStatus, {.max_age = upright_ ? kUprightAge : kMaxAge, .on_loss = on_loss},
           [this](const auto& status, const auto&) { take(status); },
-          [this] { host_.health().set(HealthState::kDegraded, "no pitch"); })) {}
+          [this] { host_.health().set(without_, "no pitch"); })) {}
 
 Result<estimation::Pitch> PitchInput::at(Time stamp) const {
   if (!upright_) return history_.at(stamp.time_since_epoch());
@@ -28,7 +31,10 @@ Result<estimation::Pitch> PitchInput::at(Time stamp) const {
   return estimation::Pitch{};
 }
 
-bool PitchInput::current() const { return host_.now() - heard_ <= kMaxAge; }
+/// Not once the loss was reported, which is said once.
+bool PitchInput::current() const {
+  return base_.fresh() != nullptr && host_.now() - heard_ <= kMaxAge;
+}
 
 void PitchInput::take(const usher_msgs::msg::BaseStatus& status) {
   const bool connected =
@@ -42,7 +48,7 @@ void PitchInput::take(const usher_msgs::msg::BaseStatus& status) {
     return;
   }
   if (connected) ++refused_;
-  if (!current()) host_.health().set(HealthState::kDegraded, "no pitch: " + added.error());
+  if (!current()) host_.health().set(without_, "no pitch: " + added.error());
 }
 
 Status PitchInput::add(const usher_msgs::msg::BaseStatus& status) {

@@ -12,14 +12,18 @@ namespace usher::wire {
 /// A component's view of how the body leans: reads base/status into a PitchHistory. A status that
 /// gives no pitch (not finite, not newer than the one before, stamped more than 20 ms ahead of now,
 /// which would make all later ones old) is refused and counted ("base/status: refused"). After
-/// 100 ms without a pitch, for whatever reason, the component is degraded with that reason.
+/// 100 ms without a pitch, for whatever reason, the component is degraded (or worse) with that
+/// reason.
 ///
 /// A Pioneer (`robot.base`) stands upright whenever it is connected. Its statuses have the stamps
-/// of the reports that they tell, ten a second: scans would wait for the next one.
+/// of the reports that they tell, ten a second: scans would wait for the next one, and 250 ms count
+/// instead of 100.
 class PitchInput {
  public:
-  /// `on_loss` is for the contract; `on_pitch` runs after each pitch that is new.
-  PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch);
+  /// `on_loss` is for the contract; `on_pitch` runs after each pitch that is new; `without` is how
+  /// the component is without one.
+  PitchInput(runtime::Host& host, const char* on_loss, std::function<void()> on_pitch,
+             runtime::HealthState without = runtime::HealthState::kDegraded);
   PitchInput(const PitchInput&) = delete;
   PitchInput& operator=(const PitchInput&) = delete;
 
@@ -34,6 +38,7 @@ class PitchInput {
 
   runtime::Host& host_;
   std::function<void()> on_pitch_;
+  const runtime::HealthState without_;
   const bool upright_;
   estimation::PitchHistory history_;
   Time heard_{};  ///< when the newest pitch came

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSlice = 0.25;  // [m]
 constexpr std::size_t kMaxSlices = 32;
+constexpr double kAhead = 0.5;  // [rad] to either side: where a robot goes on its way to a stop
 
 bool fits(const FreeSpace& space, const RoomNeeded& room, double tolerance) {
   const double width = space.width + tolerance;
@@ -55,7 +56,7 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
     const double angle = sensor.yaw + angle_min + angle_increment * static_cast<double>(i);
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    if (c > 0.0) ++forward, unknown += std::isnan(range);
+    if (c > std::cos(kAhead)) ++forward, unknown += std::isnan(range);
     if (!(range <= parameters.horizon)) continue;
     const double reach = std::max(range, 0.0);  // -infinity: right at the sensor
     const double x = sensor.x + reach * c;
@@ -68,7 +69,7 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
       side = std::min(side, std::abs(y));
     }
   }
-  if (2 * unknown >= forward) return std::nullopt;  // blind on most of what is ahead
+  if (2 * unknown >= forward) return std::nullopt;  // blind on half of what is ahead
 
   // What stands beside the thing ahead belongs to it: a wall ahead is not a narrow place before it.
   const auto nearer = static_cast<std::size_t>(std::max(0.0, ahead / kSlice - 1.0));

@@ -45,6 +45,7 @@ class Component : public testing::Test {
   double measured_v = 0.5;
   double pitch = 0.0;
   double wall = 100.0;  ///< [m] ahead of the laser
+  milliseconds scan_late{0};
   std::optional<double>
       glass;  ///< [m] ahead of the axle in the local costs; nothing: there are none
   geometry::Pose2 odom_T_base{3.0, -2.0, 2.0};
@@ -86,7 +87,7 @@ class Component : public testing::Test {
     }
     if (speaks("scan/filtered")) {
       sensor_msgs::msg::LaserScan scan;
-      scan.header(wire::header(host.now(), "laser"));
+      scan.header(wire::header(host.now() - scan_late, "laser"));
       scan.angle_min(-1.0F), scan.angle_max(1.0F), scan.angle_increment(0.01F);
       scan.range_min(0.05F), scan.range_max(20.0F);
       for (int i = 0; i <= 200; ++i) {
@@ -207,6 +208,16 @@ TEST_F(Component, WithoutAScanTheNavigationCreeps) {
   run(2000);
   EXPECT_NEAR(commanded(), 0.1, 1e-6);
   EXPECT_EQ(status().obstacle_distance(), 0.0F) << "nobody knows";
+}
+
+TEST_F(Component, LateScansTellNothing) {
+  run(3000);
+  scan_late = milliseconds(500);
+  run(2000);
+  EXPECT_NEAR(commanded(), 0.1, 1e-6);
+  scan_late = milliseconds(0);
+  run(3000);
+  EXPECT_GT(commanded(), 0.5);
 }
 
 TEST_F(Component, APersonAheadLimitsTheSpeedAndSoDoesASilentDetector) {

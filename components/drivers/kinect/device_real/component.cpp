@@ -79,7 +79,7 @@ KinectComponent::KinectComponent(runtime::Host& host, runtime::Duration reading)
   if (!rectifier) host.fault(rectifier.error());
   job_->rectifier.emplace(std::move(rectifier).value());
   timer_ = host.timer("frame", kTick, [this](auto) {
-    if (!job_->recording && !job_->live) open();
+    if (!job_->recording && !job_->live && host_.now() >= again_) open();
     start_reading();
     take_frame();
     if (live_ && reading_) watch_reading();
@@ -98,6 +98,7 @@ void KinectComponent::open() {
   }
   auto recording = Recording::open(folder_, values_);
   if (!recording) {
+    again_ = host_.now() + kAgain;
     host_.health().set(HealthState::kDegraded, recording.error());
     return;
   }

@@ -52,7 +52,7 @@ class KinectComponent final : public runtime::Component {
   runtime::Time started_{};
   runtime::Time read_at_{};                  ///< when the newest read began
   runtime::Time arrived_{};                  ///< when the newest read ended
-  runtime::Time again_{};                    ///< not before, after an error of a live one
+  runtime::Time again_{};                    ///< not before, after an error
   estimation::DeviceClock clock_{kCounter};  ///< of a live one
   bool reading_ = false, ready_ = false;
   std::uint64_t& rejected_;

@@ -116,9 +116,7 @@ void DynamicWindow::sample(const Input& input, double fastest) {
   const double high =
       std::clamp(std::max(last.v, 0.0) + limits.acceleration * reach, slowest, fastest);
   const double low = std::clamp(last.v - limits.deceleration * reach, slowest, high);
-  const int reverse = config_.reverse_speed > 0.0 ? 1 : 0;
-  const int speeds = config_.speed_samples + reverse;
-  speeds_.resize(static_cast<std::size_t>(speeds));
+  speeds_.resize(static_cast<std::size_t>(config_.speed_samples));
   const Ramp speed_ramp{limits.acceleration, limits.deceleration, config_.response.latency,
                         config_.response.time_constant, config_.response.acceleration};
   // Who walks is looked at for longer: there is time to let them pass.
@@ -128,19 +126,17 @@ void DynamicWindow::sample(const Input& input, double fastest) {
                                                              config_.steps, Rollout::kMostSteps);
   int most_steps = least_steps;
   const double anticipated = config_.response.time_constant + config_.response.latency;
-  for (int i = 0; i < speeds; ++i) {
+  for (int i = 0; i < config_.speed_samples; ++i) {
     SpeedProfile& profile = speeds_[static_cast<std::size_t>(i)];
     // The slowest is always among them: slowing down is always allowed.
     double v = i == 0 ? slowest : high;
     if (i > 0 && i < config_.speed_samples - 1)
       v = low + (high - low) * (i - 1) / (config_.speed_samples - 2);
-    if (i == config_.speed_samples) v = -config_.reverse_speed;
     // Told to slow down, the base keeps its speed for a while; then it stops within the measured
     // distance.
-    profile.contact = std::abs(v) > config_.careful_speed ? 1 : 0;
-    const double faster = std::max(std::abs(input.measured.v), std::abs(v));
-    profile.needed = config_.stopping.distance(v) + config_.margin +
-                     anticipated * (faster - std::abs(v)) +
+    profile.contact = v > config_.careful_speed ? 1 : 0;
+    const double faster = std::max(std::abs(input.measured.v), v);
+    profile.needed = config_.stopping.distance(v) + config_.margin + anticipated * (faster - v) +
                      (faster * faster - v * v) / (2.0 * limits.deceleration);
     if (goal_in_window_) profile.needed = std::min(profile.needed, path_.remaining() + 0.05);
     rollout_.profile(input.measured.v, last.v, v, speed_ramp, least_steps, profile);
@@ -285,7 +281,6 @@ CriticScores DynamicWindow::score(const Input& input, std::size_t index, double 
   s.twirling = weights.twirling * std::abs(w);
   s.smoothness = weights.smoothness *
                  (std::abs(w - input.last_command.w) + 0.5 * std::abs(v - input.last_command.v));
-  s.prefer_forward = v < 0.0 ? weights.prefer_forward : 0.0;
   s.oscillation = forbidden_turn(v, w) ? weights.oscillation : 0.0;
   return s;
 }

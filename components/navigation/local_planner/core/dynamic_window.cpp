@@ -584,7 +584,7 @@ Decision DynamicWindow::follow(const Input& input) {
   tight.walkers = neighbours_;
   decision = drive(tight, {&whole_, &narrow_}, slow, config_.tight_speed);
   // Who overlaps part of a cell already must be let out by its center, no corner swinging out.
-  if (decision.admissible == 0 && (config_.trust_centers || touches(input, whole_, input.pose))) {
+  if (decision.admissible == 0 && touches(input, whole_, input.pose)) {
     decision = drive(tight, {&center_, &whole_}, slow,
                      config_.tight_turn * config_.footprint.circumscribed_radius());
   }
@@ -661,13 +661,14 @@ int DynamicWindow::turn_of_tail() const {
 
 Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                  const Twist2& measured, const Twist2& last_command,
-                                 double seconds_since_last, double speed) {
+                                 double seconds_since_last, double speed,
+                                 std::span<const MovingDisc> people) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
   if (!pose.finite()) return refused();
   barred_ = {};
   const double turn = trail_.turn_rate_back(pose, speed);
-  const Input input{costs, pose, measured, last_command, seconds, {}, {}};
+  const Input input{costs, pose, measured, last_command, seconds, people, {}};
   if (const int away = turn_of_tail(); away != 0) {
     if (!valid(input)) return refused();
     load(input);
@@ -681,10 +682,11 @@ Decision DynamicWindow::back_off(const grid::Grid<std::uint8_t>& costs, const Po
 
 Decision DynamicWindow::rotate(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                const Twist2& measured, const Twist2& last_command,
-                               double seconds_since_last, double rate) {
+                               double seconds_since_last, double rate,
+                               std::span<const MovingDisc> people) {
   const double seconds =
       seconds_since_last > 0.0 ? std::min(seconds_since_last, kLongestCycle) : 0.0;
-  const Input input{costs, pose, measured, last_command, seconds, {}, {}};
+  const Input input{costs, pose, measured, last_command, seconds, people, {}};
   if (!valid(input) || !std::isfinite(rate)) return refused();
   load(input);
   // Looking around is worth no touch: only with room.

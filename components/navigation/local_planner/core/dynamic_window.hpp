@@ -35,7 +35,6 @@ struct CriticWeights {
   double speed = 1.0;            ///< for the lacking part of the allowed speed, 0..1
   double twirling = 0.03;        ///< per rad/s
   double smoothness = 0.15;      ///< per rad/s and per m/s of change of the target command
-  double prefer_forward = 1.0;   ///< for driving backward, 0 or 1
   double oscillation = 1e3;      ///< for turning back and forth on the spot, 0 or 1
 };
 
@@ -68,7 +67,6 @@ struct DynamicWindowConfig {
   double lateral_acceleration = 0.8;
   double turn_stopping_time = 0.6;  ///< [s] a turn stops within this time x its rate
   double braking = 2.0;             ///< [m/s2] slope of the command when it must stop
-  double reverse_speed = 0.0;       ///< [m/s] one sample backward; zero: never, nobody sees behind
 
   Sampling sampling = Sampling::kDynamicWindow;
   double window = 0.4;          ///< [s] of the dynamic window
@@ -85,8 +83,6 @@ struct DynamicWindowConfig {
       1.2;  ///< [rad] between heading and path from which a moving robot stops to turn
   bool keep_left = false;  ///< to which side it makes room for who comes the other way
   bool unknown_is_lethal = false;
-  bool trust_centers = false;  ///< following, where whole lethal cells leave no way, their centers
-                               ///< decide, at tight_speed
   CriticWeights weights;
 };
 /// Fails with what is out of its bounds.
@@ -125,15 +121,17 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
                   double seconds_since_last, std::span<const MovingDisc> people = {}) override;
 
   /// Recovery: back the way it came at `speed` [m/s, positive], straight where it does not know
-  /// that way, while the footprint meets nothing that it does not touch already. Stops (kBlocked)
-  /// otherwise. Nobody sees behind: the navigator bounds the way.
+  /// that way, while the footprint meets nothing, and nobody, that it does not touch already. Stops
+  /// (kBlocked) otherwise. Nobody sees behind: the navigator bounds the way.
   Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                    double seconds_since_last, double speed) override;
+                    double seconds_since_last, double speed,
+                    std::span<const MovingDisc> people = {}) override;
   /// Recovery: turns in place at `rate` [rad/s, either sign], checked in the same way.
   Decision rotate(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                  double seconds_since_last, double rate) override;
+                  double seconds_since_last, double rate,
+                  std::span<const MovingDisc> people = {}) override;
 
   const DynamicWindowConfig& config() const { return config_; }
   const ReferencePath& path() const { return path_; }

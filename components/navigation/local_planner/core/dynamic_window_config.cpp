@@ -20,7 +20,6 @@ Status check(const DynamicWindowConfig& c) {
       {"lateral_acceleration", c.lateral_acceleration, 0.05, 10.0},
       {"turn_stopping_time", c.turn_stopping_time, 0.05, 5.0},
       {"braking", c.braking, 0.1, 20.0},
-      {"reverse_speed", c.reverse_speed, 0.0, 1.0},
       {"window", c.window, 0.02, 4.0},
       {"speed_samples", static_cast<double>(c.speed_samples), 3, 64},
       {"turn_samples", static_cast<double>(c.turn_samples), 3, 255},
@@ -48,7 +47,6 @@ Status check(const DynamicWindowConfig& c) {
       {"weights.speed", w.speed, 0.0, kMost},
       {"weights.twirling", w.twirling, 0.0, kMost},
       {"weights.smoothness", w.smoothness, 0.0, kMost},
-      {"weights.prefer_forward", w.prefer_forward, 0.0, kMost},
       {"weights.oscillation", w.oscillation, 0.0, kMost},
   });
 }

@@ -31,11 +31,10 @@ const char* to_string(Reason reason);
 /// Contribution of each critic to the winner, weighted; smaller is better.
 struct CriticScores {
   double path = 0.0, goal = 0.0, alignment = 0.0, goal_front = 0.0, obstacle = 0.0,
-         moving_obstacle = 0.0, speed = 0.0, twirling = 0.0, smoothness = 0.0, prefer_forward = 0.0,
-         oscillation = 0.0;
+         moving_obstacle = 0.0, speed = 0.0, twirling = 0.0, smoothness = 0.0, oscillation = 0.0;
   double total() const {
     return path + goal + alignment + goal_front + obstacle + moving_obstacle + speed + twirling +
-           smoothness + prefer_forward + oscillation;
+           smoothness + oscillation;
   }
 };
 
@@ -75,11 +74,13 @@ class PathFollower {
   /// Recovery: backward at `speed` [m/s, positive].
   virtual Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                             const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                            double seconds_since_last, double speed) = 0;
+                            double seconds_since_last, double speed,
+                            std::span<const MovingDisc> people) = 0;
   /// Recovery: turns in place at `rate` [rad/s, either sign].
   virtual Decision rotate(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                           const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                          double seconds_since_last, double rate) = 0;
+                          double seconds_since_last, double rate,
+                          std::span<const MovingDisc> people) = 0;
 };
 
 }  // namespace usher::local_planner

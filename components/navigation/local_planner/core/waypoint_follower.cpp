@@ -285,14 +285,16 @@ Decision WaypointFollower::decide(const grid::Grid<std::uint8_t>& costs, const P
 
 Decision WaypointFollower::back_off(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                     const Twist2& measured, const Twist2& last_command,
-                                    double seconds_since_last, double speed) {
-  return window_.back_off(costs, pose, measured, last_command, seconds_since_last, speed);
+                                    double seconds_since_last, double speed,
+                                    std::span<const MovingDisc> people) {
+  return window_.back_off(costs, pose, measured, last_command, seconds_since_last, speed, people);
 }
 
 Decision WaypointFollower::rotate(const grid::Grid<std::uint8_t>& costs, const Pose2& pose,
                                   const Twist2& measured, const Twist2& last_command,
-                                  double seconds_since_last, double rate) {
-  return window_.rotate(costs, pose, measured, last_command, seconds_since_last, rate);
+                                  double seconds_since_last, double rate,
+                                  std::span<const MovingDisc> people) {
+  return window_.rotate(costs, pose, measured, last_command, seconds_since_last, rate, people);
 }
 
 }  // namespace usher::local_planner

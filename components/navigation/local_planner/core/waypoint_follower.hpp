@@ -79,10 +79,12 @@ class WaypointFollower final : public PathFollower {
                   double seconds_since_last, std::span<const MovingDisc> people = {}) override;
   Decision back_off(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                    double seconds_since_last, double speed) override;
+                    double seconds_since_last, double speed,
+                    std::span<const MovingDisc> people = {}) override;
   Decision rotate(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                   const geometry::Twist2& measured, const geometry::Twist2& last_command,
-                  double seconds_since_last, double rate) override;
+                  double seconds_since_last, double rate,
+                  std::span<const MovingDisc> people = {}) override;
 
  private:
   struct Input {

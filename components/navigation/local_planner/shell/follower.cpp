@@ -205,6 +205,10 @@ void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::T
     return;
   }
   const Decision decided = decision(costs, pose, *measured);
+  if (decided.reason == Reason::kInvalidInput) {
+    stand(STATE_WAITING, to_string(decided.reason));
+    return;
+  }
   last_command_ = decided.command;
   roll_out_.drive(last_command_, host_.now().time_since_epoch());
   last_decision_ = host_.now();
@@ -222,12 +226,13 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
   follower_->set_touches(t == nullptr ? kinematics::Whiskers{}
                                       : kinematics::Whiskers{t->front_left(), t->front_right(),
                                                              t->back_left(), t->back_right()});
+  place_people(pose.position());
   if (mode_ == MODE_BACK_OFF)
-    return follower_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_);
+    return follower_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_,
+                               everybody_);
   if (mode_ == MODE_ROTATE)
     return follower_->rotate(costs, pose, measured, last_command_, elapsed,
-                             std::copysign(turn_rate_, amount_));
-  place_people(pose.position());
+                             std::copysign(turn_rate_, amount_), everybody_);
   return follower_->decide(costs, pose, measured, last_command_, elapsed, everybody_);
 }
 
@@ -286,8 +291,7 @@ void FollowerComponent::conclude(const Decision& decided, const geometry::Pose2&
     remaining = std::max(0.0, std::abs(amount_) - made);
     done = remaining == 0.0;
   }
-  const bool refused = decided.reason == Reason::kInvalidInput || decided.reason == Reason::kNoPath;
-  const bool stands = decided.blocked || refused;
+  const bool stands = decided.blocked || decided.reason == Reason::kNoPath;
   if (!stands) {
     blocked_since_.reset();
   } else if (!blocked_since_) {

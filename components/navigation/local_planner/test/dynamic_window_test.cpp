@@ -520,6 +520,19 @@ TEST(BackingOff, RunsStraightBackWhileThereIsRoom) {
   EXPECT_EQ(decision.command.w, 0.0);
 }
 
+// Range finders are blind at the robot, and recoveries begin where somebody stands.
+TEST(Recovery, MeetsNobodyWhoStandsAtTheRobot) {
+  DynamicWindow planner = DynamicWindow::make({}).value();
+  const auto blocked = [&](const geometry::Point2& place) {
+    const std::vector<MovingDisc> somebody{{place, {0.0, 0.0}, 0.25}};
+    return std::pair(planner.back_off(empty_window(), {}, {}, {}, 0.05, 0.15, somebody).blocked,
+                     planner.rotate(empty_window(), {}, {}, {}, 0.05, 0.4, somebody).blocked);
+  };
+  EXPECT_EQ(blocked({-0.65, 0.0}), std::pair(true, true));
+  EXPECT_EQ(blocked({0.65, 0.0}), std::pair(false, true));
+  EXPECT_EQ(blocked({1.5, 0.0}), std::pair(false, false));
+}
+
 TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   // The path leads to the left of a robot that stands.
   const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};

@@ -175,6 +175,19 @@ TEST_P(Losses, StandsOnCostsThatDoNotHoldTheRobot) {
   EXPECT_EQ(status().reason(), to_string(Reason::kInvalidInput));
 }
 
+TEST_P(Losses, RollsOutOnItsArcOnCostsThatDoNotHoldTheRobot) {
+  pose = {0.0, 0.0, -0.3};  // beside its path, and stays so
+  drive();
+  const geometry::Twist2 before = commanded();
+  if (GetParam() == kFollower) return;  // turns on the spot
+  ASSERT_GT(before.v, 0.1);
+  ASSERT_GT(before.w, 0.1);
+  pose = {50.0, 0.0, -0.3};
+  run(50);
+  EXPECT_EQ(commanded().v, 0.0);
+  EXPECT_NEAR(commanded().w, before.w, 1e-3);
+}
+
 TEST_P(Losses, StandsWithoutOdometryAndGoesOnWithIt) {
   drive();
   ASSERT_TRUE(drives());

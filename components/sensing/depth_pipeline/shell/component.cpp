@@ -36,8 +36,10 @@ geometry::Pose3 optical(const CameraPose& pose, bool backward) {
 DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
     : host_(host),
       config_(read_pipeline(host.parameters())),
+      without_kinect_(read_without_kinect(host.parameters())),
       tilt_(host),
-      pitch_(host, kNoScans, [this] { process_waiting(); }),
+      pitch_(
+          host, kNoScans, [this] { process_waiting(); }, without_kinect_),
       refused_tilts_(host.health().counter("kinect/tilt: refused")),
       rejected_(host.health().counter("images: rejected")),
       without_pitch_(host.health().counter("images: without pitch")),
@@ -49,7 +51,6 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
       drops_(host.health().counter("images: with missing floor")) {
   auto& p = host.parameters();
   far_ = p.number("far_of_8_bit", "m", {1, 20}, far_, "What 255 means in an 8-bit image.");
-  without_kinect_ = read_without_kinect(p);
   mount_slope_ = read_kinect_mount_slope(p);
   kinect_.name = "Kinect";
   kinect_.structured_light =

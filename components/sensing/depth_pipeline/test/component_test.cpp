@@ -347,6 +347,21 @@ TEST_F(NeededKinectTest, IsNotAbleToWorkWithoutIt) {
   EXPECT_EQ(host_.heartbeat().state(), STATE_STARTING) << reason();
 }
 
+TEST_F(NeededKinectTest, IsNotAbleToWorkWithoutThePitch) {
+  using namespace usher_msgs::msg::Heartbeat_Constants;
+  tell_camera();
+  live(100);
+  stream(300);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_OK);
+  with_pitch_ = false;
+  stream(600);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_STARTING) << reason();
+  EXPECT_EQ(reason(), "no pitch");
+  with_pitch_ = true;
+  stream(300);
+  EXPECT_EQ(host_.heartbeat().state(), STATE_OK);
+}
+
 TEST_F(DepthPipelineComponentTest, SaysThatACameraIsBlindFromItsFirstImageOn) {
   tell_camera();
   live(100);

@@ -207,14 +207,14 @@ void ScanFilter::find_surfaces() {
 // they, and a wall that is met at a grazing angle has distances whose inverses lie on a line.
 void ScanFilter::drop_mixed() {
   const auto from = static_cast<float>(config_.mixed_from);
-  const auto distance = [&](std::size_t i) {
-    return kind_[i] == Kind::kEnd ? away_[i] : kInfinity;
-  };
+  Kind own = kind_.empty() ? Kind::kUnknown : kind_.front();
   for (std::size_t i = 1; i + 1 < kind_.size(); ++i) {
-    if (kind_[i] != Kind::kEnd || away_[i] < from || joined_[i - 1] != 0 || joined_[i] != 0)
-      continue;
-    if (kind_[i - 1] == Kind::kUnknown || kind_[i + 1] == Kind::kUnknown) continue;
-    const auto [near, far] = std::minmax({distance(i - 1), distance(i + 1)});
+    const Kind before = std::exchange(own, kind_[i]);  // though it was dropped
+    const Kind after = kind_[i + 1];
+    if (own != Kind::kEnd || away_[i] < from || joined_[i - 1] != 0 || joined_[i] != 0) continue;
+    if (before == Kind::kUnknown || after == Kind::kUnknown) continue;
+    const auto [near, far] = std::minmax({before == Kind::kEnd ? away_[i - 1] : kInfinity,
+                                          after == Kind::kEnd ? away_[i + 1] : kInfinity});
     if (!(near < away_[i] && away_[i] < far)) continue;
     const float on_a_wall = 2.0f / (1.0f / near + 1.0f / far);
     if (std::abs(away_[i] - on_a_wall) < kJump) continue;

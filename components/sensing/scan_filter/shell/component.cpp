@@ -144,7 +144,7 @@ bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::Laser
   channel.output.publish(message);
   if (&channel == &laser_) {
     laser_left_ = host_.now();
-    host_.health().set(HealthState::kOk);
+    if (scan_.fresh() != nullptr) host_.health().set(HealthState::kOk);
   }
   return true;
 }

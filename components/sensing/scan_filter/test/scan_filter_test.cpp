@@ -289,6 +289,25 @@ TEST(ScanFilter, KnowsNothingOfABeamBetweenTwoSurfaces) {
   EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
 }
 
+TEST(ScanFilter, KnowsNothingOfTwoBeamsBetweenTwoSurfaces) {
+  PlanarScan out;
+  for (const bool mirrored : {false, true}) {
+    ScanFilter f = filter();
+    auto ranges = pillar_with_an_edge_at(3.0F);
+    ranges[297] = 4.5F;
+    std::fill(ranges.begin() + 298, ranges.end(), kInf);
+    std::size_t first = kEdge, second = kEdge + 1;
+    if (mirrored) {
+      std::reverse(ranges.begin(), ranges.end());
+      first = out.ranges.size() - 1 - first, second = out.ranges.size() - 1 - second;
+    }
+    ASSERT_TRUE(f.filter(lms100(), ranges, {}, out).ok());
+    EXPECT_TRUE(std::isnan(out.ranges[first])) << mirrored << ": " << out.ranges[first];
+    EXPECT_TRUE(std::isnan(out.ranges[second])) << mirrored << ": " << out.ranges[second];
+    EXPECT_EQ(f.counts().mixed, 2U);
+  }
+}
+
 TEST(ScanFilter, KeepsAThingBeforeTwoSurfacesAndWhateverIsNear) {
   PlanarScan out;
   ScanFilter f = filter();
