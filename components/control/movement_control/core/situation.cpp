@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kSlice = 0.25;  // [m]
 constexpr std::size_t kMaxSlices = 32;
-constexpr double kAhead = 0.5;  // [rad] to either side: where a robot goes on its way to a stop
 
 bool fits(const FreeSpace& space, const RoomNeeded& room, double tolerance) {
   const double width = space.width + tolerance;
@@ -56,7 +55,7 @@ std::optional<FreeSpace> free_space(std::span<const float> ranges, double angle_
     const double angle = sensor.yaw + angle_min + angle_increment * static_cast<double>(i);
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    if (c > std::cos(kAhead)) ++forward, unknown += std::isnan(range);
+    if (c > 0.0) ++forward, unknown += std::isnan(range);
     if (!(range <= parameters.horizon)) continue;
     const double reach = std::max(range, 0.0);  // -infinity: right at the sensor
     const double x = sensor.x + reach * c;

@@ -85,18 +85,6 @@ TEST(FreeSpace, KnowsNothingWhenBlindOnHalfOfWhatIsAhead) {
   EXPECT_FALSE(free_space(ranges, kAngleMin, kIncrement, {}).has_value());
 }
 
-// Tape over the front of the scanner: what it sees beside the robot tells nothing of its way.
-TEST(FreeSpace, KnowsNothingWhereItsWayIsHidden) {
-  const auto hidden = [](double half) {
-    std::vector<float> ranges = scan(corridor(3.0));
-    for (int i = 0; i < kBeams; ++i)
-      if (std::abs(kAngleMin + i * kIncrement) < half) ranges[static_cast<std::size_t>(i)] = kNan;
-    return !free_space(ranges, kAngleMin, kIncrement, {}).has_value();
-  };
-  EXPECT_FALSE(hidden(0.2));
-  EXPECT_TRUE(hidden(0.3));
-}
-
 TEST(FreeSpace, KnowsNothingWithoutForwardBeams) {
   EXPECT_FALSE(free_space({}, kAngleMin, kIncrement, {}).has_value());
   EXPECT_FALSE(free_space(std::vector<float>(kBeams, kNan), kAngleMin, kIncrement, {}).has_value());
