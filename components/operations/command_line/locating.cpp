@@ -18,7 +18,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kPatience = std::chrono::seconds(5);
+constexpr auto kJudged = std::chrono::seconds(2);  // by then its scans have judged what it was told
 // How well somebody knows where the robot stands; what viewers of ROS 2 say, too.
 constexpr double kPositionSigma = 0.5;                 // [m]
 constexpr double kYawSigma = std::numbers::pi / 12.0;  // [rad]
@@ -58,18 +59,28 @@ Result<geometry::Pose2> tell_pose(runtime::Observer& observer, const geometry::P
   std::optional<geometry::Pose2> found;
   std::shared_ptr<const usher_msgs::msg::LocalizationStatus> status;
   runtime::Time stamp{};
-  std::string reason = "amcl did not take the pose within 3 s";
+  Clock::time_point taken_at{};
+  std::string reason = "amcl did not take the pose within 5 s";
   for (const auto until = Clock::now() + kPatience; Clock::now() < until;) {
     while (const auto pose = poses->take()) {
       const auto here = wire::to_planar(pose->pose().pose());
-      if (!here || !is_near(*here, map_T_base)) continue;
-      found = *here;
+      if (!here) continue;
+      const bool taken = is_near(*here, map_T_base);
+      if (!taken && found) reason = "its scans do not fit there, and it believes to be elsewhere";
+      if (taken && !found) {
+        taken_at = Clock::now();
+        reason = "its scans have not judged the place yet";
+      }
+      found = taken ? std::optional(*here) : std::nullopt;
       stamp = wire::from_message(pose->header().stamp());
     }
     if (auto newer = statuses->take(milliseconds(50))) status = std::move(newer);
     // An older one is of where it believed to be before.
     if (!status || !found || wire::from_message(status->header().stamp()) < stamp) continue;
-    if (status->state() == confidence::STATE_GOOD) return *found;
+    if (status->state() == confidence::STATE_GOOD) {
+      if (Clock::now() - taken_at >= kJudged) return *found;
+      continue;
+    }
     reason = "the pose is taken, but the robot is not sure of it: " + status->reason();
   }
   return Error{reason};

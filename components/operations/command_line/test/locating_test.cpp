@@ -42,11 +42,15 @@ class Locating : public testing::Test {
     statuses_.write(status);
   }
   /// Answers the first pose that it is told with where it is by the scan.
-  void answer(const geometry::Pose2& by_scan, std::uint8_t state, const std::string& reason = {}) {
+  void answer(const geometry::Pose2& by_scan, std::uint8_t state, const std::string& reason = {},
+              const std::optional<geometry::Pose2>& then = {}) {
     auto reader = amcl_->reader(topics::kInitialPose).value();
-    thread_ = std::thread([this, reader = std::move(reader), by_scan, state, reason]() mutable {
+    thread_ = std::thread([=, this, reader = std::move(reader)]() mutable {
       told_ = reader.take(std::chrono::seconds(5));
-      if (told_) tell(by_scan, state, reason);
+      if (!told_) return;
+      tell(by_scan, state, reason);
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      if (then) tell(*then, state, reason);
     });
   }
   Result<geometry::Pose2> told() {
@@ -81,6 +85,13 @@ TEST_F(Locating, SaysThatTheMapDoesNotExplainTheScan) {
   const auto result = told();
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error(), HasSubstr("not sure of it: the map explains 12 % of the scan"));
+}
+
+TEST_F(Locating, WaitsUntilScansHaveJudgedThePlace) {
+  answer(kSaid, confidence::STATE_GOOD, "", kBefore);
+  const auto result = told();
+  ASSERT_FALSE(result) << "it took the pose, and went back";
+  EXPECT_THAT(result.error(), HasSubstr("its scans do not fit there"));
 }
 
 TEST_F(Locating, BelievesNothingThatWasSaidBefore) {
