@@ -360,13 +360,20 @@ StreamSink guarded(Log& log, std::chrono::milliseconds silence) {
   return sink;
 }
 
+/// A stream whose guard has the port, and has greeted it.
+Stream& open_guarded(Streams& streams, Server& server, Log& log,
+                     std::chrono::milliseconds silence) {
+  Stream& stream = streams.open(server.uri(), guarded(log, silence));
+  server.accept_guard();
+  EXPECT_TRUE(log.wait([&] { return log.opened == 1; }));
+  return stream;
+}
+
 TEST(GuardedStreams, PassBytesBothWays) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(5), "drive");
   server.send("moving");
@@ -385,9 +392,7 @@ TEST(GuardedStreams, AreSafeWhenTheDriverIsGone) {
   Log log;
   {
     Streams streams;
-    Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-    server.accept_guard();
-    ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+    Stream& stream = open_guarded(streams, server, log, 10s);
     EXPECT_TRUE(stream.write(bytes("drive")));
     EXPECT_EQ(server.read(5), "drive");
   }
@@ -398,9 +403,7 @@ TEST(GuardedStreams, AreSafeWhileTheDriverIsSilent) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 50ms));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 50ms);
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(29), "drive[stop][stop][stop][stop]");
   EXPECT_TRUE(stream.write(bytes("drive")));
@@ -413,9 +416,7 @@ TEST(GuardedStreams, SayTheLastWillOfASilentDriverBeforeWhatIsSafe) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 300ms));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 300ms);
   EXPECT_TRUE(stream.write(bytes("drive")));
   stream.last_will(bytes("[none]"), 0ms);
   stream.last_will(bytes("[turn]"), 290ms);  // three times in a silence of 300 ms
@@ -426,9 +427,7 @@ TEST(GuardedStreams, SayTheLastWillOfASilentDriverBeforeWhatIsSafe) {
 void drive_and_end(Server& server, std::chrono::milliseconds lasts) {
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 300ms));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 300ms);
   EXPECT_TRUE(stream.write(bytes("drive")));
   EXPECT_EQ(server.read(5), "drive");
   stream.last_will(bytes("[turn]"), lasts);
@@ -458,9 +457,7 @@ TEST(GuardedStreams, OneDriverHasAPort) {
   Server server;
   Log log, second;
   Streams streams, others;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   others.open(server.uri(), guarded(second, 10s));
   ASSERT_TRUE(second.wait([&] { return !second.closed.empty(); }));
   EXPECT_THAT(second.closed[0], HasSubstr("another driver's guard has it"));
@@ -472,9 +469,7 @@ TEST(GuardedStreams, AReopeningDriverHasNoWill) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   EXPECT_TRUE(stream.write(bytes("drive")));
   stream.last_will(bytes("[turn]"), 1s);
   EXPECT_EQ(server.read(5), "drive");
@@ -487,9 +482,7 @@ TEST(GuardedStreams, ReplaceAGuardThatHangs) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   const pid_t guard = test::guard_of(::getpid());
   ASSERT_GT(guard, 0);
   ::kill(guard, SIGSTOP);
@@ -506,9 +499,7 @@ TEST(GuardedStreams, ReplaceAGuardThatIsKilled) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   const pid_t guard = test::guard_of(::getpid());
   ASSERT_GT(guard, 0);
   const auto opened = log.opened;  // on a busy machine the first guard may have been replaced
@@ -523,9 +514,7 @@ TEST(GuardedStreams, EndAGuardThatHangsWhenTheyReopen) {
   Server server;
   Log log;
   Streams streams;
-  Stream& stream = streams.open(server.uri(), guarded(log, 10s));
-  server.accept_guard();
-  ASSERT_TRUE(log.wait([&] { return log.opened == 1; }));
+  Stream& stream = open_guarded(streams, server, log, 10s);
   const pid_t guard = test::guard_of(::getpid());
   ASSERT_GT(guard, 0);
   const auto opened = log.opened;  // on a busy machine the first guard may have been replaced
