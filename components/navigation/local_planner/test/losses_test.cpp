@@ -71,7 +71,7 @@ class Losses : public testing::TestWithParam<const char*> {
   }
   sensor_msgs::msg::LaserScan scan() const {
     sensor_msgs::msg::LaserScan message;
-    message.header(wire::header(host.now(), "laser"));
+    message.header(wire::header(host.now() - scan_late, "laser"));
     message.angle_min(-2.0F), message.angle_max(2.0F), message.angle_increment(0.01F);
     message.range_min(0.05F), message.range_max(4.0F);
     message.ranges(std::vector<float>(beams, range));
@@ -123,6 +123,7 @@ class Losses : public testing::TestWithParam<const char*> {
   grid::Grid<std::uint8_t> costs{{80, 80, 0.05, -2.0, -2.0}, 0};
   const char* costs_frame = frames::kOdom;
   geometry::Pose2 pose;
+  milliseconds scan_late{0};
   bool transforms = true, localized = true, odometry = true, sees = true, scans = true;
   std::size_t beams = 401;
   float range = std::numeric_limits<float>::infinity();
@@ -309,6 +310,14 @@ TEST_P(Losses, StandsWhenItIsCancelled) {
   run(100);
   EXPECT_TRUE(stands());
   EXPECT_EQ(status().state(), STATE_CANCELLED);
+}
+
+TEST_P(FollowerLosses, LateScansAreNone) {
+  drive();
+  ASSERT_TRUE(drives());
+  scan_late = milliseconds(500);
+  run(500);
+  expect_waiting("no scan");
 }
 
 TEST_P(FollowerLosses, StandsWithoutAScanAndGoesOnWithIt) {

@@ -108,6 +108,17 @@ TEST_F(Component, SaysThatThereIsNoScan) {
   EXPECT_EQ(left(), 5U);
 }
 
+TEST_F(Component, LateScansAreNone) {
+  run(500);
+  EXPECT_EQ(reason(), "");
+  scans_ahead = milliseconds(-600);
+  run(1000);
+  EXPECT_EQ(reason(), "no scan");
+  scans_ahead = milliseconds(0);
+  run(300);
+  EXPECT_EQ(reason(), "");
+}
+
 TEST_F(Component, PublishesNothingWithoutPitch) {
   run(500);
   statuses = false;
