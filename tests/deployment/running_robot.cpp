@@ -197,6 +197,15 @@ std::string RunningRobot::complaints() const {
   return text;
 }
 
+std::string RunningRobot::fault_story() const {
+  const auto now = status();
+  std::string text;
+  if (!now) return text;
+  for (const auto& fault : now->faults())
+    text += fault.component_name() + ": " + fault.cause() + (fault.active() ? "\n" : " (over)\n");
+  return text;
+}
+
 bool RunningRobot::wait_for(const std::function<bool()>& condition, Seconds limit) const {
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(limit * kSanitizerFactor);

@@ -85,6 +85,8 @@ class RunningRobot {
   bool may_drive() const;
   /// Who is not, in words.
   std::string complaints() const;
+  /// The supervisor's faults, those that are over too, a line for each.
+  std::string fault_story() const;
 
   /// Asks the condition after each message and now and then; false when the limit passes, which is
   /// longer with a sanitizer.
