@@ -101,4 +101,12 @@ void spread_echoes(std::span<const float> echoes, std::span<const geometry::Poin
   }
 }
 
+void keep_middle(double cone, int beams, double width, std::span<float> ranges) {
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const int k = static_cast<int>(i % static_cast<std::size_t>(beams));
+    const double off = beams > 1 ? std::abs(k / (beams - 1.0) - 0.5) * cone : 0.0;
+    if (off > 0.5 * width) ranges[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
 }  // namespace usher::costmap

@@ -115,8 +115,9 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   const double x = (observation.sensor.x - raster.anchor_x) * scale;
   const double y = (observation.sensor.y - raster.anchor_y) * scale;
   const grid::Cell origin{floor_to_int(x) - raster.first_x, floor_to_int(y) - raster.first_y};
-  const bool clears = states_.geometry().contains(origin);
-  if (!clears) ++sensors_outside_;
+  const bool inside = states_.geometry().contains(origin);
+  if (!inside && observation.clears) ++sensors_outside_;
+  const bool clears = inside && observation.clears;
 
   const int behind = static_cast<int>(std::lround(config_.thickness / raster.resolution));
   lost_.clear();

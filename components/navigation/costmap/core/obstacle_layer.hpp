@@ -27,6 +27,7 @@ struct RangeObservation {
   /// into infinity, or keeps max_obstacle_range below it.
   std::span<const float> ranges;
   double stamp = 0.0;  ///< [s] any steady origin, the one of update(); finite
+  bool clears = true;  ///< else what lies before its echoes stays as it is
 };
 
 struct ObstacleLayerConfig {

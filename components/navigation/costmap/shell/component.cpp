@@ -117,6 +117,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                         "Half of an ultrasonic cone, where the laser explains echoes.");
   ultrasonic_cone_ = parameters.number("ultrasonic_cone", "rad", {0, 0.8}, 0.28,
                                        "Full width of a cone: an echo may come from all of it.");
+  clearing_cone_ = parameters.number(
+      "ultrasonic_clearing_cone", "rad", {0, 0.8}, 0.16,
+      "The middle of it, where silence tells that nothing is; 0: on the axis alone.");
   echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.3,
                                       "So much nearer than an echo may be what explains it.");
 
@@ -345,62 +348,68 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     ++placeless_scans_;
     return;
   }
-  const std::span<const float> ranges = layer == &Map::ultrasonic
-                                            ? heard(scan, beams, odom_T_sensor)
-                                            : std::span<const float>(scan.ranges());
-  if (!local_.costs->move_to(*odom_T_base)) ++rejected_scans_;
-  observe(local_, local_.*layer, odom_T_sensor, beams, ranges, stamp);
-
+  if (layer == &Map::ultrasonic) hear(scan, beams, odom_T_sensor);
+  const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
+                        const geometry::Pose2& window_T_sensor) {
+    if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
+    RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
+    if (layer == &Map::ultrasonic) {
+      seen.ranges = middle_ranges_;
+      observe(map, map.*layer, seen);
+      seen.ranges = cone_ranges_;
+      seen.clears = false;
+    }
+    if (!observe(map, map.*layer, seen)) return;
+    // The local costs are as old as their laser scan, whatever else was seen since.
+    if (&map == &global_ || layer == &Map::laser) map.newest = std::max(map.newest, stamp);
+  };
+  take(local_, *odom_T_base, odom_T_sensor);
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
   if (map_T_odom && global_.costs &&
-      (layer == &Map::ultrasonic || beams.turn++ % kGlobalShare == 0)) {
-    if (!global_.costs->move_to(*map_T_odom * *odom_T_base)) ++rejected_scans_;
-    observe(global_, global_.*layer, *map_T_odom * odom_T_sensor, beams, ranges, stamp);
-  }
+      (layer == &Map::ultrasonic || beams.turn++ % kGlobalShare == 0))
+    take(global_, *map_T_odom * *odom_T_base, *map_T_odom * odom_T_sensor);
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
-/// What the ultrasonic sensors hear and the laser does not see, over their whole cones.
-std::span<const float> CostmapComponent::heard(const sensor_msgs::msg::LaserScan& sonar,
-                                               const Beams& rays,
-                                               const geometry::Pose2& odom_T_sonar) {
-  unexplained(sonar, odom_T_sonar);
+/// What the ultrasonic sensors hear and the laser does not see, over their whole cones, and what
+/// the middle of each tells.
+void CostmapComponent::hear(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
+                            const geometry::Pose2& odom_T_sonar) {
+  keep_unexplained(sonar, odom_T_sonar);
   drop_remembered_echoes(local_.costs->layer(local_.laser), local_.costs->raster(), odom_T_sonar,
                          rays.directions, kRemembered, echoes_);
   spread_echoes(echoes_, rays.directions, odom_T_sonar, bodies_, cone_ranges_);
-  return cone_ranges_;
+  middle_ranges_ = cone_ranges_;
+  keep_middle(ultrasonic_cone_, kConeBeams, clearing_cone_, middle_ranges_);
 }
 
 /// The echoes that the newest laser scan does not explain.
-std::span<const float> CostmapComponent::unexplained(const sensor_msgs::msg::LaserScan& sonar,
-                                                     const geometry::Pose2& odom_T_sonar) {
+void CostmapComponent::keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
+                                        const geometry::Pose2& odom_T_sonar) {
   echoes_ = sonar.ranges();
   const auto* laser = scan_.fresh();
-  if (laser == nullptr || !wire::check(*laser)) return echoes_;
+  if (laser == nullptr || !wire::check(*laser)) return;
   const auto odom_T_laser = transforms_.lookup_planar(frames::kOdom, laser->header().frame_id(),
                                                       wire::from_message(laser->header().stamp()));
-  if (!odom_T_laser) return echoes_;
+  if (!odom_T_laser) return;
   drop_explained_echoes(
       {*odom_T_laser, laser->angle_min(), laser->angle_increment(), laser->ranges()},
       {odom_T_sonar, sonar.angle_min(), sonar.angle_increment(), {}}, echo_half_cone_,
       echo_tolerance_, echoes_);
-  return echoes_;
 }
 
-void CostmapComponent::observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor,
-                               const Beams& beams, std::span<const float> ranges,
-                               runtime::Time stamp) {
+bool CostmapComponent::observe(Map& map, Costmap::LayerId layer,
+                               const RangeObservation& observation) {
   const ObstacleLayer& taken = map.costs->layer(layer);
   const std::uint64_t invalid = taken.invalid_ranges();
   const std::uint64_t outside = taken.sensors_outside();
-  if (!map.costs->observe(layer, {sensor, beams.directions, ranges, in_seconds(stamp)})) {
+  if (!map.costs->observe(layer, observation)) {
     ++rejected_scans_;
-    return;
+    return false;
   }
   if (&map == &local_) invalid_ranges_ += taken.invalid_ranges() - invalid;
   sensors_outside_ += taken.sensors_outside() - outside;
-  // The local costs are as old as their laser scan, whatever else was seen since.
-  if (&map == &global_ || layer == map.laser) map.newest = std::max(map.newest, stamp);
+  return true;
 }
 
 void CostmapComponent::take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message) {

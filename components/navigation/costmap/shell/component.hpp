@@ -49,15 +49,14 @@ class CostmapComponent final : public runtime::Component {
   void place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
                   Costmap::LayerId Map::*layer, runtime::Time stamp,
                   const geometry::Pose2& odom_T_sensor);
-  std::span<const float> heard(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
-                               const geometry::Pose2& odom_T_sonar);
-  std::span<const float> unexplained(const sensor_msgs::msg::LaserScan& sonar,
-                                     const geometry::Pose2& odom_T_sonar);
+  void hear(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
+            const geometry::Pose2& odom_T_sonar);
+  void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
+                        const geometry::Pose2& odom_T_sonar);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
-  void observe(Map& map, Costmap::LayerId layer, const geometry::Pose2& sensor, const Beams& beams,
-               std::span<const float> ranges, runtime::Time stamp);
+  bool observe(Map& map, Costmap::LayerId layer, const RangeObservation& observation);
   void remember_contacts(std::span<const geometry::Point2> in_odom, runtime::Time stamp);
   void take_people(const usher_msgs::msg::People& message);
   void forget_people();
@@ -76,8 +75,8 @@ class CostmapComponent final : public runtime::Component {
   bool static_in_local_;
   runtime::Duration local_period_;
 
-  double echo_half_cone_, echo_tolerance_, ultrasonic_cone_;
-  std::vector<float> echoes_, cone_ranges_;
+  double echo_half_cone_, echo_tolerance_, ultrasonic_cone_, clearing_cone_;
+  std::vector<float> echoes_, cone_ranges_, middle_ranges_;
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
 

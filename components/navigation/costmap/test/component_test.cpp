@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "navigation/costmap/core/costs.hpp"
@@ -165,6 +166,32 @@ TEST_F(Component, GoesOnWithoutTheUltrasonicSensorsAndTheWhiskers) {
   EXPECT_EQ(reason(), "") << "both fell silent";
   EXPECT_EQ(local_cost(1.2, 0.0), kLethalCost) << "the glass that was heard";
   EXPECT_EQ(local_cost(2.0, 0.0), kLethalCost) << "the laser goes on";
+}
+
+TEST_F(Component, KeepsTheGlassThatLeftAConeByItsEdge) {
+  give_map();
+  sensor_msgs::msg::LaserScan sonar = scan("ultrasonic");
+  sonar.angle_min(0.0F);
+  sonar.angle_increment(0.52F);
+  sonar.angle_max(0.0F);
+  const auto hear = [&](float range) {
+    for (int i = 0; i < 10; ++i) {
+      sonar.header(wire::header(host.now(), "ultrasonic"));
+      sonar.ranges().assign(1, range);
+      host.publish(topics::kUltrasonicFiltered, sonar);
+      run(40);
+    }
+  };
+  const geometry::Point2 edge(1.5 * std::cos(0.13), 1.5 * std::sin(0.13));
+  hear(1.5F);
+  EXPECT_EQ(local_cost(1.5, 0.0), kLethalCost);
+  EXPECT_EQ(local_cost(edge.x(), edge.y()), kLethalCost);
+  hear(std::numeric_limits<float>::infinity());
+  EXPECT_LT(local_cost(1.5, 0.0), kLethalCost) << "nothing is straight ahead";
+  EXPECT_EQ(local_cost(edge.x(), edge.y()), kLethalCost) << "a gap between two cones begins here";
+  EXPECT_EQ(local_cost(edge.x(), -edge.y()), kLethalCost);
+  run(5500);
+  EXPECT_LT(local_cost(edge.x(), edge.y()), kLethalCost) << "not heard again for long";
 }
 
 TEST_F(Component, KeepsWhatADepthCameraSawThatFallsSilent) {

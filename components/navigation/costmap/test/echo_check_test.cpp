@@ -130,6 +130,21 @@ TEST(Cones, AnEchoIsOnAllOfItsArcButANearOneOnTheAxis) {
   for (std::size_t i = 9; i < 12; ++i) EXPECT_TRUE(std::isnan(ranges[i]));
 }
 
+TEST(Cones, TellNothingAtTheirEdges) {
+  std::vector<float> ranges{1.0F,      1.0F,      1.0F,      1.0F,      1.0F,
+                            kInfinity, kInfinity, kInfinity, kInfinity, kInfinity};
+  keep_middle(0.28, 5, 0.16, ranges);
+  for (const std::size_t edge : {0U, 4U, 5U, 9U}) EXPECT_TRUE(std::isnan(ranges[edge])) << edge;
+  for (const std::size_t middle : {1U, 2U, 3U}) EXPECT_EQ(ranges[middle], 1.0F);
+  for (const std::size_t middle : {6U, 7U, 8U}) EXPECT_EQ(ranges[middle], kInfinity);
+  std::vector<float> axis{1.0F, 1.0F, 1.0F};
+  keep_middle(0.28, 3, 0.0, axis);
+  EXPECT_TRUE(std::isnan(axis[0]) && axis[1] == 1.0F && std::isnan(axis[2]));
+  std::vector<float> alone{1.0F};
+  keep_middle(0.28, 1, 0.0, alone);
+  EXPECT_EQ(alone[0], 1.0F);
+}
+
 TEST(Cones, TheEchoOfAPersonIsOnTheAxisAlone) {
   std::vector<float> ranges;
   const auto rays = cone_directions(-0.25, 0.5, 2, 0.28, 3);

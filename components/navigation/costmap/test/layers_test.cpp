@@ -124,6 +124,22 @@ TEST(ObstacleLayer, KeepsAnObstacleWhoseCenterIsNearABlindBeam) {
   EXPECT_EQ(state(layer, 40), kSeenFree) << "18 mm beside it";
 }
 
+TEST(ObstacleLayer, MarksAndClearsNothingWhereTheScanSaysSo) {
+  ObstacleLayer layer(config(), raster());
+  see(layer, 1.0F);
+  const std::vector<float> ranges = {1.5F};
+  const CellRect touched =
+      layer
+          .observe({.sensor = kSensor, .directions = kAhead, .ranges = ranges, .clears = false},
+                   raster())
+          .value();
+  EXPECT_EQ(state(layer, 40), kSeenOccupied);
+  EXPECT_EQ(state(layer, 45), kUnseen);
+  EXPECT_EQ(state(layer, 50), kSeenOccupied);
+  EXPECT_EQ(touched, (CellRect{50, 20, 51, 21}));
+  EXPECT_EQ(layer.sensors_outside(), 0U);
+}
+
 TEST(ObstacleLayer, KeepsWhatLiesBehindAnEcho) {
   ObstacleLayer layer(config(), raster());
   see(layer, 1.5F);
