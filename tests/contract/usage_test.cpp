@@ -40,6 +40,7 @@ TEST(WrongUsage, EndsWithTwoWhateverTheCommand) {
                                                {"goto", "kitchen", "--max-speed", "99"},
                                                {"goto", "--pose", "nan", "0", "0"},
                                                {"goto", "kitchen", "--pose", "1", "2", "3"},
+                                               {"goto", "kitchen", "--cancel"},
                                                {"locate", "1", "2"},
                                                {"locate", "-1", "-2", "7"},
                                                {"teleop", "--hold", "1"},

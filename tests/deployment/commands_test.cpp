@@ -239,6 +239,20 @@ TEST_F(Commands, GotoThatIsInterruptedIsCancelled) {
   EXPECT_TRUE(became(usher_msgs::msg::GoalStatus_Constants::STATE_CANCELLED)) << int{state};
 }
 
+TEST_F(Commands, AGoalThatNobodyWaitsForIsGivenUpByHand) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  EXPECT_EQ(errors({"goto", "--cancel"}), "usher: no goal is under way\n");
+  output({"goto", "kitchen", "--no-wait"});
+  EXPECT_EQ(output({"goto", "--cancel"}), "the goal kitchen of operator is given up\n");
+  EXPECT_EQ(errors({"goto", "--cancel"}), "usher: no goal is under way\n");
+  EXPECT_TRUE(robot_->wait_for(
+      [] {
+        return robot_->status()->state() ==
+               usher_msgs::msg::SupervisorStatus_Constants::STATE_INTERACTION;
+      },
+      Seconds(10)));
+}
+
 TEST_F(Commands, GotoEndsWhenTheLaunchDoes) {
   ASSERT_TRUE(well()) << robot_->complaints();
   const auto command = robot_->command({"goto", "kitchen"});

@@ -42,6 +42,7 @@ struct GoalArguments {
   std::vector<double> pose;
   double max_speed = 0.0;
   bool no_wait = false;
+  bool cancel = false;
 };
 
 /// What the running navigator knows.
@@ -74,6 +75,8 @@ Status judge(const GoalArguments& arguments) {
     return Error{"--pose must be finite"};
   if (!arguments.location.empty() && !arguments.pose.empty())
     return Error{"give a location or --pose, not both"};
+  if (arguments.cancel && !(arguments.location.empty() && arguments.pose.empty()))
+    return Error{"--cancel gives up the goal that is under way; it takes no other one"};
   return {};
 }
 
@@ -188,6 +191,53 @@ Status start_navigation(Observer& observer, const GoalArguments& arguments) {
   return {};
 }
 
+bool is_under_way(const NavigateStatus& status) {
+  return status.state() == GoalStatus_Constants::STATE_ACTIVE ||
+         status.state() == GoalStatus_Constants::STATE_WAITING;
+}
+
+/// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
+/// another one is an answer too.
+Status cancel_goal(Observer& observer, Observer::Reader<NavigateStatus>& statuses, std::uint64_t id,
+                   bool taken) {
+  auto writer = observer.writer(topics::kNavigateCancel);
+  if (!writer) return Error{writer.error()};
+  GoalCancel message;
+  message.id(id);
+  message.client(kClient);
+  for (int tries = 0; tries < 15; ++tries) {
+    writer->write(message);
+    const auto until = std::chrono::steady_clock::now() + kRepeat;
+    while (std::chrono::steady_clock::now() < until) {
+      const auto status = statuses.take(milliseconds(50));
+      if (!status) continue;
+      if (status->id() == id ? status->state() >= GoalStatus_Constants::STATE_SUCCEEDED : taken)
+        return {};
+    }
+  }
+  return Error{"the navigator did not cancel the goal within 3 s"};
+}
+
+/// Gives up the goal that is under way, whoever gave it.
+int cancel_any(Observer& observer, std::uint32_t domain) {
+  auto statuses = observer.reader(topics::kNavigateStatus);
+  if (!statuses) return fail(statuses.error());
+  auto status = statuses->take(kPatience);
+  while (const auto newer = statuses->take(milliseconds(0))) status = newer;
+  if (!status) return fail(nobody_there("navigator", domain));
+  if (!is_under_way(*status)) return fail("no goal is under way");
+  if (const auto given_up = cancel_goal(observer, *statuses, status->id(), true); !given_up)
+    return fail(given_up.error());
+  if (status->client() == kClient) {  // guide and meeting end their navigation themselves
+    const auto told =
+        tell_supervisor(observer, SupervisorRequest_Constants::COMMAND_NAVIGATION_END);
+    if (!told) return fail("the navigation could not be ended: " + told.error());
+  }
+  std::cout << "the goal " << (status->location().empty() ? "pose" : status->location()) << " of "
+            << status->client() << " is given up\n";
+  return 0;
+}
+
 enum class Outcome { kUnderWay, kArrived, kFailed, kReplaced };
 
 /// Sends a goal and watches it to its end; Ctrl-C cancels it.
@@ -210,7 +260,7 @@ class Pursuit {
     given_ = heard_ = Clock::now();
     for (;;) {
       if (stop_asked) {
-        const auto cancelled = cancel();
+        const auto cancelled = cancel_goal(observer_, statuses_, goal_.id(), accepted_);
         return failed(cancelled ? "cancelled" : cancelled.error());
       }
       if (!accepted_ && Clock::now() - given_ > kPatience)
@@ -254,14 +304,13 @@ class Pursuit {
     if (!accepted_) return {};
     if (supervisor_.forgot_navigation()) return start_navigation(observer_, arguments_);
     if (!why) return {};
-    const auto cancelled = cancel();
+    const auto cancelled = cancel_goal(observer_, statuses_, goal_.id(), accepted_);
     return Error{*why + (cancelled ? "" : "; " + cancelled.error())};
   }
 
   /// What became of the goal; nothing while it runs.
   std::optional<Outcome> take(const NavigateStatus& status) {
-    const bool runs = status.state() == GoalStatus_Constants::STATE_ACTIVE ||
-                      status.state() == GoalStatus_Constants::STATE_WAITING;
+    const bool runs = is_under_way(status);
     if (status.id() != goal_.id()) {
       if (accepted_ && status.id() == 0) {  // restarted: it has forgotten everything
         accepted_ = false;
@@ -284,28 +333,6 @@ class Pursuit {
     return status.state() == GoalStatus_Constants::STATE_REPLACED ? Outcome::kReplaced : outcome;
   }
 
-  /// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
-  /// another one is an answer too.
-  Status cancel() {
-    auto writer = observer_.writer(topics::kNavigateCancel);
-    if (!writer) return Error{writer.error()};
-    GoalCancel message;
-    message.id(goal_.id());
-    message.client(kClient);
-    for (int tries = 0; tries < 15; ++tries) {
-      writer->write(message);
-      const auto until = Clock::now() + kRepeat;
-      while (Clock::now() < until) {
-        const auto status = statuses_.take(milliseconds(50));
-        if (!status) continue;
-        if (status->id() == goal_.id() ? status->state() >= GoalStatus_Constants::STATE_SUCCEEDED
-                                       : accepted_)
-          return {};
-      }
-    }
-    return Error{"the navigator did not cancel the goal within 3 s"};
-  }
-
   Observer& observer_;
   const GoalArguments& arguments_;
   NavigateGoal goal_;
@@ -322,6 +349,7 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   using namespace SupervisorRequest_Constants;
   auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
+  if (arguments.cancel) return cancel_any(**observer, domain);
   if (const auto possible = ask_pace(**observer, arguments.max_speed); !possible)
     return fail(possible.error());
   const auto locations = locations_of(**observer, domain);
@@ -364,6 +392,7 @@ void add_goto_command(CLI::App& app, int& exit_code) {
   goto_command->add_option("--max-speed", arguments->max_speed, "Pace [m/s]; 0 = default")
       ->check(within(0, kFastest));
   goto_command->add_flag("--no-wait", arguments->no_wait, "Return when the goal is taken");
+  goto_command->add_flag("--cancel", arguments->cancel, "Give up the goal that is under way");
   goto_command->callback([=, &exit_code] {
     const auto sound = judge(*arguments);
     exit_code = sound ? go(meant_domain(*domain), *arguments) : misused(sound.error());

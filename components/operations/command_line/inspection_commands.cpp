@@ -261,8 +261,10 @@ int echo(std::uint32_t domain, const EchoArguments& arguments) {
 void add_inspection_commands(CLI::App& app, int& exit_code) {
   auto domain = std::make_shared<std::optional<std::uint32_t>>();
   auto seconds = std::make_shared<double>(2.0);
-  auto* status_command =
-      app.add_subcommand("status", "What the supervisor thinks of the running robot");
+  auto* status_command = app.add_subcommand(
+      "status",
+      "What the supervisor thinks of the running robot; 0 when nothing is "
+      "wrong, 1 too when a component is degraded, such as a tablet without display");
   add_domain_option(*status_command, *domain);
   auto shown = std::make_shared<StatusArguments>();
   status_command->add_option("--seconds", shown->patience, "How long to look for it")

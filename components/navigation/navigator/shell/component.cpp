@@ -28,7 +28,8 @@ constexpr auto kSupervisorAge = milliseconds(1000);
 constexpr double kTrail = 1.2;  // [m] of its own way that is taken for free
 constexpr auto kPoseAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
-constexpr double kSeenLately = 1.0;  // [s]
+constexpr double kSeenLately = 1.0;            // [s]
+constexpr const char* kOperator = "operator";  // `usher goto`
 constexpr const char* kViewer = "goal_pose";
 constexpr auto kViewerPatience = milliseconds(3000);  // with the supervisor's answers
 
@@ -216,6 +217,18 @@ void NavigatorComponent::watch_viewer() {
                                       : "another goal took its place");
 }
 
+/// A latched fault and who drives by hand end a navigation for good. Guide and meeting see to their
+/// goals themselves; an operator's command may have gone, and his goal would wait for a start that
+/// is somebody else's.
+void NavigatorComponent::watch_operator() {
+  const auto* supervisor = supervisor_.fresh();
+  if (supervisor == nullptr || !core_.pursues() || core_.status().client != kOperator) return;
+  const bool fault = supervisor->state() == supervisor_state::STATE_FAULT;
+  if (!fault && supervisor->state() != supervisor_state::STATE_MANUAL) return;
+  core_.cancel(core_.status().id, "the supervisor ended the navigation: " +
+                                      (fault ? supervisor->reason() : "driven by hand"));
+}
+
 void NavigatorComponent::take_reply(const usher_msgs::msg::PlanReply& reply) {
   PlanReply plan{reply.id(), reply.reason(), {}};
   if (reply.state() == usher_msgs::msg::GoalStatus_Constants::STATE_SUCCEEDED) {
@@ -304,6 +317,7 @@ Situation NavigatorComponent::situation() {
 
 void NavigatorComponent::step() {
   watch_viewer();
+  watch_operator();
   const Decision decision = core_.step(situation());
   for (const auto& aside : decision.asides) remember_last_word(aside);
   if (decision.plan) send_plan(*decision.plan);

@@ -27,6 +27,7 @@ class NavigatorComponent final : public runtime::Component {
   void take_supervisor(const usher_msgs::msg::SupervisorStatus& status);
   void refuse_viewer(const std::string& reason);
   void watch_viewer();
+  void watch_operator();
   void take_reply(const usher_msgs::msg::PlanReply& reply);
   Situation situation();
   std::string not_allowed_because() const;

@@ -229,6 +229,37 @@ TEST_F(Component, StandsWhileItMayNotDriveAndSaysWhoHoldsIt) {
   EXPECT_EQ(motion(), follow::MODE_PATH);
 }
 
+TEST_F(Component, GivesAnOperatorsGoalUpWithTheNavigation) {
+  const std::pair<std::uint8_t, std::string> ends[] = {
+      {supervisor_state::STATE_FAULT, "stopped by operator"},
+      {supervisor_state::STATE_MANUAL, "driven by hand"}};
+  drive();
+  std::uint64_t id = 1;
+  for (const auto& [end, why] : ends) {
+    request(++id, "lab", "operator");
+    run(500);
+    ASSERT_EQ(motion(), follow::MODE_PATH) << status().reason();
+    granted = false;
+    behavior = end;
+    run(300);
+    EXPECT_EQ(status().state(), STATE_CANCELLED);
+    EXPECT_EQ(status().reason(), "the supervisor ended the navigation: " + why);
+    granted = true;
+    behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+    host.clear();
+    run(500);
+    EXPECT_FALSE(motions().contains(follow::MODE_PATH)) << "it would drive at another one's start";
+  }
+}
+
+TEST_F(Component, LeavesOthersTheirGoalsInAFault) {
+  drive();
+  granted = false;
+  behavior = supervisor_state::STATE_FAULT;
+  run(300);
+  EXPECT_EQ(status().state(), STATE_WAITING) << "the guide gives it up itself";
+}
+
 TEST_F(Component, StandsWhileAStopHoldsAndSaysWhose) {
   drive();
   stopped_by = {"guide"};
