@@ -41,6 +41,7 @@ TEST(WrongUsage, EndsWithTwoWhateverTheCommand) {
                                                {"goto", "--pose", "nan", "0", "0"},
                                                {"goto", "kitchen", "--pose", "1", "2", "3"},
                                                {"goto", "kitchen", "--cancel"},
+                                               {"goto", "--cancel", "--no-wait"},
                                                {"locate", "1", "2"},
                                                {"locate", "-1", "-2", "7"},
                                                {"teleop", "--hold", "1"},

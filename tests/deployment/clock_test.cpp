@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "deployment/driven_robot.hpp"
 
@@ -63,14 +64,19 @@ TEST(WallClockJumps, ChangeNothing) {
     robot->wait_for([] { return false; }, Seconds(2.0));  // each process looks once a second
     return robot.reason().empty() && robot->status()->epoch() == epoch;
   };
+  const char* before = "+0";
+  bool once = false;  // a heartbeat may be late by chance on a busy machine
   for (const char* offset : {"+3600", "-3600", "+0.5"}) {
-    if (jump(offset)) continue;
-    // A heartbeat may be late by chance on a busy machine: not twice at the same jump.
-    ASSERT_TRUE(robot->wait_for([&] { return robot.may_drive(); }, Seconds(10)));
-    jump("+0");
-    ASSERT_TRUE(robot->wait_for([&] { return robot.may_drive(); }, Seconds(10)));
-    EXPECT_TRUE(jump(offset)) << "the right to drive was withdrawn at " << offset << "\n"
-                              << robot->fault_story();
+    if (!jump(offset)) {
+      EXPECT_FALSE(std::exchange(once, true)) << robot->fault_story();
+      std::printf("at %s: %s\n", offset, robot->fault_story().c_str());
+      ASSERT_TRUE(robot->wait_for([&] { return robot.may_drive(); }, Seconds(10)));
+      jump(before);
+      ASSERT_TRUE(robot->wait_for([&] { return robot.may_drive(); }, Seconds(10)));
+      EXPECT_TRUE(jump(offset)) << "the right to drive was withdrawn at " << offset << "\n"
+                                << robot->fault_story();
+    }
+    before = offset;
   }
   EXPECT_EQ(robot.errand(std::chrono::seconds(120)), 0) << robot.errand_story() << robot.reason();
   EXPECT_EQ(robot->components(), processes) << robot->launcher().output();

@@ -243,7 +243,7 @@ TEST_F(Commands, AGoalThatNobodyWaitsForIsGivenUpByHand) {
   ASSERT_TRUE(well()) << robot_->complaints();
   EXPECT_EQ(errors({"goto", "--cancel"}), "usher: no goal is under way\n");
   output({"goto", "kitchen", "--no-wait"});
-  EXPECT_EQ(output({"goto", "--cancel"}), "the goal kitchen of operator is given up\n");
+  EXPECT_EQ(output({"goto", "--cancel"}), "the goal kitchen is given up\n");
   EXPECT_EQ(errors({"goto", "--cancel"}), "usher: no goal is under way\n");
   EXPECT_TRUE(robot_->wait_for(
       [] {
@@ -251,6 +251,12 @@ TEST_F(Commands, AGoalThatNobodyWaitsForIsGivenUpByHand) {
                usher_msgs::msg::SupervisorStatus_Constants::STATE_INTERACTION;
       },
       Seconds(10)));
+  output({"goto", "kitchen", "--no-wait"});
+  output({"stop", "--emergency"});
+  output({"clear"});
+  EXPECT_EQ(errors({"goto", "--cancel"}), "usher: no goal is under way\n")
+      << "nobody would have started it again";
+  EXPECT_TRUE(well()) << robot_->complaints();
 }
 
 TEST_F(Commands, GotoEndsWhenTheLaunchDoes) {

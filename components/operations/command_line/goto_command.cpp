@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -31,6 +32,7 @@ using namespace usher_msgs::msg;
 
 constexpr auto kRepeat = milliseconds(200);
 constexpr auto kPatience = std::chrono::seconds(3);
+constexpr auto kAside = milliseconds(500);       // for the last words of other goals
 constexpr auto kGone = std::chrono::seconds(5);  // longer than the launcher needs to restart it
 constexpr double kFastest = 3.0;                 // [m/s] that a robot's file may allow
 constexpr const char* kClient = kOperatorName;
@@ -75,8 +77,10 @@ Status judge(const GoalArguments& arguments) {
     return Error{"--pose must be finite"};
   if (!arguments.location.empty() && !arguments.pose.empty())
     return Error{"give a location or --pose, not both"};
-  if (arguments.cancel && !(arguments.location.empty() && arguments.pose.empty()))
-    return Error{"--cancel gives up the goal that is under way; it takes no other one"};
+  const bool alone = arguments.location.empty() && arguments.pose.empty() && !arguments.no_wait &&
+                     arguments.max_speed == 0.0;
+  if (arguments.cancel && !alone)
+    return Error{"--cancel gives up the goal that is under way; it stands alone"};
   return {};
 }
 
@@ -196,10 +200,9 @@ bool is_under_way(const NavigateStatus& status) {
          status.state() == GoalStatus_Constants::STATE_WAITING;
 }
 
-/// Repeats the cancellation until the navigator has answered. Once it took the goal, a status of
-/// another one is an answer too.
+/// Repeats the cancellation until `answers` says of the navigator's status that it has answered.
 Status cancel_goal(Observer& observer, Observer::Reader<NavigateStatus>& statuses, std::uint64_t id,
-                   bool taken) {
+                   const std::function<bool(const NavigateStatus&)>& answers) {
   auto writer = observer.writer(topics::kNavigateCancel);
   if (!writer) return Error{writer.error()};
   GoalCancel message;
@@ -210,31 +213,44 @@ Status cancel_goal(Observer& observer, Observer::Reader<NavigateStatus>& statuse
     const auto until = std::chrono::steady_clock::now() + kRepeat;
     while (std::chrono::steady_clock::now() < until) {
       const auto status = statuses.take(milliseconds(50));
-      if (!status) continue;
-      if (status->id() == id ? status->state() >= GoalStatus_Constants::STATE_SUCCEEDED : taken)
-        return {};
+      if (status && answers(*status)) return {};
     }
   }
   return Error{"the navigator did not cancel the goal within 3 s"};
 }
 
-/// Gives up the goal that is under way, whoever gave it.
-int cancel_any(Observer& observer, std::uint32_t domain) {
+/// The goal that is under way: the last words of others stand beside it for a moment.
+Result<NavigateStatus> goal_under_way(Observer::Reader<NavigateStatus>& statuses,
+                                      std::uint32_t domain) {
+  auto status = statuses.take(kPatience);
+  if (!status) return Error{nobody_there("navigator", domain)};
+  const auto until = std::chrono::steady_clock::now() + kAside;
+  while (!is_under_way(*status) && std::chrono::steady_clock::now() < until) {
+    if (const auto newer = statuses.take(milliseconds(50))) status = newer;
+  }
+  if (!is_under_way(*status)) return Error{"no goal is under way"};
+  return *status;
+}
+
+/// Gives up an operator's goal, whichever terminal it came from. Its end is the navigation's, too.
+int cancel_operators(Observer& observer, std::uint32_t domain) {
   auto statuses = observer.reader(topics::kNavigateStatus);
   if (!statuses) return fail(statuses.error());
-  auto status = statuses->take(kPatience);
-  while (const auto newer = statuses->take(milliseconds(0))) status = newer;
-  if (!status) return fail(nobody_there("navigator", domain));
-  if (!is_under_way(*status)) return fail("no goal is under way");
-  if (const auto given_up = cancel_goal(observer, *statuses, status->id(), true); !given_up)
-    return fail(given_up.error());
-  if (status->client() == kClient) {  // guide and meeting end their navigation themselves
-    const auto told =
-        tell_supervisor(observer, SupervisorRequest_Constants::COMMAND_NAVIGATION_END);
-    if (!told) return fail("the navigation could not be ended: " + told.error());
-  }
-  std::cout << "the goal " << (status->location().empty() ? "pose" : status->location()) << " of "
-            << status->client() << " is given up\n";
+  const auto goal = goal_under_way(*statuses, domain);
+  if (!goal) return fail(goal.error());
+  if (goal->client() == "guide" || goal->client() == "meeting")
+    return fail("the goal under way is the " + goal->client() + "'s, which sees to it: " +
+                (goal->client() == "guide" ? "`usher stop` stops the robot"
+                                           : "`usher meet --cancel` ends the meeting"));
+  bool replaced = false;
+  const auto given_up = cancel_goal(observer, *statuses, goal->id(), [&](const auto& status) {
+    replaced = status.id() != goal->id() && is_under_way(status);
+    return replaced || (status.id() == goal->id() && !is_under_way(status));
+  });
+  if (!given_up) return fail(given_up.error());
+  if (replaced) return fail("another goal took its place");
+  std::cout << "the goal " << (goal->location().empty() ? "pose" : goal->location())
+            << " is given up\n";
   return 0;
 }
 
@@ -260,7 +276,7 @@ class Pursuit {
     given_ = heard_ = Clock::now();
     for (;;) {
       if (stop_asked) {
-        const auto cancelled = cancel_goal(observer_, statuses_, goal_.id(), accepted_);
+        const auto cancelled = cancel();
         return failed(cancelled ? "cancelled" : cancelled.error());
       }
       if (!accepted_ && Clock::now() - given_ > kPatience)
@@ -304,7 +320,7 @@ class Pursuit {
     if (!accepted_) return {};
     if (supervisor_.forgot_navigation()) return start_navigation(observer_, arguments_);
     if (!why) return {};
-    const auto cancelled = cancel_goal(observer_, statuses_, goal_.id(), accepted_);
+    const auto cancelled = cancel();
     return Error{*why + (cancelled ? "" : "; " + cancelled.error())};
   }
 
@@ -333,6 +349,14 @@ class Pursuit {
     return status.state() == GoalStatus_Constants::STATE_REPLACED ? Outcome::kReplaced : outcome;
   }
 
+  /// Once the navigator took the goal, a status of another one is an answer too.
+  Status cancel() {
+    return cancel_goal(observer_, statuses_, goal_.id(), [this](const auto& status) {
+      return status.id() == goal_.id() ? status.state() >= GoalStatus_Constants::STATE_SUCCEEDED
+                                       : accepted_;
+    });
+  }
+
   Observer& observer_;
   const GoalArguments& arguments_;
   NavigateGoal goal_;
@@ -349,7 +373,7 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   using namespace SupervisorRequest_Constants;
   auto observer = Observer::create(reach_robot(kClient, domain));
   if (!observer) return fail(observer.error());
-  if (arguments.cancel) return cancel_any(**observer, domain);
+  if (arguments.cancel) return cancel_operators(**observer, domain);
   if (const auto possible = ask_pace(**observer, arguments.max_speed); !possible)
     return fail(possible.error());
   const auto locations = locations_of(**observer, domain);

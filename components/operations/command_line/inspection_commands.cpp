@@ -263,8 +263,8 @@ void add_inspection_commands(CLI::App& app, int& exit_code) {
   auto seconds = std::make_shared<double>(2.0);
   auto* status_command = app.add_subcommand(
       "status",
-      "What the supervisor thinks of the running robot; 0 when nothing is "
-      "wrong, 1 too when a component is degraded, such as a tablet without display");
+      "What the supervisor thinks of the running robot; exit code 0 only when nothing is wrong: "
+      "a degraded component, such as a tablet without display, makes it 1");
   add_domain_option(*status_command, *domain);
   auto shown = std::make_shared<StatusArguments>();
   status_command->add_option("--seconds", shown->patience, "How long to look for it")

@@ -101,11 +101,15 @@ void spread_echoes(std::span<const float> echoes, std::span<const geometry::Poin
   }
 }
 
-void keep_middle(double cone, int beams, double width, std::span<float> ranges) {
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const int k = static_cast<int>(i % static_cast<std::size_t>(beams));
-    const double off = beams > 1 ? std::abs(k / (beams - 1.0) - 0.5) * cone : 0.0;
-    if (off > 0.5 * width) ranges[i] = std::numeric_limits<float>::quiet_NaN();
+void keep_middle(std::span<const geometry::Point2> rays, std::size_t sensors, double width,
+                 std::span<float> ranges) {
+  if (sensors == 0) return;
+  const std::size_t beams = rays.size() / sensors;
+  const double least = std::cos(0.5 * width) - 1e-9;  // of a ray along its axis
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const geometry::Point2& axis = rays[i / beams * beams + beams / 2];
+    if (rays[i].dot(axis) < least || !(ranges[i] > 0.0F))
+      ranges[i] = std::numeric_limits<float>::quiet_NaN();
   }
 }
 

@@ -48,8 +48,10 @@ std::vector<geometry::Point2> cone_directions(double angle_min, double angle_inc
 void spread_echoes(std::span<const float> echoes, std::span<const geometry::Point2> rays,
                    const geometry::Pose2& window_T_sonar, std::span<const geometry::Point2> people,
                    std::vector<float>& ranges);
-/// Sets to NaN what is not on the middle rays of its cone, within `width` [rad]. What stands at the
-/// edge of a cone is heard at one moment and not at the next: silence tells of the middle only.
-void keep_middle(double cone, int beams, double width, std::span<float> ranges);
+/// Sets to NaN what is not on the middle rays of its cone, within `width` [rad], and what is no
+/// range. What stands at the edge of a cone is heard at one moment and not at the next: that
+/// nothing is there is told by the middle only. `rays` and `ranges` as of spread_echoes.
+void keep_middle(std::span<const geometry::Point2> rays, std::size_t sensors, double width,
+                 std::span<float> ranges);
 
 }  // namespace usher::costmap

@@ -119,7 +119,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
                                        "Full width of a cone: an echo may come from all of it.");
   clearing_cone_ = parameters.number(
       "ultrasonic_clearing_cone", "rad", {0, 0.8}, 0.16,
-      "The middle of it, where silence tells that nothing is; 0: on the axis alone.");
+      "The middle of it, which tells that nothing is there, in 13 rays; 0: the axis alone.");
   echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.3,
                                       "So much nearer than an echo may be what explains it.");
 
@@ -355,7 +355,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
     if (layer == &Map::ultrasonic) {
       seen.ranges = middle_ranges_;
-      observe(map, map.*layer, seen);
+      if (!observe(map, map.*layer, seen)) return;
       seen.ranges = cone_ranges_;
       seen.clears = false;
     }
@@ -380,7 +380,7 @@ void CostmapComponent::hear(const sensor_msgs::msg::LaserScan& sonar, const Beam
                          rays.directions, kRemembered, echoes_);
   spread_echoes(echoes_, rays.directions, odom_T_sonar, bodies_, cone_ranges_);
   middle_ranges_ = cone_ranges_;
-  keep_middle(ultrasonic_cone_, kConeBeams, clearing_cone_, middle_ranges_);
+  keep_middle(rays.directions, echoes_.size(), clearing_cone_, middle_ranges_);
 }
 
 /// The echoes that the newest laser scan does not explain.

@@ -412,6 +412,11 @@ TEST_F(Component, CountsWhatItsLayersCannotUse) {
   host.publish(topics::kScanFiltered, spoilt);
   run(200);
   EXPECT_EQ(host.counter("ranges: invalid"), 1U) << "NaN says that nothing is known";
+  auto sonar = scan("ultrasonic", std::numeric_limits<float>::quiet_NaN());
+  sonar.ranges()[3] = -1.0F;
+  host.publish(topics::kUltrasonicFiltered, sonar);
+  run(200);
+  EXPECT_EQ(host.counter("ranges: invalid"), 2U) << "once, though it is placed twice";
   EXPECT_EQ(host.counter("scan: sensor outside"), 0U);
   base.x = 4.5;  // beyond the map's border
   run(500);

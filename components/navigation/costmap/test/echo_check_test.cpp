@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <vector>
@@ -131,18 +132,20 @@ TEST(Cones, AnEchoIsOnAllOfItsArcButANearOneOnTheAxis) {
 }
 
 TEST(Cones, TellNothingAtTheirEdges) {
-  std::vector<float> ranges{1.0F,      1.0F,      1.0F,      1.0F,      1.0F,
-                            kInfinity, kInfinity, kInfinity, kInfinity, kInfinity};
-  keep_middle(0.28, 5, 0.16, ranges);
+  const auto rays = cone_directions(-0.25, 0.5, 2, 0.28, 5);
+  std::vector<float> ranges(10, 1.0F);
+  std::fill_n(ranges.begin() + 5, 5, kInfinity);
+  keep_middle(rays, 2, 0.16, ranges);
   for (const std::size_t edge : {0U, 4U, 5U, 9U}) EXPECT_TRUE(std::isnan(ranges[edge])) << edge;
   for (const std::size_t middle : {1U, 2U, 3U}) EXPECT_EQ(ranges[middle], 1.0F);
   for (const std::size_t middle : {6U, 7U, 8U}) EXPECT_EQ(ranges[middle], kInfinity);
   std::vector<float> axis{1.0F, 1.0F, 1.0F};
-  keep_middle(0.28, 3, 0.0, axis);
+  keep_middle(cone_directions(1.0, 0.0, 1, 0.28, 3), 1, 0.0, axis);
   EXPECT_TRUE(std::isnan(axis[0]) && axis[1] == 1.0F && std::isnan(axis[2]));
-  std::vector<float> alone{1.0F};
-  keep_middle(0.28, 1, 0.0, alone);
-  EXPECT_EQ(alone[0], 1.0F);
+  std::vector<float> none{-1.0F, 0.0F, -kInfinity};
+  keep_middle(cone_directions(0.0, 0.5, 3, 0.28, 1), 3, 0.16, none);
+  for (const float range : none) EXPECT_TRUE(std::isnan(range));
+  keep_middle({}, 0, 0.16, {});
 }
 
 TEST(Cones, TheEchoOfAPersonIsOnTheAxisAlone) {

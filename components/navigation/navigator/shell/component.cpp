@@ -30,6 +30,7 @@ constexpr auto kPoseAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kSeenLately = 1.0;            // [s]
 constexpr const char* kOperator = "operator";  // `usher goto`
+constexpr auto kOver = milliseconds(3000);     // longer than he needs to start it anew
 constexpr const char* kViewer = "goal_pose";
 constexpr auto kViewerPatience = milliseconds(3000);  // with the supervisor's answers
 
@@ -217,16 +218,27 @@ void NavigatorComponent::watch_viewer() {
                                       : "another goal took its place");
 }
 
-/// A latched fault and who drives by hand end a navigation for good. Guide and meeting see to their
-/// goals themselves; an operator's command may have gone, and his goal would wait for a start that
-/// is somebody else's.
+/// Guide and meeting see to their goals themselves; an operator's command may have gone when the
+/// supervisor ends its navigation, and the goal would wait for a start that is somebody else's.
 void NavigatorComponent::watch_operator() {
   const auto* supervisor = supervisor_.fresh();
-  if (supervisor == nullptr || !core_.pursues() || core_.status().client != kOperator) return;
-  const bool fault = supervisor->state() == supervisor_state::STATE_FAULT;
-  if (!fault && supervisor->state() != supervisor_state::STATE_MANUAL) return;
-  core_.cancel(core_.status().id, "the supervisor ended the navigation: " +
-                                      (fault ? supervisor->reason() : "driven by hand"));
+  const bool watched =
+      supervisor != nullptr && core_.pursues() && core_.status().client == kOperator;
+  if (!watched || supervisor->state() != supervisor_state::STATE_INTERACTION) {
+    not_navigating_since_.reset();
+  } else if (!not_navigating_since_) {
+    not_navigating_since_ = host_.now();
+  }
+  if (!watched) return;
+  const std::string ended = "the supervisor ended the navigation";
+  const std::uint64_t id = core_.status().id;
+  if (supervisor->state() == supervisor_state::STATE_FAULT) {
+    core_.cancel(id, ended + ": " + supervisor->reason());
+  } else if (supervisor->state() == supervisor_state::STATE_MANUAL) {
+    core_.cancel(id, ended + ": driven by hand");
+  } else if (not_navigating_since_ && host_.now() - *not_navigating_since_ > kOver) {
+    core_.cancel(id, ended);
+  }
 }
 
 void NavigatorComponent::take_reply(const usher_msgs::msg::PlanReply& reply) {

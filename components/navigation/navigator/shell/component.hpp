@@ -58,6 +58,7 @@ class NavigatorComponent final : public runtime::Component {
   bool unsaid_ = true;                       ///< the core's status has changed since it was said
   bool turn_of_words_ = true;                ///< it was said since the last word
   int status_share_ = 0;
+  std::optional<runtime::Time> not_navigating_since_;  ///< though an operator's goal is under way
   std::uint64_t& rejected_;
   double unfelt_trail_;  ///< [m]
 

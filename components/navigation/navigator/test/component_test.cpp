@@ -252,6 +252,22 @@ TEST_F(Component, GivesAnOperatorsGoalUpWithTheNavigation) {
   }
 }
 
+TEST_F(Component, GivesAnOperatorsGoalUpWhoseNavigationNobodyStartsAgain) {
+  drive();
+  request(2, "lab", "operator");
+  run(500);
+  behavior = supervisor_state::STATE_INTERACTION;
+  run(2500);
+  EXPECT_EQ(status().state(), STATE_WAITING) << "he starts it again after the supervisor's restart";
+  behavior = supervisor_state::STATE_NAVIGATION_ACTIVE;
+  run(500);
+  EXPECT_EQ(motion(), follow::MODE_PATH);
+  behavior = supervisor_state::STATE_INTERACTION;
+  run(3500);
+  EXPECT_EQ(status().state(), STATE_CANCELLED);
+  EXPECT_EQ(status().reason(), "the supervisor ended the navigation");
+}
+
 TEST_F(Component, LeavesOthersTheirGoalsInAFault) {
   drive();
   granted = false;
