@@ -46,9 +46,7 @@ Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution
     return Error{"layer " + config.name + ": " + what + " range must be 0 <= min <= max < " +
                  meters(farthest) + ", got " + meters(low) + " .. " + meters(high)};
   };
-  if (Status s = check_range("obstacle", config.min_obstacle_range, config.max_obstacle_range);
-      !s.ok())
-    return s;
+  if (Status s = check_range("obstacle", 0.0, config.max_obstacle_range); !s.ok()) return s;
   if (Status s = check_range("raytrace", config.min_raytrace_range, config.max_raytrace_range);
       !s.ok())
     return s;
@@ -134,7 +132,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     const double dx = c * direction.x() - s * direction.y();
     const double dy = s * direction.x() + c * direction.y();
     const bool directed = std::abs(dx) <= 1.001 && std::abs(dy) <= 1.001;
-    if (!measures(range) || !directed) {
+    if (!(range > 0.0F) || !directed) {
       invalid_ranges_ += range <= 0.0F || !directed ? 1 : 0;  // the others say: nothing is known
       continue;
     }
@@ -144,7 +142,7 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
     };
     const bool through = range > config_.max_raytrace_range;
     const grid::Cell end = cell_along(through ? config_.max_raytrace_range : range);
-    if (marks && range >= config_.min_obstacle_range && range <= config_.max_obstacle_range) {
+    if (marks && range <= config_.max_obstacle_range) {
       for (int step = 0; step <= behind; ++step) {
         const grid::Cell hit = cell_along(range + step * raster.resolution);
         if (collect(hit)) touched.include(hit);
@@ -158,11 +156,6 @@ CellRect ObstacleLayer::clear_and_collect(const RangeObservation& observation,
   }
   if (previous.x != std::numeric_limits<int>::min()) touched.include(origin);
   return touched.rect().within(raster.all());
-}
-
-bool ObstacleLayer::measures(float range) const {  // false for NaN
-  return range > 0.0F &&
-         (range < std::numeric_limits<float>::infinity() || config_.infinity_clears);
 }
 
 /// Notes an echo to be marked; false when there is nothing new to mark.
@@ -189,12 +182,11 @@ void ObstacleLayer::restore(const RangeObservation& observation, const Raster& r
 
 /// Whether the nearest beams on both sides of a point, in the sensor's frame, and all within
 /// kBeside of it tell that nothing is there.
-bool ObstacleLayer::passed(const RangeObservation& observation,
-                           const geometry::Point2& point) const {
+bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::Point2& point) {
   const auto& directions = observation.directions;
   const double least = point.norm() - kHidden;
   const auto tells = [&](std::size_t beam) {
-    return measures(observation.ranges[beam]) && observation.ranges[beam] >= least;
+    return observation.ranges[beam] > 0.0F && observation.ranges[beam] >= least;
   };
   const auto beside = [&](std::size_t beam) {
     const geometry::Point2& direction = directions[beam];

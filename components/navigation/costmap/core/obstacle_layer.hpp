@@ -32,15 +32,13 @@ struct RangeObservation {
 
 struct ObstacleLayerConfig {
   std::string name;
-  double min_obstacle_range = 0.0;  ///< [m] nearer echoes mark nothing
   double max_obstacle_range = 2.5;  ///< [m] farther echoes mark nothing
   double min_raytrace_range = 0.0;  ///< [m] cells nearer than this are not cleared
-  double max_raytrace_range = 3.0;  ///< [m] cells farther than this are not cleared
+  double max_raytrace_range =
+      3.0;  ///< [m] cells farther than this are not cleared; no echo clears so far
   /// [m] {0..1} an echo marks so much behind it too: for a sensor that looks down on low things and
   /// tells of their near edges only.
   double thickness = 0.0;
-  bool infinity_clears =
-      true;  ///< no echo clears up to max_raytrace_range, else it is no measurement
   /// A finite negative range says that nothing is up to there, and no more: what stands there is
   /// for another layer.
   bool negative_clears = false;
@@ -94,18 +92,16 @@ class ObstacleLayer {
   const grid::Grid<std::uint8_t>& states() const { return states_; }
   /// Cells outside of it are unseen.
   const CellRect& seen() const { return seen_; }
-  /// Ranges that are none, not what says that nothing is known: NaN, an infinity that clears
-  /// nothing.
+  /// Ranges that are none, not what says that nothing is known: NaN.
   std::uint64_t invalid_ranges() const { return invalid_ranges_; }
   /// Scans that cleared nothing since the sensor was outside of the window.
   std::uint64_t sensors_outside() const { return sensors_outside_; }
 
  private:
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
-  bool measures(float range) const;
   bool collect(grid::Cell hit);
   void restore(const RangeObservation& observation, const Raster& raster);
-  bool passed(const RangeObservation& observation, const geometry::Point2& point) const;
+  static bool passed(const RangeObservation& observation, const geometry::Point2& point);
   int first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const;
   void trace(grid::Cell from, grid::Cell to, int first, bool through);
   void mark(std::size_t index, std::uint32_t time);

@@ -82,7 +82,6 @@ TEST_P(CostmapLaws, EveryCycleEqualsTheOneFromScratchAndTheDefinition) {
     layer.max_obstacle_range = 2.5 + i;
     layer.max_raytrace_range = 3.0 + i;
     layer.min_raytrace_range = i == 1 ? 0.4 : 0.0;
-    layer.infinity_clears = i != 1;
     layer.persistence = i == 2 ? 0.5 : 0.0;
     layer.overrules_static_map = i != 2;
     layer.footprint_clearing = i != 3;

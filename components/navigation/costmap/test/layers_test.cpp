@@ -154,23 +154,13 @@ TEST(ObstacleLayer, ClearsToTheRaytraceRangeWithoutEcho) {
   EXPECT_EQ(state(layer, 81), kUnseen);
 }
 
-TEST(ObstacleLayer, TakesInfinityForNoMeasurementWhenToldSo) {
-  ObstacleLayerConfig strict = config();
-  strict.infinity_clears = false;
-  ObstacleLayer layer(strict, raster());
-  EXPECT_TRUE(see(layer, kInfinity).empty());
-  EXPECT_EQ(layer.invalid_ranges(), 0U);
-}
-
 TEST(ObstacleLayer, KeepsItsRanges) {
   ObstacleLayerConfig ranges = config();
-  ranges.min_obstacle_range = 0.5;
   ranges.max_obstacle_range = 2.0;
   ranges.min_raytrace_range = 0.3;
   ranges.max_raytrace_range = 2.5;
   ObstacleLayer layer(ranges, raster());
   see(layer, 0.4F);
-  EXPECT_EQ(state(layer, 28), kUnseen) << "too near to mark";
   EXPECT_EQ(state(layer, 25), kUnseen) << "too near to clear";
   EXPECT_EQ(state(layer, 26), kSeenFree);
   see(layer, 2.2F);
@@ -356,7 +346,7 @@ TEST(ObstacleLayer, RefusesAConfigThatCannotBe) {
     return status.ok() ? std::string() : status.error();
   };
   EXPECT_EQ(error_of([](auto&) {}), "");
-  EXPECT_NE(error_of([](auto& c) { c.min_obstacle_range = 3.0; }), "");
+  EXPECT_NE(error_of([](auto& c) { c.max_obstacle_range = -1.0; }), "");
   EXPECT_NE(error_of([](auto& c) { c.max_raytrace_range = std::nan(""); }), "");
   EXPECT_NE(error_of([](auto& c) { c.max_raytrace_range = 2000.0; }), "")
       << "longer than 32767 cells";

@@ -58,9 +58,7 @@ class ReferenceCostmap {
       return {static_cast<int>(std::floor(x + distance * scale * dx)),
               static_cast<int>(std::floor(y + distance * scale * dy))};
     };
-    const auto measures = [&](float range) {
-      return range > 0.0F && (std::isfinite(range) || layer.config.infinity_clears);
-    };
+    const auto measures = [&](float range) { return range > 0.0F; };
     std::vector<std::pair<Key, Seen>> before;
     std::ranges::copy_if(layer.cells, std::back_inserter(before),
                          [](const auto& entry) { return entry.second.state == kSeenOccupied; });
@@ -78,8 +76,7 @@ class ReferenceCostmap {
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
       const float range = scan.ranges[i];
       if (!measures(range)) continue;
-      if (range < layer.config.min_obstacle_range || range > layer.config.max_obstacle_range)
-        continue;
+      if (range > layer.config.max_obstacle_range) continue;
       const Key hit = along(i, range);
       if (in_window(hit)) layer.cells[hit] = {kSeenOccupied, scan.stamp};
     }
