@@ -273,7 +273,14 @@ bool AttackedRobot::stands_or_turns(double turn_rate) const {
 }
 bool AttackedRobot::stands() const { return stands_or_turns(3.0 * kStanding); }
 bool AttackedRobot::stays() const {
-  return stands_or_turns(std::numeric_limits<double>::infinity());
+  const Instant now = Clock::now();
+  bool told_late = false;
+  for (auto wheels = wheels_.rbegin(); wheels != wheels_.rend(); ++wheels) {
+    if (now - wheels->at > milliseconds(200)) break;
+    if (!wheels->zero() || wheels->off) return false;
+    told_late = true;
+  }
+  return told_late && stands_or_turns(std::numeric_limits<double>::infinity());
 }
 
 std::optional<runtime::Guid> AttackedRobot::life_of(const std::string& component) const {

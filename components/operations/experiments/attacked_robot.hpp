@@ -76,7 +76,9 @@ class AttackedRobot {
   bool all_well() const;  ///< every component is ok, the robot may drive
   bool drives(double v) const { return !motions_.empty() && motions_.back().v > v; }
   bool stands() const;  ///< for a tenth of a second
-  bool stays() const;   ///< the same, though it may turn
+  /// Likewise, though it may turn; and its wheels were told nothing but zero for two tenths: what
+  /// rolls out of an earlier drive is nobody else's.
+  bool stays() const;
   const std::vector<Wheels>& wheels() const { return wheels_; }
   const std::vector<Motion>& motions() const { return motions_; }
   const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }

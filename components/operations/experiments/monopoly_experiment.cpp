@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <limits>
 
@@ -285,18 +286,33 @@ class Monopoly {
     }
     attack.reported_ms = named ? std::chrono::duration<double, std::milli>(*named - first).count()
                                : std::numeric_limits<double>::infinity();
-    attack.executed = executed();
+    attack.executed = executed(first, target.name() + ", " + way.name);
     robot_.release();
     return attack;
   }
 
  private:
+  static bool moves_or_switches_off(const AttackedRobot::Wheels& wheels) {
+    return !wheels.zero() || wheels.off;
+  }
+
   /// Commands to drive, and to switch off, that reached the wheels.
   std::uint64_t executed() {
     const auto lock = robot_.locked();
     return static_cast<std::uint64_t>(
-        std::count_if(robot_.wheels().begin(), robot_.wheels().end(),
-                      [](const auto& wheels) { return !wheels.zero() || wheels.off; }));
+        std::ranges::count_if(robot_.wheels(), moves_or_switches_off));
+  }
+
+  /// Likewise; says what the first one was.
+  std::uint64_t executed(AttackedRobot::Instant since, const std::string& attack) {
+    const auto lock = robot_.locked();
+    const auto first = std::ranges::find_if(robot_.wheels(), moves_or_switches_off);
+    if (first == robot_.wheels().end()) return 0;
+    std::printf("%s: executed %.3f m/s %.3f rad/s%s, %.0f ms after the intruder's birth\n",
+                attack.c_str(), first->v, first->w, first->off ? ", motors off" : "",
+                std::chrono::duration<double, std::milli>(first->at - since).count());
+    return static_cast<std::uint64_t>(
+        std::count_if(first, robot_.wheels().end(), moves_or_switches_off));
   }
 
   static std::vector<std::uint8_t> way_to(std::uint8_t state) {
