@@ -393,6 +393,7 @@ class Monopoly {
 Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
   auto all = targets();
   std::vector<std::string> topics;
+  topics.reserve(all.size());
   for (const auto& target : all) topics.push_back(target.name());
   const auto only = only_of(options.only, topics);
   if (!only) return Error{only.error()};
