@@ -127,6 +127,8 @@ class Process {
     for (std::size_t i = 0; i < Outbox::kMostMessages; ++i) {
       const ssize_t count = ::recv(driver_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
       if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
+      // Told first of a driver that ended without reading all: what it said last still waits.
+      if (count < 0 && errno == ECONNRESET) continue;
       if (count <= 0) {
         gone_ = true;
         guard_.gone(now());
