@@ -45,6 +45,7 @@ constexpr int kMostToAndFro = 3;     // moves that free one corner and touch wit
 constexpr double kWayOut = 1.0;      // [m] that arcs may take to turn it by kGain
 constexpr double kGain = 0.3;        // [rad]
 constexpr double kSoon = 0.65;       // [rad] of a turn whose room bounds its rate now
+constexpr double kSways = 0.02;      // [m/s] that a base sways by while it turns
 
 bool plausible(const Twist2& twist) {
   return twist.finite() && std::abs(twist.v) < 10.0 && std::abs(twist.w) < 20.0;
@@ -348,6 +349,13 @@ bool DynamicWindow::touches(const Input& input, const ContactTest& contact,
   return contact.touches(bits_, turned, x, y);
 }
 
+/// The turn rate at which corners creep [rad/s], the slower the faster the base rolls meanwhile.
+double DynamicWindow::creeping_turn(const Input& input) const {
+  const double rolls = std::max(0.0, std::abs(input.measured.v) - kSways);
+  return std::max(0.1 * config_.tight_turn,
+                  config_.tight_turn - rolls / config_.footprint.circumscribed_radius());
+}
+
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
   const kinematics::Whiskers& t = touches_;
@@ -360,7 +368,8 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
     const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / std::max(steps, 1)};
     if (!touches(input, roomy_, turned)) continue;
     if (i * kSweep < kSoon)
-      rate = std::min(rate, (touches(input, narrow_, turned) ? 1.0 : 1.5) * config_.tight_turn);
+      rate = std::min(
+          rate, touches(input, narrow_, turned) ? creeping_turn(input) : 1.5 * config_.tight_turn);
     if (i > 0 && touches(input, least, turned)) return 0.0;
   }
   return rate;
@@ -377,7 +386,7 @@ std::optional<Decision> DynamicWindow::turn_a_little(const Input& input, double 
   if (free < 2.0 * kSweep || std::abs(angle) - free > kAligned + kSweep) return std::nullopt;
   Decision decision;
   decision.reason = Reason::kTurning;
-  decision.target = {0.0, sense * config_.tight_turn};
+  decision.target = {0.0, sense * creeping_turn(input)};
   decision.command = ramped(input, decision.target, config_.braking);
   return decision;
 }
@@ -616,9 +625,19 @@ Decision DynamicWindow::drive(const Input& input, const ContactTests& contacts, 
   const SpeedProfile& turn = turns_[static_cast<std::size_t>(best.turn)];
   decision.target = {speed.target, turn.target};
   decision.command = ramped(input, decision.target, config_.limits.deceleration);
+  if (tight_ && decision.target.v > 0.0)
+    decision.command.w = no_faster_than_it_rolls(input, decision);
   rollout_.poses(start, speed, turn, best.free_steps, winner_);
   decision.trajectory = winner_;
   return decision;
+}
+
+/// A base leans before it rolls, and turns at once: where there is little room its corner would
+/// leave the arc that was tested.
+double DynamicWindow::no_faster_than_it_rolls(const Input& input, const Decision& decision) const {
+  const double part = std::clamp(input.measured.v / decision.target.v, 0.0, 1.0);
+  const double most = std::max(config_.tight_turn, part * std::abs(decision.target.w));
+  return std::clamp(decision.command.w, -most, most);
 }
 
 Decision DynamicWindow::recover(const Input& input, const Twist2& wanted) {

@@ -169,6 +169,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   Decision halt(const Input& input, Reason reason, double deceleration) const;
   Decision drive(const Input& input, const ContactTests& contacts, double fastest,
                  double corner_speed);
+  double no_faster_than_it_rolls(const Input& input, const Decision& decision) const;
   void spare_front(const Input& input, Decision& decision);
   Decision recover(const Input& input, const geometry::Twist2& wanted);
   int turn_of_tail() const;
@@ -177,6 +178,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   bool leads_out(const Input& input, double error);
   bool is_given_up(const geometry::Point2& position, int sense);
   void forget_other_places(const geometry::Point2& position);
+  double creeping_turn(const Input& input) const;
   double turn_rate(const Input& input, double angle) const;
   bool leave_out_people(const Input& input);
   geometry::Twist2 ramped(const Input& input, const geometry::Twist2& target, double fall) const;

@@ -83,6 +83,8 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
       follower_(std::move(follower)),
       default_pace_(motion.pace),
       slowest_(motion.slowest),
+      careful_pace_(std::clamp(motion.careful_speed, motion.slowest, motion.pace)),
+      pace_(motion.pace),
       back_off_speed_(host.parameters().number("back_off_speed", "m/s", {0.05, 0.5}, 0.15,
                                                "Speed of the recovery that backs off.")),
       turn_rate_(host.parameters().number("recovery_turn_rate", "rad/s", {0.1, 1.5}, 0.5,
@@ -107,7 +109,8 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
       {.max_age = kWhiskerAge, .on_loss = "takes nothing for touched", .optional = true});
   people_ = host.input(topics::kPeople,
                        {.max_age = kPeopleAge,
-                        .on_loss = "foresees nobody; the costs hold who is there",
+                        .on_loss = "drives at the careful speed if it had heard of any; the costs "
+                                   "hold who is there",
                         .optional = true},
                        [this](const auto& people, const auto&) {
                          if (people.header().frame_id() != frames::kOdom) ++rejected_;
@@ -130,7 +133,7 @@ void FollowerComponent::take_goal(const usher_msgs::msg::FollowGoal& goal) {
   const double pace =
       goal.max_speed() > 0.0F ? static_cast<double>(goal.max_speed()) : default_pace_;
   // Slower than the base can follow is as slow as it can. The pace may change along the same path.
-  if (!follower_->set_pace(std::clamp(pace, slowest_, default_pace_))) ++rejected_;
+  pace_ = std::clamp(pace, slowest_, default_pace_);
   const bool recovering = goal.mode() == MODE_ROTATE || goal.mode() == MODE_BACK_OFF;
   const bool repeated = goal.id() == goal_id_ && goal.client() == client_ && goal.mode() == mode_;
   if (repeated && (recovering || *path == path_in_map_))
@@ -227,6 +230,8 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
                                       : kinematics::Whiskers{t->front_left(), t->front_right(),
                                                              t->back_left(), t->back_right()});
   place_people(pose.position());
+  if (!follower_->set_pace(people_fell_silent() ? std::min(pace_, careful_pace_) : pace_))
+    ++rejected_;
   if (mode_ == MODE_BACK_OFF)
     return follower_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_,
                                everybody_);
@@ -234,6 +239,12 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
     return follower_->rotate(costs, pose, measured, last_command_, elapsed,
                              std::copysign(turn_rate_, amount_), everybody_);
   return follower_->decide(costs, pose, measured, last_command_, elapsed, everybody_);
+}
+
+/// A robot that has been told of people, and no longer is, cannot tell who comes its way from what
+/// stands.
+bool FollowerComponent::people_fell_silent() const {
+  return people_.info() != nullptr && people_.fresh() == nullptr;
 }
 
 /// Everybody who was seen lately, where they are by now; near the robot, where range finders are
@@ -305,7 +316,11 @@ void FollowerComponent::conclude(const Decision& decided, const geometry::Pose2&
                  : stands ? STATE_WAITING
                           : STATE_ACTIVE,
                  stands ? to_string(decided.reason) : "", remaining, decided.obstacle_distance);
-  host_.health().set(HealthState::kOk);
+  if (people_fell_silent()) {
+    host_.health().set(HealthState::kDegraded, "nobody tells of people: drives slowly");
+  } else {
+    host_.health().set(HealthState::kOk);
+  }
 }
 
 void FollowerComponent::stand(std::uint8_t state, const std::string& reason) {

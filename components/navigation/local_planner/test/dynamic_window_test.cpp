@@ -461,6 +461,45 @@ TEST(Decide, AskewBeforeADoorTurnsAsFarAsThePostsLetIt) {
   EXPECT_EQ(decision.target, (Twist2{0.0, -config.tight_turn}));
 }
 
+TEST(Decide, InATightPlaceTurnsNoFasterThanItRollsOnItsArc) {
+  World world(-3, -3.02, 3, 2.98);
+  world.add(Box{-3, -3, 3.0, -0.40});
+  world.add(Box{-3, 0.40, 0.9, 3});
+  world.finish(0.305);
+  DynamicWindowConfig config;
+  config.tight_turn = 0.05;
+  const auto turn = [&](double rolls) {
+    DynamicWindow planner = planner_to(2.5, config);
+    const Twist2 told{std::max(rolls, 0.0), 0.0};
+    const Decision decision =
+        planner.decide(world.costs(), {0.45, 0, -0.12}, {rolls, 0.0}, told, 0.05);
+    EXPECT_EQ(decision.reason, Reason::kTight);
+    EXPECT_GT(decision.target.w, 0.1) << "askew, it turns straight";
+    return decision.command.w;
+  };
+  EXPECT_GT(turn(0.2), 1.4 * config.tight_turn);
+  EXPECT_DOUBLE_EQ(turn(0.0), config.tight_turn) << "it leans before it rolls";
+  EXPECT_DOUBLE_EQ(turn(-0.02), config.tight_turn);
+}
+
+TEST(Rotating, CreepsTheSlowerTheMoreTheBaseSways) {
+  Costs costs = empty_window();
+  costs.at(costs.geometry().cell_at(0.34, 0.34)) = grid::kLethalCost;
+  const auto rate = [&](double sways) {
+    DynamicWindow planner = DynamicWindow::make({}).value();
+    EXPECT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {-2, 0, 0}}).ok());
+    const Decision decision = planner.decide(costs, {0, 0, 0}, {sways, 0.0}, {}, 0.05);
+    EXPECT_EQ(decision.reason, Reason::kTurning);
+    return std::abs(decision.target.w);
+  };
+  const DynamicWindowConfig config;
+  const double corner = config.footprint.circumscribed_radius();
+  EXPECT_DOUBLE_EQ(rate(0.0), config.tight_turn);
+  for (const double sways : {-0.04, 0.03, 0.05})
+    EXPECT_LT(rate(sways) * corner + std::abs(sways), config.tight_turn * corner + 0.021);
+  EXPECT_GT(rate(0.14), 0.0) << "else it would never get out";
+}
+
 TEST(Decide, GivesUpATurnThatWhiskersBarInBothSenses) {
   DynamicWindow planner = DynamicWindow::make({}).value();
   ASSERT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {-2, 0, 0}}).ok());

@@ -229,14 +229,19 @@ TEST_P(Losses, DrivesOnWithTheLastCorrectionOfASilentLocalization) {
   EXPECT_TRUE(drives()) << "in odom; the supervisor stops the robot without localization";
 }
 
-TEST_P(WindowLosses, GivesWayToSomebodyAndForeseesNobodyWhenPeopleAreSilent) {
+TEST_P(WindowLosses, GivesWayToSomebodyAndDrivesCarefullyWhenPeopleFallSilent) {
   drive();
+  const double unaware = commanded().v;
   add_person(1.0, 0.0, 0.0, 0.0);
   run(600);
   EXPECT_EQ(status().reason(), to_string(Reason::kGivingWay));
-  people.people().clear();
-  run(1500);
-  EXPECT_TRUE(drives());
+  people.people().clear();  // and nobody tells of them
+  run(3000);
+  EXPECT_NEAR(commanded().v, DynamicWindowConfig{}.careful_speed, 0.01);
+  EXPECT_EQ(host.heartbeat().reason(), "nobody tells of people: drives slowly");
+  add_person(-20.0, 0.0, 0.0, 0.0);
+  run(3000);
+  EXPECT_NEAR(commanded().v, unaware, 0.01) << "who never heard of people drives on as well";
   EXPECT_EQ(host.heartbeat().reason(), "");
 }
 
