@@ -352,7 +352,7 @@ bool DynamicWindow::touches(const Input& input, const ContactTest& contact,
 /// The turn rate at which corners creep [rad/s], the slower the faster the base rolls meanwhile.
 double DynamicWindow::creeping_turn(const Input& input) const {
   const double rolls = std::max(0.0, std::abs(input.measured.v) - kSways);
-  return std::max(0.1 * config_.tight_turn,
+  return std::max(0.5 * config_.tight_turn,
                   config_.tight_turn - rolls / config_.footprint.circumscribed_radius());
 }
 

@@ -17,6 +17,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 // Two ends belong together while their distances differ by less than this; 0.06 allows a wall seen
 // at up to 81 degrees from its normal at half a degree between beams.
 constexpr float kJump = 0.05f;       // [m]
+constexpr float kJumpOfFour = 0.2f;  // [m] where the noise of two others counts thrice
 constexpr float kJumpShare = 0.06f;  // of the nearer
 constexpr double kWidest = 4.0;      // beams' angles between two ends that belong together
 constexpr float kSameAngle = 1e-6f;  // [rad] closer than this an end lies on an angle
@@ -203,8 +204,25 @@ void ScanFilter::find_surfaces() {
   }
 }
 
+// Whether the end is of a wall that is met at a grazing angle: the inverses of its distances lie on
+// a line. Three may do so by chance; a fourth one, to either side, that is seen and does not is no
+// wall's.
+bool ScanFilter::is_on_a_wall(std::size_t i) const {
+  const auto inverse = [&](std::size_t k) {
+    return kind_[k] == Kind::kFree ? 0.0f : 1.0f / away_[k];
+  };
+  if (std::abs(away_[i] - 2.0f / (inverse(i - 1) + inverse(i + 1))) >= kJump) return false;
+  const auto goes_on = [&](std::size_t next, std::size_t k) {
+    if (k >= kind_.size() || kind_[k] == Kind::kUnknown) return true;
+    const float there = 2.0f * inverse(next) - inverse(i);
+    if (kind_[k] == Kind::kFree) return there * static_cast<float>(geometry_.range_max) < 1.0f;
+    return there > 0.0f && std::abs(away_[k] - 1.0f / there) < kJumpOfFour;
+  };
+  return goes_on(i - 1, i - 2) || goes_on(i + 1, i + 2);
+}
+
 // A lone end between a nearer and a farther neighbour. A thing in front of both is nearer than
-// they, and a wall that is met at a grazing angle has distances whose inverses lie on a line.
+// they.
 void ScanFilter::drop_mixed() {
   const auto from = static_cast<float>(config_.mixed_from);
   Kind own = kind_.empty() ? Kind::kUnknown : kind_.front();
@@ -216,8 +234,7 @@ void ScanFilter::drop_mixed() {
     const auto [near, far] = std::minmax({before == Kind::kEnd ? away_[i - 1] : kInfinity,
                                           after == Kind::kEnd ? away_[i + 1] : kInfinity});
     if (!(near < away_[i] && away_[i] < far)) continue;
-    const float on_a_wall = 2.0f / (1.0f / near + 1.0f / far);
-    if (std::abs(away_[i] - on_a_wall) < kJump) continue;
+    if (is_on_a_wall(i)) continue;
     kind_[i] = Kind::kUnknown;
     ++counts_.mixed;
   }

@@ -126,6 +126,7 @@ class ScanFilter {
   View view(double pitch) const;
   void project(std::span<const float> ranges, const Pitch& at_first, const Pitch& at_last);
   void find_surfaces();
+  bool is_on_a_wall(std::size_t i) const;
   void drop_mixed();
   void join_ends(std::vector<float>& out) const;
   void place_lone_ends(std::vector<float>& out) const;

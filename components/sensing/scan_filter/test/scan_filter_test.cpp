@@ -289,6 +289,15 @@ TEST(ScanFilter, KnowsNothingOfABeamBetweenTwoSurfaces) {
   EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
 }
 
+/// As it happened: 2 / (1 / 2.6 + 1 / 3.4) = 2.95.
+TEST(ScanFilter, KnowsNothingOfABeamBetweenTwoSurfacesThatLooksLikeAWallsByChance) {
+  PlanarScan out;
+  ScanFilter f = filter();
+  ASSERT_TRUE(f.filter(lms100(), pillar_with_an_edge_at(2.95F), {}, out).ok());
+  EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
+  EXPECT_EQ(f.counts().mixed, 1U);
+}
+
 TEST(ScanFilter, KnowsNothingOfTwoBeamsBetweenTwoSurfaces) {
   PlanarScan out;
   for (const bool mirrored : {false, true}) {
@@ -331,6 +340,19 @@ TEST(ScanFilter, KeepsAWallThatIsMetAtAGrazingAngle) {
             2)
       << "the wall's far end";
   EXPECT_LE(f.counts().mixed, 1U) << "its last beam";
+
+  const std::vector<Wall> noisy{{radians(85), 0.25}};
+  auto ranges = see(noisy, 0.0);
+  Random random(1);
+  std::uint64_t ends = 0;
+  for (int scan = 0; scan < 50; ++scan) {
+    for (float& r : ranges) r += static_cast<float>(random.gaussian(0.0, 0.012));
+    ASSERT_TRUE(f.filter(lms100(), ranges, {}, out).ok());
+    ends += static_cast<std::uint64_t>(std::count_if(out.ranges.begin(), out.ranges.end(),
+                                                     [](float r) { return r > 1.5F && r < 8.0F; }));
+    ranges = see(noisy, 0.0);
+  }
+  EXPECT_LE(f.counts().mixed, 51 + ends / 50);
 }
 
 TEST(ScanFilter, DropsWhatIsAboveTheRobot) {
