@@ -153,15 +153,8 @@ void DynamicWindow::sample_turns(const Input& input, double reach, int steps) {
                        config_.response.angular_acceleration};
   const double turn_reach = limits.angular_acceleration * reach;
   const double w = input.last_command.w;
-  // What the whiskers bar is not driven, wherever the arc would lead.
-  const auto left_by_whiskers = [&](double turn) {
-    const geometry::Twist2 wanted{config_.tight_speed, turn};
-    return kinematics::whisker_reflex(wanted, touches_, config_.tight_speed).w;
-  };
-  const double left =
-      left_by_whiskers(std::clamp(w + turn_reach, -config_.fastest_turn, config_.fastest_turn));
-  const double right =
-      left_by_whiskers(std::clamp(w - turn_reach, -config_.fastest_turn, config_.fastest_turn));
+  const double left = std::clamp(w + turn_reach, -config_.fastest_turn, config_.fastest_turn);
+  const double right = std::clamp(w - turn_reach, -config_.fastest_turn, config_.fastest_turn);
   turns_.resize(static_cast<std::size_t>(config_.turn_samples));
   const double spacing = (left - right) / (config_.turn_samples - 1);
   for (int i = 0; i < config_.turn_samples; ++i) {

@@ -482,23 +482,6 @@ TEST(Decide, InATightPlaceTurnsNoFasterThanItRollsOnItsArc) {
   EXPECT_DOUBLE_EQ(turn(-0.02), config.tight_turn);
 }
 
-TEST(Decide, PlansNoArcThatTheWhiskersBar) {
-  const DynamicWindowConfig config;
-  const auto turn = [&](const Whiskers& touches) {
-    DynamicWindow planner = DynamicWindow::make(config).value();
-    EXPECT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 0}, {2.5, -1.5, 0}}).ok());
-    planner.set_touches(touches);
-    const Decision decision = planner.decide(empty_window(), {}, {0.1, 0.0}, {0.1, 0.0}, 0.05);
-    EXPECT_GT(decision.target.v, 0.0);
-    return decision.target.w;
-  };
-  EXPECT_LT(turn({}), -0.2);
-  EXPECT_EQ(turn({.back_left = true}), 0.0) << "its corner would swing outward";
-  const double beside = turn({.front_left = true, .back_left = true});
-  EXPECT_LT(beside, 0.0) << "away from what it stands beside, a little";
-  EXPECT_GT(beside, -0.5 * config.tight_speed);
-}
-
 TEST(Rotating, CreepsTheSlowerTheMoreTheBaseSways) {
   Costs costs = empty_window();
   costs.at(costs.geometry().cell_at(0.34, 0.34)) = grid::kLethalCost;
