@@ -39,16 +39,18 @@ struct Watch {
   std::optional<grid::OccupancyGrid> map;
   MachineLoad load;
   bool granted = false;  ///< the robot has the right to drive
+  bool over = false;     ///< what follows is the launcher ending its processes
 
   template <class Message>
   void take(const Message& message) {
     const std::lock_guard lock(mutex);
-    record.take(message);
+    if (!over) record.take(message);
   }
 };
 
 void take_grant(Watch& watch, const usher_msgs::msg::SupervisorStatus& status) {
   const std::lock_guard lock(watch.mutex);
+  if (watch.over) return;
   if (watch.granted && !status.granted()) watch.load.stopped(status.reason());
   watch.granted = status.granted();
 }
@@ -228,6 +230,10 @@ int demo(const DemoArguments& arguments) {
             << std::flush;
   run(*demo, *launcher, watch);
   const bool broken = launcher->incomplete();
+  {
+    const std::lock_guard lock(watch.mutex);
+    watch.over = true;
+  }
   launcher->stop();
   if (stop_asked) return fail("stopped before the end");
   if (broken) {

@@ -267,12 +267,25 @@ struct Arrivals {
   }
 };
 
+/// What the depth pipeline reads, and itself, of a robot.
+void leave_the_depth_camera(Deployment& deployment) {
+  const auto belongs = [](const std::string& name) {
+    return name == "world" || name == "segway_rmp" || name == "sensor_board" || name == "kinect" ||
+           name == "depth_pipeline";
+  };
+  std::erase_if(deployment.files, [&](const auto& file) { return !belongs(file.name); });
+  std::erase_if(deployment.manifest.components,
+                [&](const auto& component) { return !belongs(component.name); });
+}
+
 /// Table 4.2: the rates of raw depth images and of scans over DDS processes, and what the pipeline
-/// takes of a core.
-Status measure_processes(const ExperimentOptions& options, ResultSheet& sheet) {
+/// takes of a core; of the whole robot, or of its depth camera alone.
+Status measure_processes(const ExperimentOptions& options, bool alone, ResultSheet& sheet) {
   auto deployment = load_deployment(options.installation.share + "/deploy/marvin-pixels.yaml",
                                     options.installation, {});
   if (!deployment) return Error{deployment.error()};
+  if (alone) leave_the_depth_camera(*deployment);
+  const std::string of = alone ? "alone_" : "";
   deployment->manifest.domain = kDomain;
   for (auto& file : deployment->files) file.domain = kDomain;
   auto launcher = Launcher::create(
@@ -311,26 +324,20 @@ Status measure_processes(const ExperimentOptions& options, ResultSheet& sheet) {
     const std::lock_guard lock(mutex);
     loads.clear();
   }
-  show_progress("measuring frame rates");
+  show_progress(alone ? "measuring frame rates alone" : "measuring frame rates");
   run(kMeasured);
   show_progress("");
   if (launcher->broken()) return Error{"a component cannot be kept running"};
-  images.report("no_filtering", sheet);
-  scans.report("depth_removal", sheet);
+  images.report(of + "no_filtering", sheet);
+  scans.report(of + "depth_removal", sheet);
   const std::lock_guard lock(mutex);
   double sum = 0.0;
   for (const double load : loads) sum += load;
   if (!loads.empty())
-    sheet.metrics["depth_processes_load_percent"] = sum / static_cast<double>(loads.size());
-  sheet.published["no_filtering_fps (thesis table 4.2)"] = 30.0;
-  sheet.published["no_filtering_fps_deviation (thesis table 4.2)"] = 1.453;
-  sheet.published["no_filtering_frame_time_ms_deviation (thesis, about)"] = 1.6;
-  sheet.published["depth_removal_fps (thesis table 4.2)"] = 30.0;
-  sheet.published["depth_removal_fps_deviation (thesis table 4.2)"] = 3.020;
-  sheet.published["depth_removal_frame_time_ms_deviation (thesis, about)"] = 3.4;
-  sheet.targets["depth_removal_fps"] = {Bound::kAtLeast, 29.5};
-  sheet.targets["depth_removal_frame_time_ms_deviation"] = {Bound::kAtMost, 1.0};
-  sheet.targets["depth_processes_load_percent"] = {Bound::kAtMost, 15.0};
+    sheet.metrics[of + "depth_processes_load_percent"] = sum / static_cast<double>(loads.size());
+  sheet.targets[of + "depth_removal_fps"] = {Bound::kAtLeast, 29.5};
+  sheet.targets[of + "depth_removal_frame_time_ms_deviation"] = {Bound::kAtMost, 1.0};
+  sheet.targets[of + "depth_processes_load_percent"] = {Bound::kAtMost, 15.0};
   return {};
 }
 
@@ -348,8 +355,15 @@ Result<ResultSheet> run_depth_pipeline_experiment(const ExperimentOptions& optio
   if (const auto status = draw_figures(*stage, options.out); !status) return Error{status.error()};
   judge_methods(*stage, sheet);
   if (only->name != kImages) {
-    if (const auto status = measure_processes(options, sheet); !status)
-      return Error{status.error()};
+    sheet.published["no_filtering_fps (thesis table 4.2)"] = 30.0;
+    sheet.published["no_filtering_fps_deviation (thesis table 4.2)"] = 1.453;
+    sheet.published["no_filtering_frame_time_ms_deviation (thesis, about)"] = 1.6;
+    sheet.published["depth_removal_fps (thesis table 4.2)"] = 30.0;
+    sheet.published["depth_removal_fps_deviation (thesis table 4.2)"] = 3.020;
+    sheet.published["depth_removal_frame_time_ms_deviation (thesis, about)"] = 3.4;
+    Status status = measure_processes(options, false, sheet);
+    if (status) status = measure_processes(options, true, sheet);
+    if (!status) return Error{status.error()};
   }
   return sheet;
 }

@@ -43,6 +43,9 @@ struct InputOptions {
   /// are dropped and counted. For what moves the robot: who is foreign is known a moment later
   /// only.
   bool one_writer = false;
+  /// A sample that is older than max_age when it comes runs no handler and is counted; here it runs
+  /// it, and is not fresh. For what counts at any age: a press of Stop.
+  bool late_too = false;
 };
 
 /// A byte stream to a device (serial line, TCP). Owned by the host.
@@ -125,6 +128,7 @@ class Host {
     declaration.optional = options.optional;
     declaration.each_writer = options.each_writer;
     declaration.one_writer = options.one_writer;
+    declaration.late_too = options.late_too;
     declaration.scope = topic.scope;
     if (handler) {
       declaration.on_sample = [handler = std::move(handler)](const InputPort::Sample& sample) {

@@ -86,6 +86,7 @@ struct InputDeclaration {
   bool optional = false;     ///< `usher check` accepts a manifest without a writer
   bool each_writer = false;  ///< the newest sample of each writer is kept
   bool one_writer = false;   ///< nobody else is heard while the newest sample is fresh
+  bool late_too = false;     ///< a sample that is too old when it comes runs the handler, too
   topics::Scope scope = topics::Scope::kRobot;
   std::function<void(const InputPort::Sample&)> on_sample;
   std::function<void()> on_stale;

@@ -60,7 +60,8 @@ class EngineInput final : public InputPort {
   }
   void start(Time start) { start_ = start; }
 
-  /// The sample becomes the newest one; false for one of a writer that is not heard.
+  /// The sample becomes the newest one; false for what no handler shall see: a sample of a writer
+  /// that is not heard, and one that is too old when it comes.
   bool accept(Sample&& sample) {
     if (declaration_.one_writer && fresh() != nullptr &&
         latest_.info.writer != sample.info.writer) {
@@ -68,8 +69,11 @@ class EngineInput final : public InputPort {
       return false;
     }
     if (declaration_.each_writer) keep(sample);
+    const bool late = !young(sample);
+    if (late) ++late_;
+    if (late && (fresh() != nullptr || !declaration_.late_too)) return false;
     latest_ = std::move(sample);
-    if (fresh() != nullptr) loss_reported_ = false;
+    if (!late) loss_reported_ = false;
     return true;
   }
   const InputDeclaration& declaration() const { return declaration_; }
@@ -113,6 +117,7 @@ class EngineInput final : public InputPort {
     report("rejected", rejected(), rejected_reported_);
     report("lost", lost(), lost_reported_);
     report("from a second writer", unheard_, unheard_reported_);
+    report("late", late_, late_reported_);
   }
 
  private:
@@ -141,6 +146,7 @@ class EngineInput final : public InputPort {
   bool loss_reported_ = false;
   std::uint64_t rejected_reported_ = 0, lost_reported_ = 0;
   std::uint64_t unheard_ = 0, unheard_reported_ = 0;
+  std::uint64_t late_ = 0, late_reported_ = 0;
 };
 
 class EngineTimer final : public TimerPort {
@@ -598,6 +604,8 @@ InputPort& Engine::declare(InputDeclaration declaration) {
     wrong(" has an age but does not say what its loss means");
   if (declaration.max_age <= Duration::zero() && declaration.one_writer)
     wrong(" has one writer but no age that would end its right");
+  if (declaration.max_age <= Duration::zero() && declaration.late_too)
+    wrong(" takes late samples but has no age after which they are late");
   const std::uint32_t mailbox = state.inbox->add_input(declaration);
   return state.inputs.emplace_back(std::move(declaration), state.declarations++, state.now, mailbox,
                                    *state.inbox);

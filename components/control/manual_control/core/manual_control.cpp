@@ -79,8 +79,8 @@ Wish ManualControl::take(const Sticks& sticks, Time now) {
                                   [](float axis) { return std::isfinite(axis); });
   if (!finite) ++rejected_;
   const bool complete = map.forward_axis < sticks.axes.size() && map.turn_axis < sticks.axes.size();
-  const bool down = pressed(sticks.buttons, map.dead_man) && finite && complete;
-  if (!down) pad.seen_released = finite;
+  const bool down = pressed(sticks.buttons, map.dead_man) && finite && complete && !sticks.late;
+  if (!down) pad.seen_released = finite && !sticks.late;
   if (down && pad.seen_released && !holder_) holder_ = sticks.writer;
   if (holder_ == sticks.writer) {
     if (down) {

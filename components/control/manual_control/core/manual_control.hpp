@@ -45,6 +45,7 @@ struct Sticks {
   drive::WriterId writer{};  ///< whose pad it is
   std::span<const float> axes;
   std::span<const std::int32_t> buttons;
+  bool late = false;  ///< too old to drive by; its buttons were pressed all the same
 };
 
 /// From sticks and buttons to a velocity. It drives only while the dead-man button is held, on one

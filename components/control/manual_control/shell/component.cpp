@@ -61,7 +61,8 @@ ManualControlComponent::ManualControlComponent(runtime::Host& host)
       topics::kJoy,
       {.max_age = milliseconds(250),
        .on_loss = "takes the dead-man button as released",
-       .optional = true},
+       .optional = true,
+       .late_too = true},
       [this](const auto& joy, const auto& info) { take(joy, info); }, [this] { drive(); });
   supervisor_ = host.input(
       topics::kSupervisorStatus, {.optional = true}, [this](const auto& status, const auto&) {
@@ -80,7 +81,8 @@ ManualControlComponent::ManualControlComponent(runtime::Host& host)
 void ManualControlComponent::take(const sensor_msgs::msg::Joy& joy,
                                   const runtime::SampleInfo& info) {
   const bool held = core_.held();
-  const Wish wish = core_.take({info.writer, joy.axes(), joy.buttons()}, now());
+  const bool late = joy_.fresh() == nullptr;
+  const Wish wish = core_.take({info.writer, joy.axes(), joy.buttons(), late}, now());
   rejected_ = core_.rejected();
   if (wish != Wish::kNone) ask(wish);
   if (held || core_.held()) drive();

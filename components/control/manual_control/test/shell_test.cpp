@@ -2,6 +2,7 @@
 
 #include "control/manual_control/shell/component.hpp"
 #include "runtime/testing/test_host.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::manual_control {
 namespace {
@@ -16,17 +17,24 @@ sensor_msgs::msg::Joy joy(float forward, std::vector<std::int32_t> buttons) {
   return message;
 }
 
+sensor_msgs::msg::Joy joy_at(runtime::Time stamp, float forward,
+                             std::vector<std::int32_t> buttons) {
+  auto message = joy(forward, std::move(buttons));
+  message.header().stamp(wire::to_message(stamp));
+  return message;
+}
+
 runtime::TestHost make() {
   return runtime::TestHost(runtime::component_factory<ManualControlComponent>("manual_control"));
 }
 
 TEST(ManualControlShell, PublishesWhileHeldAndFallsSilentAfterZeros) {
   auto host = make();
-  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0, 0}));
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 0, 0, 0}));
   host.run_for(milliseconds(20));
   EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
   for (int i = 0; i < 10; ++i) {
-    host.publish(topics::kJoy, joy(1, {0, 0, 0, 0, 1}));
+    host.publish(topics::kJoy, joy_at(host.now(), 1, {0, 0, 0, 0, 1}));
     host.run_for(milliseconds(50));
   }
   ASSERT_GE(host.written(topics::kCmdVelManual).size(), 10U);
@@ -37,6 +45,29 @@ TEST(ManualControlShell, PublishesWhileHeldAndFallsSilentAfterZeros) {
   host.clear();
   host.run_for(milliseconds(1000));
   EXPECT_TRUE(host.written(topics::kCmdVelManual).empty());
+}
+
+TEST(ManualControlShell, ASampleThatComesTooLateDrivesNothingButItsStopIsOne) {
+  auto host = make();
+  const auto late = [&] { return host.now() - milliseconds(400); };
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 0, 0, 0}));
+  host.run_for(milliseconds(20));
+  host.publish(topics::kJoy, joy_at(host.now(), 1, {0, 0, 0, 0, 1}));
+  host.run_for(milliseconds(20));
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.8);
+  for (int i = 0; i < 12; ++i) {
+    host.publish(topics::kJoy, joy_at(late(), 1, {0, 0, 0, 0, 1}));
+    host.run_for(milliseconds(50));
+  }
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.0);
+  host.publish(topics::kJoy, joy_at(host.now(), 1, {0, 0, 0, 0, 1}));
+  host.run_for(milliseconds(100));
+  EXPECT_EQ(host.last(topics::kCmdVelManual)->twist().linear().x(), 0.0) << "a new press is needed";
+  host.run_for(milliseconds(400));
+  host.publish(topics::kJoy, joy_at(late(), 0, {0, 1, 0, 0, 0}));
+  host.run_for(milliseconds(100));
+  ASSERT_FALSE(host.written(topics::kSupervisorRequest).empty());
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
 }
 
 TEST(ManualControlShell, IsNeverSilentWhileItIsItsTurn) {
@@ -57,9 +88,9 @@ TEST(ManualControlShell, IsNeverSilentWhileItIsItsTurn) {
 
 TEST(ManualControlShell, AsksUntilAnsweredAndNotForEverButForAStop) {
   auto host = make();
-  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 0, 0}));
   host.run_for(milliseconds(20));
-  host.publish(topics::kJoy, joy(0, {0, 0, 1, 0}));
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 1, 0}));
   host.run_for(milliseconds(500));
   const auto asked = host.written(topics::kSupervisorRequest);
   ASSERT_GE(asked.size(), 2U);
@@ -81,16 +112,16 @@ TEST(ManualControlShell, AsksUntilAnsweredAndNotForEverButForAStop) {
   host.run_for(milliseconds(1000));
   EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty());
 
-  host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 0, 0}));
   host.run_for(milliseconds(20));
-  host.publish(topics::kJoy, joy(0, {0, 1, 0, 0}));
+  host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 1, 0, 0}));
   host.run_for(milliseconds(2500));
   EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
   host.clear();
   const auto press = [&](const std::vector<std::int32_t>& buttons) {
-    host.publish(topics::kJoy, joy(0, {0, 0, 0, 0}));
+    host.publish(topics::kJoy, joy_at(host.now(), 0, {0, 0, 0, 0}));
     host.run_for(milliseconds(20));
-    host.publish(topics::kJoy, joy(0, buttons));
+    host.publish(topics::kJoy, joy_at(host.now(), 0, buttons));
     host.run_for(milliseconds(20));
   };
   press({0, 0, 1, 0});

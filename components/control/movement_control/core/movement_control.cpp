@@ -96,7 +96,7 @@ MovementControl::MovementControl(const Parameters& parameters)
 MovementControl::Wish MovementControl::choose(const Inputs& inputs) const {
   const Enables enables = inputs.enables.value_or(Enables{});
   if (!enables.movement) return {Source::kNone, {}, Limit::kNotEnabled};
-  if (parameters_.base_required && !inputs.measured) return {Source::kNone, {}, Limit::kNoBase};
+  if (!inputs.measured) return {Source::kNone, {}, Limit::kNoBase};
   if (parameters_.whiskers_required && !inputs.whiskers) {
     return {Source::kNone, {}, Limit::kNoWhiskers};
   }
@@ -375,7 +375,7 @@ void MovementControl::report(const Inputs& inputs, const Decision& decision, con
   status_.error_angular = watch_.angular();
   status_.whiskers = inputs.whiskers.value_or(Whiskers{});
   status_.base_connected = inputs.measured.has_value();
-  status_.ok = inputs.enables && (inputs.measured || !parameters_.base_required) &&
+  status_.ok = inputs.enables && inputs.measured &&
                (inputs.whiskers || !parameters_.whiskers_required) &&
                decision.limit != Limit::kNotFinite;
   status_.source = decision.source;

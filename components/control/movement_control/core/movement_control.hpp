@@ -71,7 +71,6 @@ struct Parameters {
   Time longest_step = std::chrono::milliseconds(40);
 
   bool whiskers_required = true;  ///< without fresh whiskers nothing moves
-  bool base_required = true;      ///< without a fresh base status nothing moves
   drive::ResponseWatch::Parameters response;
 };
 

@@ -285,7 +285,6 @@ std::optional<bool> MovementControlComponent::person_ahead() const {
 }
 
 void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan) {
-  if (scan_.fresh() == nullptr) return;  // late: it tells what was
   const auto now = host_.now().time_since_epoch();
   std::optional<FreeSpace> space;
   if (wire::check(scan)) {

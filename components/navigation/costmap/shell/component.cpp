@@ -16,7 +16,6 @@ using std::chrono::milliseconds;
 
 constexpr double kRemembered = 0.15;  // [m]
 constexpr int kConeBeams = 13;        // a cell apart at 2.5 m
-constexpr auto kLateScanAge = milliseconds(300);
 constexpr auto kUltrasonicAge = milliseconds(500);
 constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
@@ -127,7 +126,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
     beams.max_age = max_age;
     beams.late = &host.health().counter(name + ": late");
   };
-  judge(laser_beams_, kLateScanAge, "scan");
+  const runtime::Duration silence = runtime::from_seconds(parameters.number(
+      "robot.laser.silence", "s", {0.05, 1}, 0.3, "A laser without a scan for so long is lost."));
+  judge(laser_beams_, silence, "scan");
   judge(ultrasonic_beams_, kUltrasonicAge, "ultrasonic");
   judge(depth_beams_, kDepthAge, "kinect");
   judge(low_beams_, kDepthAge, "kinect low");
@@ -143,10 +144,7 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
   scan_ = host.input(
       topics::kScanFiltered,
-      {.max_age =
-           runtime::from_seconds(parameters.number("robot.laser.silence", "s", {0.05, 1}, 0.3,
-                                                   "A laser without a scan for so long is lost.")),
-       .on_loss = "publishes no local costs: the local planner stops"},
+      {.max_age = silence, .on_loss = "publishes no local costs: the local planner stops"},
       [this](const auto&, const auto& info) {
         take_scan(scan_.share(), info, laser_beams_, &Map::laser);
       },

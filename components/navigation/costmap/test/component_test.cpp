@@ -373,23 +373,22 @@ TEST_F(Component, DropsAndCountsLateScansOfItsOwnHost) {
   late.header(wire::header(host.now() - milliseconds(400), "laser"));
   host.publish(topics::kScanFiltered, late);
   run(600, false);
-  EXPECT_EQ(host.counter("scan: late"), 1U);
+  EXPECT_EQ(host.counter("scan/filtered: late"), 1U);
   EXPECT_EQ(local_cost(1.0, 0.0), kFreeCost);
 }
 
 TEST_F(Component, DropsAndCountsLateScansOfEverySensor) {
-  const std::pair<const topics::Topic<sensor_msgs::msg::LaserScan>*, const char*> sensors[] = {
-      {&topics::kUltrasonicFiltered, "ultrasonic: late"},
-      {&topics::kKinectScan, "kinect: late"},
-      {&topics::kKinectScanLow, "kinect low: late"},
-      {&topics::kRearScan, "rear camera: late"}};
+  const topics::Topic<sensor_msgs::msg::LaserScan>* const sensors[] = {
+      &topics::kUltrasonicFiltered, &topics::kKinectScan, &topics::kKinectScanLow,
+      &topics::kRearScan};
   give_map();
   run(1000);
   const auto beside = base.x;
   base.x += 1.0;
   run(700);
-  for (const auto& [topic, counter] : sensors) {
+  for (const auto* topic : sensors) {
     SCOPED_TRACE(topic->name);
+    const std::string counter = std::string(topic->name) + ": late";
     auto old = scan("laser", 1.0F);
     old.header(wire::header(host.now() - milliseconds(400), "laser"));
     host.publish(*topic, old);

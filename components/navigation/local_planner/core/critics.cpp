@@ -159,7 +159,7 @@ void DynamicWindow::sample_turns(const Input& input, double reach, int steps) {
   const double spacing = (left - right) / (config_.turn_samples - 1);
   for (int i = 0; i < config_.turn_samples; ++i) {
     double target = right + spacing * i;
-    if (std::abs(target) <= 0.5 * spacing) target = 0.0;  // straight on is always among them
+    if (std::abs(target) <= 0.5 * spacing) target = 0.0;  // straight on, where it is within reach
     rollout_.profile(input.measured.w, w, target, turn_ramp, steps,
                      turns_[static_cast<std::size_t>(i)]);
   }

@@ -12,8 +12,6 @@ DynamicWindowConfig read_parameters(runtime::Host& host) {
   DynamicWindowConfig c = read_motion(host);
   c.tight_speed = p.number("tight_speed", "m/s", {0.05, 1}, c.tight_speed,
                            "Speed where only the outline fits.");
-  c.careful_speed = p.number("careful_speed", "m/s", {0, 1.5}, c.careful_speed,
-                             "Up to here half of the clearance is enough.");
   c.lateral_acceleration = p.number("lateral_acceleration", "m/s2", {0.1, 3},
                                     c.lateral_acceleration, "Bounds speed times turn rate.");
   c.sampling =

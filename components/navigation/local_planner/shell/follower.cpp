@@ -1,5 +1,6 @@
 #include "navigation/local_planner/shell/follower.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -40,6 +41,9 @@ DynamicWindowConfig read_motion(runtime::Host& host) {
   c.footprint = wire::read_footprint(host);
   c.stopping = wire::read_stopping(host);
   c.pace = p.number("pace", "m/s", {0.1, 1.4}, c.pace, "Speed to keep where it can be stopped.");
+  c.careful_speed = p.number(
+      "careful_speed", "m/s", {0, 1.5}, c.careful_speed,
+      "Up to here half of the clearance is enough; beside people, and where nobody tells of them.");
   c.slowest = p.number("slowest", "m/s", {0.01, 0.5}, c.slowest,
                        "The base does not follow slower commands well.");
   c.clearance = p.number("clearance", "m", {0, 0.5}, c.clearance,
@@ -89,6 +93,9 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
                                                "Speed of the recovery that backs off.")),
       turn_rate_(host.parameters().number("recovery_turn_rate", "rad/s", {0.1, 1.5}, 0.5,
                                           "Rate of the recovery that turns.")),
+      people_needed_(host.parameters().flag(
+          "people_needed", false,
+          "Somebody tells of people on this robot: until then it drives at the careful speed.")),
       rejected_(host.health().counter("inputs: rejected")),
       transforms_(host) {
   goal_ = host.input(topics::kFollowGoal, {.optional = true},
@@ -230,8 +237,10 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
                                       : kinematics::Whiskers{t->front_left(), t->front_right(),
                                                              t->back_left(), t->back_right()});
   place_people(pose.position());
-  if (!follower_->set_pace(people_fell_silent() ? std::min(pace_, careful_pace_) : pace_))
-    ++rejected_;
+  const Status paced =
+      follower_->set_pace(people_are_missing() ? std::min(pace_, careful_pace_) : pace_);
+  assert(paced);  // within the parameters' bounds
+  static_cast<void>(paced);
   if (mode_ == MODE_BACK_OFF)
     return follower_->back_off(costs, pose, measured, last_command_, elapsed, back_off_speed_,
                                everybody_);
@@ -241,18 +250,24 @@ Decision FollowerComponent::decision(const grid::Grid<std::uint8_t>& costs,
   return follower_->decide(costs, pose, measured, last_command_, elapsed, everybody_);
 }
 
-/// A robot that has been told of people, and no longer is, cannot tell who comes its way from what
+/// Who in odom, or nobody that is known of.
+const usher_msgs::msg::People* FollowerComponent::people_now() const {
+  const auto* people = people_.fresh();
+  return people != nullptr && people->header().frame_id() == frames::kOdom ? people : nullptr;
+}
+
+/// A robot that should be told of people, and is not, cannot tell who comes its way from what
 /// stands.
-bool FollowerComponent::people_fell_silent() const {
-  return people_.info() != nullptr && people_.fresh() == nullptr;
+bool FollowerComponent::people_are_missing() const {
+  return people_now() == nullptr && (people_needed_ || people_.info() != nullptr);
 }
 
 /// Everybody who was seen lately, where they are by now; near the robot, where range finders are
 /// blind, also who was seen there before.
 void FollowerComponent::place_people(const geometry::Point2& here) {
   everybody_.clear();
-  const auto* message = people_.fresh();
-  if (message == nullptr || message->header().frame_id() != frames::kOdom) return;
+  const auto* message = people_now();
+  if (message == nullptr) return;
   const double age = runtime::seconds(host_.now() - people_.info()->effective);
   for (const auto& person : message->people()) {
     const geometry::Point2 velocity{person.vx(), person.vy()};
@@ -316,7 +331,7 @@ void FollowerComponent::conclude(const Decision& decided, const geometry::Pose2&
                  : stands ? STATE_WAITING
                           : STATE_ACTIVE,
                  stands ? to_string(decided.reason) : "", remaining, decided.obstacle_distance);
-  if (people_fell_silent()) {
+  if (people_are_missing()) {
     host_.health().set(HealthState::kDegraded, "nobody tells of people: drives slowly");
   } else {
     host_.health().set(HealthState::kOk);

@@ -41,7 +41,8 @@ class FollowerComponent : public runtime::Component {
   void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured);
-  bool people_fell_silent() const;
+  const usher_msgs::msg::People* people_now() const;
+  bool people_are_missing() const;
   void place_people(const geometry::Point2& here);
   bool place_path();
   void conclude(const Decision& decision, const geometry::Pose2& pose);
@@ -53,6 +54,7 @@ class FollowerComponent : public runtime::Component {
   double default_pace_, slowest_, careful_pace_;
   double pace_;  ///< that the goal asks for
   double back_off_speed_, turn_rate_;
+  bool people_needed_;
 
   std::uint64_t goal_id_ = 0;
   std::string client_;

@@ -69,7 +69,6 @@ std::string WaypointFollowerComponent::not_ready() {
 
 /// The mount of the laser does not move on base_footprint.
 void WaypointFollowerComponent::take_scan(const sensor_msgs::msg::LaserScan& scan) {
-  if (scan_.fresh() == nullptr) return;  // late: it tells what was
   const auto mount = transforms().lookup_planar(frames::kBaseFootprint, scan.header().frame_id(),
                                                 wire::from_message(scan.header().stamp()));
   if (!mount || !wire::check(scan)) {

@@ -31,6 +31,8 @@ runtime::ComponentFactory factory_of(const std::string& type) {
 /// its path never ends. Everything that it reads can be left out or changed.
 class Losses : public testing::TestWithParam<const char*> {
  protected:
+  explicit Losses(const std::string& parameters = {})
+      : host(factory_of(GetParam()), kFootprint + parameters) {}
   void run(int ms) {
     for (int at = 0; at < ms; at += 50) {
       if (transforms) host.publish(topics::kTf, frames_of_robot());
@@ -49,7 +51,10 @@ class Losses : public testing::TestWithParam<const char*> {
       }
       host.publish(topics::kTfStatic, mount_of_laser());
       if (scans) host.publish(topics::kScanFiltered, scan());
-      if (sees) host.publish(topics::kLocalCosts, wire::to_message(host.now(), costs_frame, costs));
+      if (sees) {
+        host.publish(topics::kLocalCosts,
+                     wire::to_message(host.now() - costs_late, costs_frame, costs));
+      }
       host.run_for(milliseconds(people.people().empty() ? 50 : 45));
     }
   }
@@ -123,7 +128,7 @@ class Losses : public testing::TestWithParam<const char*> {
   grid::Grid<std::uint8_t> costs{{80, 80, 0.05, -2.0, -2.0}, 0};
   const char* costs_frame = frames::kOdom;
   geometry::Pose2 pose;
-  milliseconds scan_late{0};
+  milliseconds scan_late{0}, costs_late{0};
   bool transforms = true, localized = true, odometry = true, sees = true, scans = true;
   std::size_t beams = 401;
   float range = std::numeric_limits<float>::infinity();
@@ -131,14 +136,18 @@ class Losses : public testing::TestWithParam<const char*> {
   usher_msgs::msg::People people;
   milliseconds people_ahead{0};
   std::string people_host;
-  runtime::TestHost host{factory_of(GetParam()), kFootprint};
+  runtime::TestHost host;
   std::uint64_t goal_id = 0;
 };
 
 class WindowLosses : public Losses {};
 class FollowerLosses : public Losses {};
+struct PeopleNeeded : Losses {
+  PeopleNeeded() : Losses("\npeople_needed: true") {}
+};
 INSTANTIATE_TEST_SUITE_P(All, Losses, testing::Values(kWindow, kFollower));
 INSTANTIATE_TEST_SUITE_P(People, WindowLosses, testing::Values(kWindow));
+INSTANTIATE_TEST_SUITE_P(People, PeopleNeeded, testing::Values(kWindow, kFollower));
 INSTANTIATE_TEST_SUITE_P(Scans, FollowerLosses, testing::Values(kFollower));
 
 TEST_P(Losses, StandsWithoutCostsAndGoesOnWithThem) {
@@ -154,6 +163,17 @@ TEST_P(Losses, StandsWithoutCostsAndGoesOnWithThem) {
   EXPECT_TRUE(drives());
   EXPECT_EQ(status().state(), STATE_ACTIVE);
   EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
+TEST_P(Losses, StandsOnCostsThatComeTooLate) {
+  drive();
+  ASSERT_TRUE(drives());
+  costs_late = milliseconds(300);
+  run(500);
+  expect_waiting("no local costs");
+  host.clear();
+  run(500);
+  EXPECT_TRUE(host.written(topics::kCmdVelNavigation).empty());
 }
 
 TEST_P(Losses, StandsOnCostsThatAreNone) {
@@ -229,20 +249,38 @@ TEST_P(Losses, DrivesOnWithTheLastCorrectionOfASilentLocalization) {
   EXPECT_TRUE(drives()) << "in odom; the supervisor stops the robot without localization";
 }
 
-TEST_P(WindowLosses, GivesWayToSomebodyAndDrivesCarefullyWhenPeopleFallSilent) {
+TEST_P(WindowLosses, GivesWayToSomebody) {
   drive();
-  const double unaware = commanded().v;
   add_person(1.0, 0.0, 0.0, 0.0);
   run(600);
   EXPECT_EQ(status().reason(), to_string(Reason::kGivingWay));
+}
+
+TEST_P(Losses, DrivesCarefullyWhenPeopleFallSilent) {
+  drive();
+  run(1000);
+  const double unaware = commanded().v;  // nobody on this robot tells of people
+  ASSERT_GT(unaware, DynamicWindowConfig{}.careful_speed + 0.2);
+  add_person(-20.0, 0.0, 0.0, 0.0);
+  run(1000);
+  EXPECT_NEAR(commanded().v, unaware, 0.01);
   people.people().clear();  // and nobody tells of them
   run(3000);
   EXPECT_NEAR(commanded().v, DynamicWindowConfig{}.careful_speed, 0.01);
   EXPECT_EQ(host.heartbeat().reason(), "nobody tells of people: drives slowly");
   add_person(-20.0, 0.0, 0.0, 0.0);
   run(3000);
-  EXPECT_NEAR(commanded().v, unaware, 0.01) << "who never heard of people drives on as well";
+  EXPECT_NEAR(commanded().v, unaware, 0.01);
   EXPECT_EQ(host.heartbeat().reason(), "");
+}
+
+TEST_P(PeopleNeeded, DrivesCarefullyUntilSomebodyTellsOfPeople) {
+  drive();
+  run(1000);
+  EXPECT_NEAR(commanded().v, DynamicWindowConfig{}.careful_speed, 0.01);
+  add_person(-20.0, 0.0, 0.0, 0.0);
+  run(3000);
+  EXPECT_GT(commanded().v, DynamicWindowConfig{}.careful_speed + 0.2);
 }
 
 TEST_P(WindowLosses, RemembersWhoWasLastSeenWhereTheLaserIsBlind) {

@@ -351,7 +351,7 @@ TEST_F(SimComponent, ACameraWhoseImagesAreAllLeftOutDoesNotLook) {
   see_with_a_scan(milliseconds(0));
   EXPECT_TRUE(host.last(topics::kPeople)->kinect_looks());
   see_with_a_scan(milliseconds(400));
-  EXPECT_GT(host.counter("images: late"), 5U);
+  EXPECT_GT(host.counter(std::string(topics::kSimKinectPeople.name) + ": late"), 5U);
   EXPECT_FALSE(host.last(topics::kPeople)->kinect_looks());
   EXPECT_FALSE(host.last(topics::kPersonAhead)->clear());
 }

@@ -380,7 +380,7 @@ TEST_F(EngineTest, ATurnAllocatesNothing) {
   std::uint64_t number = 0;
   const auto turns = [&](int count) {
     for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < 3; ++j) transport_.deliver["test/events"](message_, {1}, ++number, true);
+      for (int j = 0; j < 3; ++j) transport_.deliver["test/events"](message_, {1}, ++number, false);
       advance(milliseconds(5));
       engine_->run_turn();
     }

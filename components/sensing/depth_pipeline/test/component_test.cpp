@@ -549,14 +549,17 @@ TEST_F(DepthPipelineComponentTest, RefusesImagesThatDoNotFit) {
 
 TEST_F(DepthPipelineComponentTest, TiltFollowsTheRobotsStateAndAnOperatorMayHoldIt) {
   usher_msgs::msg::SupervisorStatus status;
+  const auto tell = [&](std::uint8_t state) {
+    status.header(wire::header(host_.now(), ""));
+    status.state(state);
+    host_.publish(topics::kSupervisorStatus, status);
+  };
   status.kinect_angle_navigation(-0.0873F);
   status.kinect_angle_interaction(0.1745F);
-  status.state(STATE_INTERACTION);
-  host_.publish(topics::kSupervisorStatus, status);
+  tell(STATE_INTERACTION);
   live(250);
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), 0.1745, 1e-6);
-  status.state(STATE_NAVIGATION_ACTIVE);
-  host_.publish(topics::kSupervisorStatus, status);
+  tell(STATE_NAVIGATION_ACTIVE);
   live(250);
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
   usher_msgs::msg::CameraTilt request;

@@ -205,20 +205,20 @@ void ScanFilter::find_surfaces() {
 }
 
 // Whether the end is of a wall that is met at a grazing angle: the inverses of its distances lie on
-// a line. Three may do so by chance; a fourth one, to either side, that is seen and does not is no
-// wall's.
+// a line. Three may do so by chance: a fourth one to either side must, where one is known.
 bool ScanFilter::is_on_a_wall(std::size_t i) const {
   const auto inverse = [&](std::size_t k) {
     return kind_[k] == Kind::kFree ? 0.0f : 1.0f / away_[k];
   };
   if (std::abs(away_[i] - 2.0f / (inverse(i - 1) + inverse(i + 1))) >= kJump) return false;
-  const auto goes_on = [&](std::size_t next, std::size_t k) {
-    if (k >= kind_.size() || kind_[k] == Kind::kUnknown) return true;
+  const auto known = [&](std::size_t k) { return k < kind_.size() && kind_[k] != Kind::kUnknown; };
+  const auto fits = [&](std::size_t next, std::size_t k) {
     const float there = 2.0f * inverse(next) - inverse(i);
     if (kind_[k] == Kind::kFree) return there * static_cast<float>(geometry_.range_max) < 1.0f;
     return there > 0.0f && std::abs(away_[k] - 1.0f / there) < kJumpOfFour;
   };
-  return goes_on(i - 1, i - 2) || goes_on(i + 1, i + 2);
+  const bool before = known(i - 2), after = known(i + 2);
+  return (before && fits(i - 1, i - 2)) || (after && fits(i + 1, i + 2)) || (!before && !after);
 }
 
 // A lone end between a nearer and a farther neighbour. A thing in front of both is nearer than

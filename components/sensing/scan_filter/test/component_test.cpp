@@ -61,7 +61,8 @@ class Component : public testing::Test {
   void run(int ms) {
     for (int at = 0; at < ms; at += 10) {
       if (statuses) host.publish(topics::kBaseStatus, status());
-      if (scans && at % 20 == 0) host.publish(topics::kScan, scan());
+      if (scans && at % 20 == 0)
+        host.world().publish(topics::kScan, scan(), "laser", scanners_host);
       if (sonars && at % 50 == 0) host.publish(topics::kUltrasonic, sonar());
       host.run_for(milliseconds(10));
     }
@@ -72,6 +73,7 @@ class Component : public testing::Test {
   runtime::TestHost host{runtime::component_factory<ScanFilterComponent>("scan_filter"), kRobot};
   bool statuses = true, scans = true, sonars = true;
   milliseconds status_ahead{0}, scans_ahead{0};
+  std::string scanners_host;
   std::uint8_t state = STATE_BALANCING;
   double pitch = 0.0;
   float range = 2.0F, time_increment = 0.0F;
@@ -112,8 +114,11 @@ TEST_F(Component, LateScansAreNone) {
   run(500);
   EXPECT_EQ(reason(), "");
   scans_ahead = milliseconds(-600);
+  run(100);
+  host.clear();
   run(1000);
   EXPECT_EQ(reason(), "no scan");
+  EXPECT_EQ(left(), 0U);
   scans_ahead = milliseconds(0);
   run(300);
   EXPECT_EQ(reason(), "");
@@ -229,7 +234,8 @@ TEST_F(Component, RefusesScansThatTakeTooLong) {
 
 TEST_F(Component, SaysThatScansAndPitchDoNotMeet) {
   run(500);
-  scans_ahead = milliseconds(-2000);  // the scanner's host has another time
+  scans_ahead = milliseconds(-2000);
+  scanners_host = "sensing";  // which has another time
   host.clear();
   run(300);
   EXPECT_EQ(left(), 0U);

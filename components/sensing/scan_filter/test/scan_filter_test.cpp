@@ -296,6 +296,11 @@ TEST(ScanFilter, KnowsNothingOfABeamBetweenTwoSurfacesThatLooksLikeAWallsByChanc
   ASSERT_TRUE(f.filter(lms100(), pillar_with_an_edge_at(2.95F), {}, out).ok());
   EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << out.ranges[kEdge];
   EXPECT_EQ(f.counts().mixed, 1U);
+
+  auto beside_floor = pillar_with_an_edge_at(2.95F);
+  beside_floor[298] = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_TRUE(f.filter(lms100(), beside_floor, {}, out).ok());
+  EXPECT_TRUE(std::isnan(out.ranges[kEdge])) << "the other fourth one is known";
 }
 
 TEST(ScanFilter, KnowsNothingOfTwoBeamsBetweenTwoSurfaces) {
