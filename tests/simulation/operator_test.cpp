@@ -13,6 +13,7 @@
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "support/folder.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 namespace {
@@ -59,6 +60,7 @@ class OperatedRobot {
   void hold(double forward, double turn, double duration, bool held = true) {
     for (int ms = 0; ms < std::lround(1000.0 * duration); ms += 40) {
       sensor_msgs::msg::Joy joy;
+      joy.header(wire::header(run_->world().now(), ""));
       joy.axes({0.0F, static_cast<float>(forward), 0.0F, static_cast<float>(turn)});
       joy.buttons({0, 0, 0, 0, held ? 1 : 0});
       run_->world().publish(topics::kJoy, joy, "operator");

@@ -20,6 +20,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/command_line/usage.hpp"
 #include "runtime/dds/observer.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 
@@ -120,9 +121,10 @@ class Keyboard {
   bool held(Clock::time_point now) const { return now < held_until_; }
   float pace() const { return pace_; }
 
-  sensor_msgs::msg::Joy joy(Clock::time_point now) const {
+  sensor_msgs::msg::Joy joy(Clock::time_point now, runtime::Time stamp) const {
     const bool down = held(now);
     sensor_msgs::msg::Joy message;
+    message.header(wire::header(stamp, ""));
     message.axes(
         {0.0F, down ? pace_ * sticks_.forward : 0.0F, 0.0F, down ? pace_ * sticks_.turn : 0.0F});
     message.buttons({0, 0, 0, 0, down ? 1 : 0});
@@ -179,7 +181,7 @@ int teleop(std::uint32_t domain, milliseconds hold) {
     if (key) keyboard.press(*key, now);
     if (key || now >= next_joy) {
       next_joy = now + kJoyPeriod;
-      joy->write(keyboard.joy(now));
+      joy->write(keyboard.joy(now, (*observer)->now()));
     }
     while (const auto news = movement->take()) status = *news;
     if (now >= next_line) {
@@ -187,7 +189,7 @@ int teleop(std::uint32_t domain, milliseconds hold) {
       show(keyboard, status, now);
     }
   }
-  joy->write(Keyboard(hold).joy(Clock::now()));
+  joy->write(Keyboard(hold).joy(Clock::now(), (*observer)->now()));
   std::cout << "\n";
   if (const auto told =
           tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_MANUAL_OFF);

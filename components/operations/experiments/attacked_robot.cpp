@@ -180,6 +180,7 @@ void AttackedRobot::run() {
 
 void AttackedRobot::send_joy() {
   sensor_msgs::msg::Joy message;
+  message.header(wire::header(observer_->now(), ""));
   {
     const std::lock_guard lock(mutex_);
     message.axes({0.0F, forward_, 0.0F, turn_});

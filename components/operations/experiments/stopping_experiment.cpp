@@ -10,6 +10,7 @@
 #include "operations/experiments/line_plot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/only.hpp"
+#include "wire/conversions.hpp"
 
 namespace usher::operations {
 
@@ -136,6 +137,7 @@ class Trial {
 
   void tick(bool held) {
     sensor_msgs::msg::Joy joy;
+    joy.header(wire::header(run_->world().now(), ""));
     joy.axes({0.0F, held ? 1.0F : 0.0F, 0.0F, 0.0F});
     joy.buttons({0, 0, 0, 0, held ? 1 : 0});
     run_->world().publish(topics::kJoy, joy, kOperator);

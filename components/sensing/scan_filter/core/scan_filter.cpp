@@ -17,7 +17,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 // Two ends belong together while their distances differ by less than this; 0.06 allows a wall seen
 // at up to 81 degrees from its normal at half a degree between beams.
 constexpr float kJump = 0.05f;       // [m]
-constexpr float kJumpOfFour = 0.2f;  // [m] where the noise of two others counts thrice
+constexpr float kJumpOfFour = 0.3f;  // [m] where the noise of two others counts thrice
 constexpr float kJumpShare = 0.06f;  // of the nearer
 constexpr double kWidest = 4.0;      // beams' angles between two ends that belong together
 constexpr float kSameAngle = 1e-6f;  // [rad] closer than this an end lies on an angle
