@@ -19,8 +19,8 @@ struct Whiskers {
 /// a front whisker bars forward motion and the turn toward its side; a back whisker bars backward
 /// motion and the turn that swings its corner outward. Two refinements, without which a robot
 /// beside a wall could never leave it: what touches both corners of a side stands beside it, so
-/// that it may creep along and bend away; and an arc whose turn is barred is driven straight only
-/// at `creep` [m/s], because only the arc was chosen to be free.
+/// that it may creep along and bend away, at `creep` [m/s]; and an arc whose turn is barred is
+/// driven straight at half of that only, because only the arc was chosen to be free.
 inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& whiskers,
                                        double creep) {
   constexpr double kBend = 0.3;  // [1/m] swings the other corner of the side outward by 1.3 cm
@@ -37,7 +37,8 @@ inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& w
   const bool bar_left = t.front_left || t.back_right;
   const bool bar_right = t.front_right || t.back_left;
   const bool turn_barred = (twist.w > 0.0 && bar_left) || (twist.w < 0.0 && bar_right);
-  if (beside_left || beside_right || turn_barred) twist.v = std::clamp(twist.v, -creep, creep);
+  const double most_v = turn_barred ? 0.5 * creep : creep;
+  if (beside_left || beside_right || turn_barred) twist.v = std::clamp(twist.v, -most_v, most_v);
   if (!turn_barred) return twist;
   // The leading corner away from what stands beside.
   const bool away = beside_left != beside_right && (twist.v * twist.w < 0.0) == beside_left;

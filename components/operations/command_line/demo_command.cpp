@@ -1,5 +1,6 @@
 #include <signal.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/usage.hpp"
 #include "operations/experiments/run_record.hpp"
+#include "operations/experiments/site_facts.hpp"
 #include "operations/host/machine_load.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/results/result_sheet.hpp"
@@ -190,6 +192,17 @@ int conclude(const Demo& demo, Watch& watch, std::uint64_t seed, const std::stri
   return sheet.pass() ? 0 : 1;
 }
 
+/// The site has a location of that name; an empty one is the demo's own.
+Status knows(const Deployment& deployment, const std::string& location) {
+  if (location.empty()) return {};
+  const auto all = site_locations(deployment);
+  if (!all) return Error{all.error()};
+  if (std::ranges::find(*all, location) != all->end()) return {};
+  std::string names;
+  for (const std::string& name : *all) names += (names.empty() ? "" : ", ") + name;
+  return Error{"--to names no location of the site: " + location + "; it has " + names};
+}
+
 int demo(const DemoArguments& arguments) {
   const bool meets = arguments.what == kMeeting;
   if (meets && !arguments.destination.empty())
@@ -204,6 +217,8 @@ int demo(const DemoArguments& arguments) {
   std::filesystem::remove(out + "/result.json", ignored);
   const auto deployment = deployment_for(*made, installation, out, arguments.seed);
   if (!deployment) return fail(deployment.error());
+  if (const Status known = knows(*deployment, arguments.destination); !known)
+    return misused(known.error());
   const std::uint32_t domain = deployment->manifest.domain;
   auto launcher =
       Launcher::create(*deployment, {"", installation.programs, default_run_directory(domain, "")});
@@ -262,7 +277,9 @@ void add_demo_command(CLI::App& app, int& exit_code) {
                       "Folder for picture, table and result.json; else build/demo or "
                       "build/demo-meeting");
   command->add_option("--to", arguments->destination, "Location that the visitor asks for");
-  command->add_option("--seed", arguments->seed, "Of the simulation")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the simulation")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
 }
 

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -63,6 +64,15 @@ int locate(std::uint32_t domain, const Standing& here) {
   std::cout << "by its scan it stands at " << format("%.2f", found->x) << " "
             << format("%.2f", found->y) << " " << format("%.2f", found->yaw) << "\n";
   return 0;
+}
+
+/// A map that is written replaces none: people edit theirs.
+std::string not_a_new_map(const std::string& path) {
+  const std::filesystem::path file(path);
+  if (file.extension() != ".yaml" && file.extension() != ".yml")
+    return "a map's file ends with .yaml, got " + path;
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored) ? path + " is there already" : std::string();
 }
 
 int save_map(std::uint32_t domain, const std::string& path) {
@@ -146,7 +156,8 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   map_command->require_subcommand(1);
   auto* save_command =
       with_domain(map_command->add_subcommand("save", "Write the running robot's map to a file"));
-  save_command->add_option("file", *path, "YAML file; the picture is written beside it")
+  save_command->add_option("file", *path, "New YAML file; the picture is written beside it")
+      ->check(not_a_new_map)
       ->required();
   save_command->callback([=, &exit_code] { exit_code = save_map(meant_domain(*domain), *path); });
 
@@ -158,7 +169,8 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
       ->add_option("--reference", from_log->reference,
                    "Pose of each scan, one line `index time x y yaw` (.txt, also .gz)")
       ->required();
-  log_command->add_option("--out", from_log->out, "YAML file; the picture is written beside it")
+  log_command->add_option("--out", from_log->out, "New YAML file; the picture is written beside it")
+      ->check(not_a_new_map)
       ->required();
   log_command->add_option("--every", from_log->every, "Use every Nth scan")
       ->check(within(1, 1000))

@@ -207,7 +207,8 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       return {};
     case Command::kNavigationStart: {
       if (request.goal.empty()) return "a goal's name was expected";
-      if (behavior_.manual_wanted()) return "an operator drives";
+      if (behavior_.manual_wanted())
+        return "an operator drives: Y on the gamepad, or usher teleop and then x, ends it";
       std::string refusal = not_now();
       if (!refusal.empty()) return refusal;
       behavior_.navigation_start();
