@@ -48,7 +48,9 @@ class DrivingRobot : public testing::Test {
   }
   bool becomes(const std::function<bool()>& condition, seconds limit) {
     const auto until = run_->world().now() + limit;
-    while (run_->world().now() < until && !condition()) run_->world().run_for(milliseconds(100));
+    for (; run_->world().now() < until; run_->world().run_for(milliseconds(100))) {
+      if (condition()) return true;
+    }
     return condition();
   }
   /// Calls `write` again and again for so long.
