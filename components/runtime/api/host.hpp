@@ -44,7 +44,7 @@ struct InputOptions {
   /// only.
   bool one_writer = false;
   /// A sample that is older than max_age when it comes runs no handler and is counted; here it runs
-  /// it, and is not fresh. For what counts at any age: a press of Stop.
+  /// it where none is fresh, and is not fresh itself. For what counts at any age: a press of Stop.
   bool late_too = false;
 };
 

@@ -116,8 +116,8 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
       {.max_age = kWhiskerAge, .on_loss = "takes nothing for touched", .optional = true});
   people_ = host.input(topics::kPeople,
                        {.max_age = kPeopleAge,
-                        .on_loss = "drives at the careful speed if it had heard of any; the costs "
-                                   "hold who is there",
+                        .on_loss = "drives at the careful speed if it needs them or had heard of "
+                                   "any; the costs hold who is there",
                         .optional = true},
                        [this](const auto& people, const auto&) {
                          if (people.header().frame_id() != frames::kOdom) ++rejected_;
