@@ -154,7 +154,14 @@ TEST_F(Commands, StopHoldsTheRobotUntilMove) {
   const auto status = robot_->command({"status"});
   status->wait();
   EXPECT_TRUE(contains(status->output(), "stands: stopped by ")) << status->output();
+  const auto drive = robot_->command({"goto", "--pose", "4.5", "4.5", "1.57", "--no-wait"});
+  EXPECT_EQ(drive->wait(std::chrono::seconds(30)), 0) << drive->errors();
+  EXPECT_TRUE(contains(drive->output(), "the goal is taken")) << drive->output();
+  EXPECT_TRUE(contains(drive->errors(), "stopped by operator; `usher move` lifts that"))
+      << drive->errors();
+  output({"goto", "--cancel"});
   EXPECT_EQ(output({"move"}), "the stop is lifted\n");
+  EXPECT_EQ(output({"move"}), "nobody held a stop\n");
   EXPECT_TRUE(robot_->wait_for([] { return robot_->status()->enable_movement(); }, Seconds(5)));
 }
 
@@ -212,7 +219,7 @@ TEST_F(Commands, EmergencyStopIsAFaultUntilCleared) {
   EXPECT_TRUE(contains(move->errors(), "the robot stands: emergency stop")) << move->errors();
   EXPECT_EQ(output({"clear"}), "cleared\n");
   EXPECT_TRUE(well()) << robot_->complaints();
-  EXPECT_EQ(output({"clear"}), "cleared\n") << "nothing to clear is fine";
+  EXPECT_EQ(output({"clear"}), "no fault was latched\n") << "nothing to clear is fine";
 }
 
 TEST_F(Commands, GotoThatIsInterruptedIsCancelled) {

@@ -70,7 +70,11 @@ int graph(const std::string& path) {
   std::map<std::string, std::vector<std::string>> writers;
   for (const auto& component : manifest->components) {
     const auto contract = contracts->find(component.type);
-    if (contract == contracts->end()) continue;
+    if (contract == contracts->end()) {
+      std::cerr << "usher: " << component.name << " is drawn alone: no contract of the type '"
+                << component.type << "' here\n";
+      continue;
+    }
     for (const auto& output : contract->second.outputs)
       writers[output.topic].push_back(component.name);
   }

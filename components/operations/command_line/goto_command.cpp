@@ -195,6 +195,15 @@ Status start_navigation(Observer& observer, const GoalArguments& arguments) {
   return {};
 }
 
+/// A stop that somebody holds lets nothing drive, whatever the navigation may do.
+void warn_of_stop(Observer& observer) {
+  auto reader = observer.reader(topics::kSupervisorStatus);
+  const auto status = reader ? newest_status(*reader, kPatience) : nullptr;
+  if (!status || status->stopped_by().empty()) return;
+  std::cerr << "usher: the robot stands, stopped by " << stopped_by(*status)
+            << "; `usher move` lifts that\n";
+}
+
 bool is_under_way(const NavigateStatus& status) {
   return status.state() == GoalStatus_Constants::STATE_ACTIVE ||
          status.state() == GoalStatus_Constants::STATE_WAITING;
@@ -337,7 +346,10 @@ class Pursuit {
       return Outcome::kReplaced;
     }
     accepted_ = true;
-    if (arguments_.no_wait && runs) return Outcome::kUnderWay;
+    if (arguments_.no_wait && runs) {
+      std::cout << "the goal is taken; `usher status` shows how far it is\n";
+      return Outcome::kUnderWay;
+    }
     progress_.show(status);
     if (runs) return std::nullopt;
     if (status.state() == GoalStatus_Constants::STATE_SUCCEEDED) {
@@ -389,6 +401,7 @@ int go(std::uint32_t domain, const GoalArguments& arguments) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   if (const auto told = start_navigation(**observer, arguments); !told) return fail(told.error());
+  warn_of_stop(**observer);
   Outcome outcome = Outcome::kFailed;
   if (auto pursuit = Pursuit::begin(**observer, domain, arguments)) {
     outcome = pursuit->run();

@@ -157,11 +157,12 @@ void add_host_commands(CLI::App& app, int& exit_code) {
       app.add_subcommand("install", "Make this machine run a deployment from boot on");
   install_command->add_flag("--systemd", installing->systemd,
                             "Write a unit for each host of a manifest, or for --host");
-  install_command->add_option("manifest", installing->manifest, "Manifest file");
-  install_command->add_option("--host", installing->host, "Only this host's unit");
-  install_command->add_option("--to", installing->folder, "Folder of the units")
+  install_command->add_option("manifest", installing->manifest, "Manifest file of --systemd");
+  install_command->add_option("--host", installing->host, "Of --systemd: only this host's unit");
+  install_command->add_option("--to", installing->folder, "Of --systemd: folder of the units")
       ->capture_default_str();
-  install_command->add_option("--user", installing->user, "Who runs it; root unless given");
+  install_command->add_option("--user", installing->user,
+                              "Of --systemd: who runs it; root unless given");
   install_command->add_flag("--sysctl", installing->sysctl,
                             "Write the UDP buffer sizes to " + std::string(kSysctlPath) +
                                 "; `sysctl --system` applies them");

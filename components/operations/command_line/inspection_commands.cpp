@@ -12,6 +12,7 @@
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
+#include "operations/command_line/supervisor_client.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/command_line/usage.hpp"
 #include "runtime/dds/message_layout.hpp"
@@ -118,9 +119,7 @@ int status(std::uint32_t domain, const StatusArguments& arguments) {
   const auto message = reader->take(runtime::from_seconds(arguments.patience));
   if (!message) return fail(nobody_there("supervisor", domain));
   const auto goal = goals->take(kGoalPatience);
-  std::string stopped;
-  for (const auto& client : message->stopped_by())
-    stopped += (stopped.empty() ? "" : ", ") + client;
+  const std::string stopped = stopped_by(*message);
   std::cout << "state " << state_name(message->state())
             << (!message->granted()         ? ", may not drive: " + message->reason()
                 : !stopped.empty()          ? ", stands: stopped by " + stopped

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "idl/topics.hpp"
+#include "operations/command_line/table.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -19,6 +20,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr auto kPatience = std::chrono::seconds(5);
+constexpr auto kBelieved = milliseconds(500);      // for where it believed to be before it is told
 constexpr auto kJudged = std::chrono::seconds(2);  // by then its scans have judged what it was told
 // How well somebody knows where the robot stands; what viewers of ROS 2 say, too.
 constexpr double kPositionSigma = 0.5;                 // [m]
@@ -55,6 +57,8 @@ Result<geometry::Pose2> tell_pose(runtime::Observer& observer, const geometry::P
   if (!poses) return Error{poses.error()};
   if (!statuses) return Error{statuses.error()};
   if (!writer->wait_for_readers(1, kPatience)) return Error{"no amcl reads initialpose"};
+  poses->take(kBelieved);
+  while (poses->take()) continue;
   writer->write(message_of(map_T_base, observer.now()));
   std::optional<geometry::Pose2> found;
   std::shared_ptr<const usher_msgs::msg::LocalizationStatus> status;
@@ -66,7 +70,9 @@ Result<geometry::Pose2> tell_pose(runtime::Observer& observer, const geometry::P
       const auto here = wire::to_planar(pose->pose().pose());
       if (!here) continue;
       const bool taken = is_near(*here, map_T_base);
-      if (!taken && found) reason = "its scans do not fit there, and it believes to be elsewhere";
+      if (!taken)
+        reason = "its scans do not fit there: it believes to be at " + format("%.2f", here->x) +
+                 " " + format("%.2f", here->y) + " " + format("%.2f", here->yaw);
       if (taken && !found) {
         taken_at = Clock::now();
         reason = "its scans have not judged the place yet";

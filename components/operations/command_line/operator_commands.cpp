@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -22,6 +24,9 @@ namespace {
 using runtime::Observer;
 using namespace usher_msgs::msg;
 
+constexpr auto kStatusPatience = std::chrono::seconds(1);
+constexpr double kStands = 0.1;  // [m/s], [rad/s]: a base that balances sways
+
 int ask_supervisor(std::uint32_t domain, std::uint8_t command, const std::string& done) {
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
@@ -36,16 +41,35 @@ int move_on(std::uint32_t domain) {
   if (!observer) return fail(observer.error());
   auto reader = (*observer)->reader(topics::kSupervisorStatus);
   if (!reader) return fail(reader.error());
+  const auto before = newest_status(*reader, kStatusPatience);
   if (const auto told =
           tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_MOVEMENT_ON);
       !told)
     return fail(told.error());
-  auto status = reader->take(std::chrono::seconds(1));
-  while (const auto newer = reader->take()) status = newer;
-  if (status && status->state() == SupervisorStatus_Constants::STATE_FAULT)
-    return fail("the stop is lifted, but the robot stands: " + status->reason() +
+  const std::string done =
+      before && before->stopped_by().empty() ? "nobody held a stop" : "the stop is lifted";
+  const auto after = newest_status(*reader, kStatusPatience);
+  if (after && after->state() == SupervisorStatus_Constants::STATE_FAULT)
+    return fail(done + ", but the robot stands: " + after->reason() +
                 " (`usher clear` clears a fault whose cause is gone)");
-  std::cout << "the stop is lifted\n";
+  std::cout << done << "\n";
+  return 0;
+}
+
+/// Clears what is latched, and says when nothing was.
+int clear(std::uint32_t domain) {
+  auto observer = Observer::create(reach_robot(kOperatorName, domain));
+  if (!observer) return fail(observer.error());
+  auto reader = (*observer)->reader(topics::kSupervisorStatus);
+  if (!reader) return fail(reader.error());
+  const auto before = newest_status(*reader, kStatusPatience);
+  if (const auto told = tell_supervisor(**observer, SupervisorRequest_Constants::COMMAND_CLEAR);
+      !told)
+    return fail(told.error());
+  const bool none = before && std::ranges::none_of(before->faults(), [](const auto& fault) {
+                      return fault.active() && fault.latched();
+                    });
+  std::cout << (none ? "no fault was latched\n" : "cleared\n");
   return 0;
 }
 
@@ -53,12 +77,24 @@ struct Standing {
   double x = 0.0, y = 0.0, yaw = 0.0;
 };
 
+/// A pose is of the moment it is told: a robot that rolls has left it.
+Status judge_standing(Observer& observer) {
+  auto reader = observer.reader(topics::kOdom);
+  if (!reader) return Error{reader.error()};
+  const auto odom = reader->take(kStatusPatience);
+  if (!odom) return {};
+  const auto& twist = odom->twist().twist();
+  if (std::abs(twist.linear().x()) < kStands && std::abs(twist.angular().z()) < kStands) return {};
+  return Error{"the robot drives; `usher stop` holds it"};
+}
+
 /// Tells a robot that is lost where it stands.
 int locate(std::uint32_t domain, const Standing& here) {
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
   if (const auto inside = judge_place(**observer, here.x, here.y); !inside)
     return fail(inside.error());
+  if (const auto stands = judge_standing(**observer); !stands) return fail(stands.error());
   const auto found = tell_pose(**observer, {here.x, here.y, here.yaw});
   if (!found) return fail(found.error());
   std::cout << "by its scan it stands at " << format("%.2f", found->x) << " "
@@ -136,9 +172,7 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
       ->callback([=, &exit_code] { exit_code = move_on(meant_domain(*domain)); });
   with_domain(app.add_subcommand(
                   "clear", "Clear latched faults (an emergency stop is one) whose cause is gone"))
-      ->callback([=, &exit_code] {
-        exit_code = ask_supervisor(meant_domain(*domain), COMMAND_CLEAR, "cleared");
-      });
+      ->callback([=, &exit_code] { exit_code = clear(meant_domain(*domain)); });
 
   auto here = std::make_shared<Standing>();
   auto* locate_command = with_domain(

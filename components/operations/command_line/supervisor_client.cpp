@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-
-#include "idl/topics.hpp"
+#include <utility>
 
 namespace usher::operations {
 
@@ -68,6 +67,19 @@ Status tell_supervisor(runtime::Observer& observer, std::uint8_t command, const 
     }
   }
   return Error{"the supervisor did not answer"};
+}
+
+std::shared_ptr<const SupervisorStatus> newest_status(
+    runtime::Observer::Reader<SupervisorStatus>& reader, milliseconds patience) {
+  auto status = reader.take(patience);
+  while (auto newer = reader.take()) status = std::move(newer);
+  return status;
+}
+
+std::string stopped_by(const SupervisorStatus& status) {
+  std::string names;
+  for (const auto& client : status.stopped_by()) names += (names.empty() ? "" : ", ") + client;
+  return names;
 }
 
 }  // namespace usher::operations

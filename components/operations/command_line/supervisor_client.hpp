@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "foundation/result/result.hpp"
+#include "idl/topics.hpp"
 #include "runtime/dds/observer.hpp"
 
 namespace usher::operations {
@@ -21,5 +23,13 @@ std::uint64_t fresh_id();
 Status tell_supervisor(runtime::Observer& observer, std::uint8_t command,
                        const std::string& goal = {},
                        std::chrono::seconds stop_patience = std::chrono::seconds(25));
+
+/// The newest that a reader has of it, waited for if there is none yet; null after `patience`.
+std::shared_ptr<const usher_msgs::msg::SupervisorStatus> newest_status(
+    runtime::Observer::Reader<usher_msgs::msg::SupervisorStatus>& reader,
+    std::chrono::milliseconds patience);
+
+/// Who holds a stop: "operator, tablet"; empty when nobody does.
+std::string stopped_by(const usher_msgs::msg::SupervisorStatus& status);
 
 }  // namespace usher::operations

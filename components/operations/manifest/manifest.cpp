@@ -167,19 +167,20 @@ Result<Tree> read_extended(const std::filesystem::path& path, std::vector<std::s
   return overlay(std::move(base).value(), *tree, findings);
 }
 
-/// Names become file names, words in lists and names of participants.
-void judge_name(const std::string& name, const std::string& what, const std::string& origin,
+/// Names become file names, words in lists and names of participants. Says whether it is one.
+bool judge_name(const std::string& name, const std::string& what, const std::string& origin,
                 std::vector<Finding>& findings) {
   const bool good =
       !name.empty() && name.size() <= kLongestName &&
       std::all_of(name.begin(), name.end(), [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
       });
-  if (good) return;
+  if (good) return true;
   findings.push_back({Verdict::kWrongValue,
                       what + " name must be 1 to 64 letters, digits, '_' or '-', got " +
                           brief(Tree::word(name, {}).yaml()),
                       origin});
+  return false;
 }
 
 ManifestComponent read_component(const std::string& name, const Tree& tree,
@@ -222,6 +223,12 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &ignored) == 1;
 }
 
+/// Where a key of a map is given, or the map where it is not.
+const std::string& origin_of(const Tree& tree, const std::string& key) {
+  const Tree* node = tree.find(key);
+  return node == nullptr ? tree.origin : node->origin;
+}
+
 void judge_address(const std::string& what, const std::string& address, const std::string& origin,
                    std::vector<Finding>& findings) {
   if (is_address(address)) return;
@@ -240,7 +247,7 @@ ManifestHost read_host(const std::string& name, const Tree& tree, std::vector<Fi
   fields.texts("peers", host.peers);
   fields.finish();
   for (const auto& peer : host.peers)
-    judge_address("a peer of '" + name + "'", peer, tree.origin, findings);
+    judge_address("a peer of '" + name + "'", peer, origin_of(tree, "peers"), findings);
   return host;
 }
 
@@ -271,7 +278,8 @@ ManifestDiscoveryServer read_discovery_server(const Tree& tree, std::vector<Find
   fields.number("port", std::uint16_t{1024}, std::uint16_t{65535}, server.port);
   fields.finish();
   if (server.host.empty()) fields.missing("host");
-  judge_address("the discovery server's address", server.address, tree.origin, findings);
+  judge_address("the discovery server's address", server.address, origin_of(tree, "address"),
+                findings);
   return server;
 }
 
@@ -289,7 +297,7 @@ ManifestFleet read_fleet(const Tree& tree, const Manifest& manifest,
   if (fleet.robot.empty()) fields.missing("robot");
   if (!fleet.robot.empty()) judge_name(fleet.robot, "a robot's", tree.origin, findings);
   for (const auto& peer : fleet.peers)
-    judge_address("a peer of the fleet", peer, tree.origin, findings);
+    judge_address("a peer of the fleet", peer, origin_of(tree, "peers"), findings);
   if (fleet.domain == manifest.domain)
     fields.wrong(
         "its domain must not be the robot's own, both are " + std::to_string(manifest.domain),
@@ -399,9 +407,10 @@ Result<Manifest> read_manifest(const std::string& path,
     return Error{"no manifest: expected the keys robot, site, hosts, components (" + tree->origin +
                  ")"};
   fields.finish();
-  if (!robot.empty())
+  if (!robot.empty() &&
+      judge_name(robot, "a robot's", origin_of(*tree, "robot"), manifest.findings))
     manifest.robot_file = find_config(config_directories, "robots/" + robot + ".yaml");
-  if (!site.empty())
+  if (!site.empty() && judge_name(site, "a site's", origin_of(*tree, "site"), manifest.findings))
     manifest.site_file = find_config(config_directories, "sites/" + site + "/site.yaml");
 
   if (hosts != nullptr) {
@@ -413,6 +422,10 @@ Result<Manifest> read_manifest(const std::string& path,
       const auto& component =
           manifest.components.emplace_back(read_component(name, entry, manifest.findings));
       judge_host("component '" + name + "'", component.host, component.origin_of("host"), manifest);
+    }
+    for (const auto& [name, entry] : components->removed) {
+      const Tree* type = entry.find("type");
+      manifest.removed.push_back({name, type == nullptr ? name : type->scalar, entry.origin});
     }
   }
   for (const auto& [key, value] : tree->entries) manifest.origins[key] = value.origin;

@@ -36,6 +36,13 @@ struct ManifestComponent {
   const std::string& origin_of(const std::string& key) const;
 };
 
+/// A component that a manifest takes out of what it extends.
+struct RemovedComponent {
+  std::string name;
+  std::string type;
+  std::string origin;  ///< of the null
+};
+
 struct ManifestHost {
   std::string name;
   std::vector<std::string> peers;  ///< addresses of the other hosts, where multicast does not reach
@@ -75,6 +82,7 @@ struct Manifest {
   ManifestFleet fleet;
   std::vector<ManifestHost> hosts;
   std::vector<ManifestComponent> components;
+  std::vector<RemovedComponent> removed;
   std::map<std::string, std::string> origins;  ///< of the keys that are given
   std::vector<Finding> findings;               ///< what is wrong with the manifest by itself
 

@@ -261,6 +261,10 @@ Tree overlay(Tree base, const Tree& over, std::vector<Finding>& findings) {
                             "there is no '" + brief(key) + "' here that null could remove" +
                                 suggestion(key, known),
                             value.origin});
+      if (existing != nullptr) {
+        base.removed.push_back({key, std::move(*existing)});
+        base.removed.back().value.origin = value.origin;
+      }
       std::erase_if(base.entries, [&key = key](const auto& entry) { return entry.key == key; });
     } else if (existing != nullptr) {
       *existing = overlay(std::move(*existing), value, findings);

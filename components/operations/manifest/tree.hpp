@@ -18,6 +18,8 @@ struct Tree {
   std::string scalar;
   std::vector<Tree> items;     ///< of a list
   std::vector<Entry> entries;  ///< of a map, in the order of the file
+  std::vector<Entry> removed;  ///< of a map: what a null of a file above took out; `origin` is the
+                               ///< null's
   std::string origin;          ///< "deploy/demo.yaml:12"
 
   static Tree word(std::string text, std::string origin);

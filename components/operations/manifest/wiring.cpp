@@ -100,15 +100,32 @@ class Judge {
     findings_.push_back({verdict, std::move(text), component.origin_of(key)});
   }
 
+  /// Who would write a topic had the manifest not taken him out; null if nobody would.
+  const RemovedComponent* removed_writer(const std::string& topic) const {
+    const auto writes = [&](const RemovedComponent& removed) {
+      const auto contract = contracts_.find(removed.type);
+      return contract != contracts_.end() &&
+             std::ranges::any_of(contract->second.outputs,
+                                 [&](const auto& port) { return port.topic == topic; });
+    };
+    const auto found = std::ranges::find_if(manifest_.removed, writes);
+    return found == manifest_.removed.end() ? nullptr : &*found;
+  }
+
   void judge_input(const ManifestComponent& reader, const Contract::InputPort& port) {
     const auto writers = writers_.find(port.topic);
     if (writers == writers_.end()) {
       const auto entry = catalogue().find(port.topic);
       const bool by_operator =
           entry != catalogue().end() && entry->second.writers.contains(kOperator);
-      if (!port.optional && !by_operator) {
-        found(Verdict::kNoWriter,
-              "'" + reader.name + "' reads " + port.topic + ", and nobody writes it", reader);
+      if (port.optional || by_operator) return;
+      const std::string reads = "'" + reader.name + "' reads " + port.topic;
+      if (const auto* removed = removed_writer(port.topic)) {
+        findings_.push_back({Verdict::kNoWriter,
+                             reads + ", which '" + removed->name + "' wrote that is taken out here",
+                             removed->origin});
+      } else {
+        found(Verdict::kNoWriter, reads + ", and nobody writes it", reader);
       }
       return;
     }

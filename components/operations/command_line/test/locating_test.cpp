@@ -98,6 +98,13 @@ TEST_F(Locating, BelievesNothingThatWasSaidBefore) {
   answer(kBefore, confidence::STATE_GOOD);
   const auto result = told();
   ASSERT_FALSE(result) << "it stayed where it was";
+  EXPECT_EQ(result.error(), "its scans do not fit there: it believes to be at 1.00 2.00 0.00");
+}
+
+TEST_F(Locating, SaysThatAmclDoesNotAnswer) {
+  auto reader = amcl_->reader(topics::kInitialPose).value();
+  const auto result = told();
+  ASSERT_FALSE(result);
   EXPECT_THAT(result.error(), HasSubstr("did not take the pose"));
 }
 

@@ -269,11 +269,24 @@ TEST_F(ManifestFile, SaysHowHostsMeetAndWhereTheKeysAre) {
   EXPECT_EQ(shortened(manifest->origin_of("security")), "m.yaml:4");
 }
 
+TEST_F(ManifestFile, TakesNoPathForARobotOrASite) {
+  EXPECT_THAT(findings("robot: ../r\nsite: /etc/site.yaml\nhosts: {nuc: {}}\n"
+                       "components: {a: {host: nuc}}\n"),
+              ElementsAre("m.yaml:1: wrong value: a robot's name must be 1 to 64 letters, digits, "
+                          "'_' or '-', got \"../r\"",
+                          "m.yaml:2: wrong value: a site's name must be 1 to 64 letters, digits, "
+                          "'_' or '-', got /etc/site.yaml"));
+}
+
 TEST_F(ManifestFile, FindsHostsThatCannotBeReached) {
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peers: [nuc.local]}}\n"
                        "components: {a: {host: nuc}}\n"),
               ElementsAre("m.yaml:3: wrong value: a peer of 'nuc' must be an IPv4 address like "
                           "10.0.0.2, got nuc.local"));
+  folder_.file("deploy/base.yaml", std::string(kHead) + "components: {a: {host: nuc}}\n");
+  EXPECT_THAT(findings("extends: base.yaml\nhosts: {tablet: {peers: [tablet.local]}}\n"),
+              ElementsAre(HasSubstr("m.yaml:2: wrong value: a peer of 'tablet' must be")))
+      << "where it is given, not where the host is";
   EXPECT_THAT(
       findings(std::string(kHead) + "discovery_server: {host: laptop, address: nuc, port: 80}\n"
                                     "components: {a: {host: nuc}}\n"),

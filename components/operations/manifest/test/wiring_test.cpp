@@ -70,6 +70,24 @@ TEST_F(Wiring, IsGoodWhenEveryInputHasItsWriter) {
   EXPECT_THAT(findings("  lms100: {host: nuc}\n  scan_filter: {host: nuc}\n"), IsEmpty());
 }
 
+TEST_F(Wiring, BlamesTheNullThatTookAWriterOut) {
+  add(writer("lms100", "scan"));
+  add(reader("scan_filter", "scan"));
+  folder_.file("base.yaml",
+               "robot: r\nsite: s\nhosts: {nuc: {}}\ncomponents:\n  laser: {host: nuc, type: "
+               "lms100}\n  scan_filter: {host: nuc}\n");
+  const auto manifest =
+      read_manifest(folder_.file("over.yaml", "extends: base.yaml\ncomponents:\n  laser: ~\n"), {});
+  ASSERT_TRUE(manifest) << manifest.error();
+  std::vector<Finding> found;
+  judge_wiring(*manifest, contracts_, found);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(to_string(found.front()),
+            folder_.path() +
+                "/over.yaml:3: no writer: 'scan_filter' reads scan, which 'laser' wrote that is "
+                "taken out here");
+}
+
 TEST_F(Wiring, FindsAnInputThatNobodyWrites) {
   add(writer("lms100", "scan"));
   add(reader("scan_filter", "scan"));
