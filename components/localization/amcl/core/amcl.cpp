@@ -27,6 +27,7 @@ constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
 // either, or for long, the place is wrong, not the map.
 constexpr double kUnmappedMargin = 0.5;
 constexpr double kMostUnmapped = 0.6;
+constexpr int kDoubtingUpdates = 10;    // after a gap: a place that is wrong explains beams so
 constexpr double kUnmappedGain = 0.05;  // of the share lately, in an update
 
 // Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
@@ -115,6 +116,11 @@ void Amcl::start_globally() {
   estimate_.reset();
 }
 
+void Amcl::look_again() {
+  force_update_ = true;
+  doubting_updates_ = kDoubtingUpdates;
+}
+
 geometry::Pose2 Amcl::random_free_pose() {
   const grid::Cell cell = map_.cell(free_cells_[random_.below(free_cells_.size())]);
   const double x = map_.origin_x + (cell.x + random_.uniform()) * map_.resolution;
@@ -183,9 +189,9 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
   choose_beams(scan, std::max<std::size_t>(config_.refine_beams, 2), config_.sensor.max_range,
                false, dense_beams_);
 
-  const double unmapped = estimate_ && search_updates_ == 0 && !result.odometry_restarted
-                              ? drop_unmapped(scan, odom_T_base)
-                              : 0.0;
+  const bool tracks = estimate_ && search_updates_ == 0 && doubting_updates_ == 0;
+  const double unmapped =
+      tracks && !result.odometry_restarted ? drop_unmapped(scan, odom_T_base) : 0.0;
   if (spread_pending_) spread_over_free_space(scan);
   scan_likelihood(scan, particles_);
   const double log_likelihood =
@@ -201,6 +207,8 @@ UpdateResult Amcl::update(const geometry::Pose2& odom_T_base, const LaserBeams& 
     result.resampled = true;
     updates_since_resampling_ = 0;
   }
+  const bool good = estimate_->quality.confidence == Confidence::kGood;
+  doubting_updates_ = good ? 0 : std::max(0, doubting_updates_ - 1);
   force_update_ = false;
   idle_scans_ = 0;
   result.outcome = Outcome::kUpdated;

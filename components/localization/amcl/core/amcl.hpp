@@ -99,6 +99,11 @@ class Amcl {
   /// next update counts whatever the robot moved.
   Status set_initial_pose(const geometry::Pose2& map_T_base, const Eigen::Matrix3d& covariance);
 
+  /// After a time in which the odometry counted nothing: the next scan counts whatever it says that
+  /// the robot moved, and no beam is taken for somebody's until the estimate is good, or scans have
+  /// not made it so for a while.
+  void look_again();
+
   /// Starts (again) knowing only that the robot stands in the map's free space.
   void start_globally();
 
@@ -166,6 +171,7 @@ class Amcl {
   bool force_update_ = true;
   bool spread_pending_ = false;  // a global start waits for its map or first scan
   int search_updates_ = 0;       // since a search over the whole map began; 0 without one
+  int doubting_updates_ = 0;     // left in which no beam is taken for somebody's
   int updates_since_resampling_ = 0;
   int idle_scans_ = 0;                                    // since the last update, while lost
   double slow_likelihood_ = 0.0, fast_likelihood_ = 0.0;  // 0: none yet

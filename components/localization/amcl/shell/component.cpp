@@ -198,6 +198,11 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
   if (!started_ && map_known_) start(odom_T_base);
   const LaserBeams beams{*base_T_laser,    scan.angle_min(), scan.angle_increment(),
                          scan.range_min(), scan.range_max(), scan.ranges()};
+  // What moved the robot in a gap nobody counted: a base that rolled out, somebody who pushed.
+  if (last_scan_ != runtime::Time{} && stamp - last_scan_ > kScanAge) {
+    doubtful_ = true;
+    core_.look_again();
+  }
   const UpdateResult result = core_.update(odom_T_base, beams);
   bad_beams_ += result.beams.out_of_range;
   if (result.outcome == Outcome::kOdometryRejected) ++rejected_odometry_;
@@ -208,6 +213,9 @@ void AmclComponent::update(const sensor_msgs::msg::LaserScan& scan, runtime::Tim
     last_scan_ = stamp;
     last_used_ = effective;
   }
+  if (result.outcome == Outcome::kUpdated &&
+      core_.estimate()->quality.confidence == Confidence::kGood)
+    doubtful_ = false;
   if (!core_.estimate() || last_scan_ != stamp) return;
   publish_transform(stamp);
   if (result.outcome == Outcome::kUpdated) {
@@ -256,6 +264,10 @@ void AmclComponent::publish_status() {
                std::to_string(static_cast<int>(100.0 * estimate->quality.explained)) +
                " % of the scan";
     }
+    if (doubtful_) {
+      confidence = Confidence::kLost;
+      reason = "scans or their places were missing" + (reason.empty() ? "" : "; " + reason);
+    }
   } else {
     reason = map_known_ ? "no pose yet" : "no map";
   }
@@ -284,7 +296,7 @@ void AmclComponent::publish_cloud() {
 
 void AmclComponent::keep() {
   const auto& estimate = core_.estimate();
-  if (!estimate || estimate->quality.confidence != Confidence::kGood) return;
+  if (!estimate || doubtful_ || estimate->quality.confidence != Confidence::kGood) return;
   refused_memory_.clear();
   // A robot that cannot write its disk still localizes; it only starts at the site's pose the next
   // time.

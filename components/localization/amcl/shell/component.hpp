@@ -41,6 +41,7 @@ class AmclComponent final : public runtime::Component {
   runtime::Time last_scan_{};   ///< its stamp, on the clock of the host that it came from
   runtime::Time last_used_{};   ///< when that was, on this host's clock
   runtime::Duration scan_interval_{};  ///< between the last two
+  bool doubtful_ = false;              ///< since a gap, until a scan fits where it believes to be
   runtime::Time valid_until_{};        ///< of map -> odom, as it was told
   std::uint64_t& rejected_scans_;
   std::uint64_t& rejected_odometry_;

@@ -65,6 +65,14 @@ class Component : public testing::Test {
       host.run_for(milliseconds(100));
     }
   }
+  /// Tells it where it stands.
+  void tell_pose() {
+    geometry_msgs::msg::PoseWithCovarianceStamped hint;
+    hint.header(wire::header(host.now(), frames::kMap));
+    hint.pose().pose(wire::to_message(stands));
+    hint.pose().covariance(wire::to_covariance(Eigen::Vector3d(0.04, 0.04, 0.02).asDiagonal()));
+    host.publish(topics::kInitialPose, hint);
+  }
   usher_msgs::msg::LocalizationStatus status() const {
     return host.last(topics::kLocalizationStatus).value();
   }
@@ -93,6 +101,27 @@ TEST_F(Component, IsLostWithoutScansAndBackWithThem) {
   EXPECT_EQ(status().reason(), "no scan");
   run(500);
   EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+}
+
+/// As a base that rolls out while its odometry cannot be used.
+TEST_F(Component, IsLostUntilAScanFitsWhereItBelievesToBeAfterAGap) {
+  give_map(map);
+  stands = {6.0, 1.0, 0.0};  // in a room, where a scan fits one place
+  tell_pose();
+  run(2000);
+  ASSERT_EQ(status().state(), STATE_GOOD) << status().reason();
+  run(1500, false, false);
+  stands = {6.7, 1.5, 0.3};
+  host.clear();
+  run(3000);
+  EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+  const auto pose = wire::to_planar(host.last(topics::kAmclPose)->pose().pose());
+  ASSERT_TRUE(pose);
+  EXPECT_LT(geometry::distance(*pose, stands), 0.1) << "no odometry told it that it moved";
+  for (const auto& each : host.written(topics::kLocalizationStatus)) {
+    if (each.state() == STATE_GOOD) break;
+    EXPECT_EQ(each.state(), STATE_LOST) << each.reason();
+  }
 }
 
 TEST_F(Component, TellsTheFrameOfTheMapUntilTheNextScanWhateverItsRate) {
@@ -173,11 +202,7 @@ TEST_F(Component, RejectsAndCountsNonsenseAndKeepsItsBelief) {
 TEST_F(Component, TakesUpItsPoseAfterARestart) {
   give_map(map);
   stands = {3.0, 5.1, 0.0};  // not where the site starts it
-  geometry_msgs::msg::PoseWithCovarianceStamped hint;
-  hint.header(wire::header(host.now(), frames::kMap));
-  hint.pose().pose(wire::to_message(stands));
-  hint.pose().covariance(wire::to_covariance(Eigen::Vector3d(0.04, 0.04, 0.02).asDiagonal()));
-  host.publish(topics::kInitialPose, hint);
+  tell_pose();
   run(3000);
   ASSERT_EQ(status().state(), STATE_GOOD) << status().reason();
   host.world().kill(host.name());

@@ -319,6 +319,9 @@ void DynamicWindow::spare_front(const Input& input, Decision& decision) {
   if (!front || t.back_left || t.back_right || !stands) return;
   if (!touched_at_ || distance(*touched_at_, input.pose) > kSamePlace) touched_at_ = input.pose;
   if (distance(*touched_at_, input.pose) > kSparing) return;
+  // A wall that it nearly touches behind may be a cell nearer than its cell tells.
+  const Pose2 behind = geometry::integrate(input.pose, {-kSparing, 0.0}, 1.0);
+  if (touches(input, narrow_, behind)) return;
   const Decision back = recover(input, {-config_.slowest, 0.0});
   if (back.blocked || back.reason != Reason::kRecovering) return;
   decision.command = back.command;

@@ -715,6 +715,11 @@ TEST(BackingOff, WhoHasToWaitSparesWhatTouchesInFront) {
   DynamicWindow between = planner_to(2.0);
   between.set_touches(front);
   EXPECT_EQ(between.decide(narrow, {}, {}, {}, 0.1).command.v, 0.0) << "a wall behind";
+  Costs touched = wall;
+  for (int y = 0; y < g.height; ++y) touched.at({g.cell_at({-0.28, 0.0}).x, y}) = 254;
+  DynamicWindow tight = planner_to(2.0);
+  tight.set_touches(front);
+  EXPECT_EQ(tight.decide(touched, {}, {}, {}, 0.1).command.v, 0.0) << "one that it nearly touches";
 }
 
 TEST(Rotating, RunsWhileTheOutlineSweepsNothing) {
