@@ -46,7 +46,8 @@ class Component : public testing::Test {
   }
   /// Walks along the beam: slow, and surely right.
   double range(double angle) const {
-    for (double r = 0.0; r < 20.0; r += 0.01) {
+    for (int step = 0; step < 2000; ++step) {
+      const double r = 0.01 * step;
       const auto cell =
           map.geometry().cell_at(stands.x + r * std::cos(angle), stands.y + r * std::sin(angle));
       if (map.value_or(cell, grid::kFree) == grid::kOccupied) return r;
