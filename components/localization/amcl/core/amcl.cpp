@@ -27,8 +27,9 @@ constexpr std::size_t kLeastBeams = 5;  // fewer tell nothing about a pose
 // either, or for long, the place is wrong, not the map.
 constexpr double kUnmappedMargin = 0.5;
 constexpr double kMostUnmapped = 0.6;
-constexpr int kDoubtingUpdates = 10;    // after a gap: a place that is wrong explains beams so
 constexpr double kUnmappedGain = 0.05;  // of the share lately, in an update
+// Updates after a gap that leave out no beam: those that tell of a wrong place would look unmapped.
+constexpr int kDoubtingUpdates = 10;
 
 // Recovery: how far the scan likelihood falls below its long-term mean before hypotheses are drawn.
 constexpr double kLostRatio = 0.6;  // the short-term mean, anywhere on the map [gutmann2002]
