@@ -42,7 +42,8 @@ class Demo {
 };
 
 /// MARVIN guides a visitor to `destination`; empty = where the visitor wants to go by itself.
-std::unique_ptr<Demo> guide_demo(const std::string& destination);
+/// `pixels`: every pixel of both depth cameras is rendered.
+std::unique_ptr<Demo> guide_demo(const std::string& destination, bool pixels);
 /// The meeting assistant finds a free room and brings two people.
 std::unique_ptr<Demo> meeting_demo();
 

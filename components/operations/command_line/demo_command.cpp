@@ -86,6 +86,7 @@ struct DemoArguments {
   std::string out;
   std::string destination;
   std::uint64_t seed = 1;
+  bool pixels = false;
 };
 
 /// Subscriptions to topics of all types. Must end before its observer.
@@ -207,9 +208,11 @@ int demo(const DemoArguments& arguments) {
   const bool meets = arguments.what == kMeeting;
   if (meets && !arguments.destination.empty())
     return misused("--to is the guide's: the meeting assistant looks for the room itself");
+  if (meets && arguments.pixels)
+    return misused("--pixels is the guide's: `usher experiment gather-pixels` renders a meeting");
   const std::string out =
       !arguments.out.empty() ? arguments.out : (meets ? "build/demo-meeting" : "build/demo");
-  auto made = meets ? meeting_demo() : guide_demo(arguments.destination);
+  auto made = meets ? meeting_demo() : guide_demo(arguments.destination, arguments.pixels);
   const auto installation = Installation::of_this_program();
   // What an earlier run left would pass for this one's.
   std::error_code ignored;
@@ -280,6 +283,11 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", arguments->seed, "Of the simulation")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag(
+      "--pixels", arguments->pixels,
+      "The guide: render every pixel of both depth cameras for the depth pipeline and "
+      "the people detector themselves, not for the models fitted to them; most of "
+      "a core more");
   command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
 }
 

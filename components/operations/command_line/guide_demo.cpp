@@ -14,12 +14,11 @@ constexpr const char* kVisitor = "visitor";
 
 class GuideDemo final : public Demo {
  public:
-  explicit GuideDemo(std::string destination) : destination_(std::move(destination)) {}
-  const Text& text() const override {
-    static const Text text{"demo", "demo.yaml", "MARVIN guides a visitor", "the visitor got there",
-                           "the visitor did not get there as promised"};
-    return text;
-  }
+  GuideDemo(std::string destination, bool pixels)
+      : text_{"demo", pixels ? "demo-pixels.yaml" : "demo.yaml", "MARVIN guides a visitor",
+              "the visitor got there", "the visitor did not get there as promised"},
+        destination_(std::move(destination)) {}
+  const Text& text() const override { return text_; }
   std::chrono::seconds longest() const override { return std::chrono::minutes(6); }
   std::vector<Override> overrides() const override {
     if (destination_.empty()) return {};
@@ -74,14 +73,15 @@ class GuideDemo final : public Demo {
   }
 
  private:
+  Text text_;
   std::string destination_;
   std::string last_state_;
 };
 
 }  // namespace
 
-std::unique_ptr<Demo> guide_demo(const std::string& destination) {
-  return std::make_unique<GuideDemo>(destination);
+std::unique_ptr<Demo> guide_demo(const std::string& destination, bool pixels) {
+  return std::make_unique<GuideDemo>(destination, pixels);
 }
 
 }  // namespace usher::operations
