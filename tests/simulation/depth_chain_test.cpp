@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "operations/experiments/depth_stage.hpp"
 #include "operations/experiments/scan_judgement.hpp"
 #include "sensing/depth_pipeline/core/calibration.hpp"
 #include "sensing/depth_pipeline/core/depth_pipeline.hpp"
@@ -154,6 +155,56 @@ furniture:
   EXPECT_NEAR(at(view.low->ranges, 2.35, -0.9), std::hypot(2.15, 0.9), 0.06);  // the box
   EXPECT_NEAR(at(result.low, 2.35, -0.9), std::hypot(2.15, 0.9), 0.06);
 }
+
+/// A Kinect whose images the pipeline gets, and what may become of the bearings.
+struct Kind {
+  const char* name;
+  rendering::DepthSensorConfig (*camera)();
+  bool refit;
+  double missed, unknown, false_ones;  ///< [%] at most
+  double error;                        ///< [m] of 95 % of the ranges
+};
+
+class KinectInTheOffice : public testing::TestWithParam<Kind> {};
+
+TEST_P(KinectInTheOffice, ShowsWhatIsThereWhileItLeans) {
+  const Kind& kind = GetParam();
+  auto stage = operations::DepthStage::make(kOffice, kind.camera(), 3);
+  ASSERT_TRUE(stage.ok()) << stage.error();
+  depth_pipeline::PipelineConfig config;
+  config.confidence_frames = 1;
+  config.refit = kind.refit;
+  if (kind.camera().noise == rendering::DepthSensorConfig::Noise::kStructuredLight)
+    config.refitted = depth_pipeline::for_structured_light(config.refitted);
+  auto pipeline = DepthPipeline::make(stage->camera(), config).value();
+  operations::ScanJudgement judgement;
+  for (const Pose2& place : {Pose2{24.9, 1.6, 0.55}, Pose2{12.0, 10.0, 0.0}, Pose2{14.0, 3.0, 1.2},
+                             Pose2{30.0, 20.0, 0.4}}) {
+    for (const double degrees : {-10.0, -5.0, 0.0, 5.0, 10.0}) {
+      const auto image = stage->look(place, radians(degrees), 0.0);
+      const auto view = pipeline.process(image, stage->pose()).value();
+      judgement.take(stage->nearest(pipeline.geometry()), view.scan->ranges);
+    }
+  }
+  std::printf(
+      "%s: %d bearings with something, missed %.2f %%, unknown %.2f %%, false %.2f %%, "
+      "error %.3f m\n",
+      kind.name, judgement.obstacles, 100.0 * judgement.missed_share(),
+      100.0 * judgement.unknown_share(), 100.0 * judgement.false_share(), judgement.error(0.95));
+  EXPECT_GT(judgement.obstacles, 3000);
+  EXPECT_LE(100.0 * judgement.missed_share(), kind.missed);
+  EXPECT_LE(100.0 * judgement.unknown_share(), kind.unknown);
+  EXPECT_LE(100.0 * judgement.false_share(), kind.false_ones);
+  EXPECT_LE(judgement.error(0.95), kind.error);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EachKind, KinectInTheOffice,
+    testing::Values(Kind{"v2", rendering::kinect_v2, false, 3.0, 1.0, 0.5, 0.03},
+                    Kind{"v2Fitted", rendering::kinect_v2, true, 3.0, 1.0, 0.5, 0.03},
+                    Kind{"v1", rendering::kinect_v1, false, 3.0, 1.0, 0.5, 0.06},
+                    Kind{"v1Fitted", rendering::kinect_v1, true, 3.0, 1.0, 0.5, 0.06}),
+    [](const auto& kind) { return std::string(kind.param.name); });
 
 constexpr const char* kEmptyHall = R"(name: hall
 walls:

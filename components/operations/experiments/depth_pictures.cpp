@@ -83,6 +83,21 @@ cv::Mat draw_scans(const std::vector<DrawnScan>& scans, const std::string& title
   return picture;
 }
 
+void mark_picture(cv::Mat& picture, const std::vector<Mark>& marks) {
+  for (const Mark& mark : marks) {
+    const cv::Point at(cvRound(mark.place.x), cvRound(mark.place.y));
+    cv::circle(picture, at, 10, cv::Scalar(255, 255, 255), -1, cv::LINE_AA);
+    cv::circle(picture, at, 10, cv::Scalar(40, 40, 220), 2, cv::LINE_AA);
+    write(picture, mark.number, at + cv::Point(-4, 5), cv::Scalar(20, 20, 20));
+  }
+}
+
+void mark_scans(cv::Mat& picture, const std::vector<Mark>& marks) {
+  std::vector<Mark> in_pixels = marks;
+  for (Mark& mark : in_pixels) mark.place = pixel_of(mark.place);
+  mark_picture(picture, in_pixels);
+}
+
 Status save_row(const std::vector<std::pair<std::string, cv::Mat>>& pictures,
                 const std::string& path) {
   int height = 0;

@@ -27,6 +27,14 @@ std::vector<cv::Point2d> points_of(const depth_pipeline::ThesisMethod::Scan& sca
 /// Figure 4.20b: the robot below in the middle, a grid of 1 m.
 cv::Mat draw_scans(const std::vector<DrawnScan>& scans, const std::string& title);
 
+/// A point of interest, as in table 4.1, in a picture or in a view from above.
+struct Mark {
+  std::string number;
+  cv::Point2d place;  ///< pixels; [m] ahead, left of the robot
+};
+void mark_picture(cv::Mat& picture, const std::vector<Mark>& marks);
+void mark_scans(cv::Mat& picture, const std::vector<Mark>& marks);
+
 /// Pictures of one size beside one another, each with its title.
 Status save_row(const std::vector<std::pair<std::string, cv::Mat>>& pictures,
                 const std::string& path);

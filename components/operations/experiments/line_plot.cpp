@@ -64,7 +64,7 @@ class Plot {
          0.55);
   }
 
-  void curve(const Curve& curve, int entry) {
+  void curve(const Curve& curve) {
     const cv::Scalar color(curve.blue, curve.green, curve.red);
     std::vector<cv::Point> line;  // what is not finite interrupts it
     const auto end_line = [&] {
@@ -79,7 +79,8 @@ class Plot {
       }
     }
     end_line();
-    const int x = kLeft + entry * 260, y = kHeight - 20;
+    if (curve.label.empty()) return;
+    const int x = kLeft + entries_++ * 260, y = kHeight - 20;
     cv::line(image_, {x, y - 5}, {x + 30, y - 5}, color, 3, cv::LINE_AA);
     text(curve.label, x + 38, y, 0.55);
   }
@@ -108,6 +109,7 @@ class Plot {
 
   Axis x_, y_;
   cv::Mat image_;
+  int entries_ = 0;  // of the legend
 };
 
 }  // namespace
@@ -125,8 +127,7 @@ Status draw_plot(const std::vector<Curve>& curves, const std::string& title,
   y.finish();
   Plot plot(x, y);
   plot.axes(title, x_label, y_label);
-  int entry = 0;
-  for (const auto& curve : curves) plot.curve(curve, entry++);
+  for (const auto& curve : curves) plot.curve(curve);
   return plot.save(path);
 }
 

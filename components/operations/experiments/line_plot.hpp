@@ -9,7 +9,7 @@
 namespace usher::operations {
 
 struct Curve {
-  std::string label;
+  std::string label;  ///< empty: not in the legend
   int red = 0, green = 0, blue = 0;
   std::vector<std::pair<double, double>> points;  ///< x, y; what is not finite is left out
 };

@@ -72,7 +72,9 @@ const std::vector<Experiment>& experiments() {
        run_interaction_zones_experiment,
        {"--seeds"}},
       {"stopping",
-       "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step",
+       "Stopping distances of the thesis' table 8.1 and figures 8.1-8.4, lock-step; how far laser "
+       "and "
+       "rendered depth images agree meanwhile",
        run_stopping_experiment,
        {"--seeds", "--only"}},
       {"reaction",
@@ -97,8 +99,8 @@ const std::vector<Experiment>& experiments() {
        run_faults_experiment,
        {"--windows", "--only"}},
       {"depth-pipeline",
-       "Thesis 4.4: figures 4.11 to 4.21, table 4.2 over DDS processes, scans against the truth; "
-       "--only images without processes",
+       "Thesis 4.4: figures 4.11 to 4.21 (but for 4.13, 4.14 and 4.18, which hold no data), table "
+       "4.2 over DDS processes, scans against the truth; --only images without processes",
        run_depth_pipeline_experiment,
        {"--only"}},
       {"human-detection",

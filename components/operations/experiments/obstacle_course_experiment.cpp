@@ -212,6 +212,7 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
     sheet.metrics["arrived" + key] = sums.arrived;
     sheet.metrics["contacts" + key] = sums.contacts;
     sheet.metrics["mean_speed_m_s" + key] = sums.mean_speed();
+    sheet.metrics["steepest_pitch_deg" + key] = geometry::degrees(sums.steepest);
     sheet.metrics["all_objects_in_time" + key] = sums.in_time;
     sheet.metrics["bar_in_time" + key] = sums.bar_in_time;
     sheet.metrics["false_bearings_share" + key] = sums.false_share / sums.runs;

@@ -394,6 +394,8 @@ Result<Manifest> read_manifest(const std::string& path,
   fields.number("domain", std::uint32_t{0}, std::uint32_t{232}, manifest.domain);
   fields.number("seed", std::uint64_t{0}, ~std::uint64_t{0}, manifest.seed);
   fields.one_of("fresh_start", {{"true", true}, {"false", false}}, manifest.fresh_start);
+  if (const Tree* facts = fields.map("robot_facts"); facts != nullptr)
+    manifest.robot_facts = *facts;
   if (robot.empty()) fields.missing("robot");
   if (site.empty()) fields.missing("site");
   std::string keys;

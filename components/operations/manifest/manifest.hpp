@@ -73,6 +73,7 @@ struct Manifest {
   std::string name;        ///< of the deployment; the file's name unless given
   std::string robot_file;  ///< config/robots/<robot>.yaml
   std::string site_file;   ///< config/sites/<site>/site.yaml
+  Tree robot_facts;        ///< what this robot has otherwise than its file says: a map, or null
   std::uint32_t domain = 0;
   std::uint64_t seed = 1;
   bool fresh_start = false;  ///< a launch forgets what components kept: a simulated robot stands

@@ -43,7 +43,7 @@ Movement movement_of(const Contract& contract) {
 
 /// Who alone may set a parameter of this name; empty = anybody.
 std::string owner_of(const std::string& name) {
-  if (name.starts_with("robot.")) return "the robot's file";
+  if (name.starts_with("robot.")) return "the robot's file or the manifest's robot_facts";
   if (name.starts_with("site.")) return "the site's file";
   if (name.starts_with("manifest.")) return "the launcher";
   return {};
@@ -109,6 +109,14 @@ Layer read_layer(const std::string& path, const std::string& prefix, const std::
   return layer;
 }
 
+/// Lays what the manifest says of its robot over the robot's file.
+void lay_facts(const Manifest& manifest, Layer& robot, std::vector<Finding>& findings) {
+  Layer facts;
+  for (const auto& [key, value] : manifest.robot_facts.entries)
+    flatten(value, "robot." + key, facts, findings);
+  for (auto& [name, value] : facts.shared) robot.shared.insert_or_assign(name, std::move(value));
+}
+
 /// Facts that the launcher knows best; a component asks for them like for any parameter.
 ParameterValue derived(const std::string& name, const Manifest& manifest) {
   const std::string origin = manifest.path + ":1";
@@ -133,7 +141,9 @@ class Resolver {
         robot_(read_layer(manifest.robot_file, "robot", manifest.origin_of("robot"),
                           deployment.findings)),
         site_(read_layer(manifest.site_file, "site", manifest.origin_of("site"),
-                         deployment.findings)) {}
+                         deployment.findings)) {
+    lay_facts(manifest, robot_, deployment.findings);
+  }
 
   void run(const std::vector<Override>& overrides) {
     if (!manifest_.fleet.robot.empty() && !manifest_.keys.empty())

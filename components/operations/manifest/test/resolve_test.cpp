@@ -133,13 +133,29 @@ TEST_F(Resolving, GivesTheFactsOfRobotAndSite) {
       << "who may move the robot shows life at 50 Hz";
 }
 
+TEST_F(Resolving, LaysTheManifestsFactsOverThoseOfTheRobotsFile) {
+  const std::string legs = "  legs: {host: nuc}\n";
+  const auto deployment = resolved(legs + "robot_facts: {arm: {length: 40 cm}}\n");
+  EXPECT_THAT(deployment.findings, IsEmpty());
+  EXPECT_EQ(value(deployment, "robot.arm.length"), "40 cm (deploy/m.yaml:6)");
+  EXPECT_EQ(value(deployment, "robot.width"), "0.6 m (config/robots/r.yaml:1)");
+  EXPECT_THAT(findings(legs + "robot_facts: {arm: {lenght: 40 cm}}\n"),
+              ElementsAre("deploy/m.yaml:6: unknown key: no component asks for 'arm.lenght'; did "
+                          "you mean arm.length?"));
+  EXPECT_THAT(findings(legs + "robot_facts: {arm: {length: 40 kg}}\n"),
+              ElementsAre(HasSubstr("deploy/m.yaml:6: wrong value: robot.arm.length")));
+  EXPECT_THAT(findings(legs + "robot_facts: 3\n"),
+              ElementsAre("deploy/m.yaml:6: wrong value: manifest: 'robot_facts' must be a map, "
+                          "got 3"));
+}
+
 TEST_F(Resolving, RefusesFactsThatAreSetElsewhere) {
   const std::string set =
       "  legs:\n    host: nuc\n    parameters:\n      robot.width: 0.5 m\n"
       "      site.plan: x\n";
   EXPECT_THAT(findings(set),
               ElementsAre("deploy/m.yaml:8: misplaced: 'robot.width' can be set only by the "
-                          "robot's file",
+                          "robot's file or the manifest's robot_facts",
                           "deploy/m.yaml:9: misplaced: 'site.plan' can be set only by the site's "
                           "file"));
   EXPECT_EQ(value(resolved(set), "robot.width"), "0.6 m (config/robots/r.yaml:1)");
