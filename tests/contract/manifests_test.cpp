@@ -1,13 +1,16 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "operations/manifest/manifest.hpp"
 #include "support/process.hpp"
 
 namespace usher {
@@ -98,6 +101,28 @@ TEST_F(UsherCheck, AcceptsTheShippedManifests) {
     EXPECT_EQ(check.wait(), 0) << entry.path() << "\n" << check.output() << check.errors();
     EXPECT_NE(check.output().find(": good, "), std::string::npos) << check.output();
     EXPECT_EQ(check.errors(), "");
+  }
+}
+
+/// Which host runs what; docs/hosts.md tells of it.
+TEST_F(UsherCheck, SensingHasAHostOfItsOwnInTheManifestOfThreeHosts) {
+  const auto manifest = operations::read_manifest("deploy/marvin-three-hosts.yaml", {"config"});
+  ASSERT_TRUE(manifest) << manifest.error();
+  const auto one_host = operations::read_manifest("deploy/marvin.yaml", {"config"});
+  ASSERT_TRUE(one_host) << one_host.error();
+  std::map<std::string, std::set<std::string>> parts;
+  for (const auto& component : manifest->components) parts[component.host].insert(component.name);
+  EXPECT_THAT(parts["sensing"], testing::ElementsAre("lms100", "scan_filter", "sensor_board"));
+  EXPECT_THAT(parts["tablet"], testing::ElementsAre("tablet"));
+  EXPECT_THAT(parts["nuc"], testing::IsSupersetOf({"supervisor", "movement_control", "segway_rmp",
+                                                   "local_planner", "amcl", "costmap"}));
+  EXPECT_EQ(parts.size(), manifest->hosts.size());
+  EXPECT_EQ(manifest->components.size(), one_host->components.size()) << "nobody is lost";
+  for (const auto& component : manifest->components) {
+    const auto* before = one_host->component(component.name);
+    ASSERT_NE(before, nullptr) << component.name;
+    EXPECT_EQ(component.criticality, before->criticality) << component.name;
+    EXPECT_EQ(component.heartbeat_timeout, before->heartbeat_timeout) << component.name;
   }
 }
 

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
 #include "deployment/running_robot.hpp"
 #include "foundation/grid/map_file.hpp"
+#include "support/terminal.hpp"
 
 namespace usher::test {
 namespace {
@@ -146,6 +149,120 @@ TEST_F(Commands, GotoDrivesThere) {
   ASSERT_TRUE(well()) << robot_->complaints();
   const auto text = output({"goto", "--pose", "4.5", "5.3", "1.5708"});
   EXPECT_TRUE(contains(text, "arrived\n")) << text;
+}
+
+/// Somebody at a keyboard who drives the robot, and a judge at its wheels.
+class Driver {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit Driver(RunningRobot& robot) : robot_(robot) {
+    auto wheels = robot.observer().reader(topics::kSimBaseCommand,
+                                          [this](const auto& m, const auto&) { told_ = m.v(); });
+    auto truths = robot.observer().reader(
+        topics::kSimGroundTruth, [this](const auto& m, const auto&) { speed_ = std::abs(m.v()); });
+    assert(wheels && truths);
+    wheels_ = std::move(wheels).value();
+    truths_ = std::move(truths).value();
+  }
+
+  bool sits_down() {
+    teleop_ = robot_.command({"teleop"}, terminal_.path());
+    return wait_for([&] {
+      return terminal_.text().find("standing  pace") != std::string::npos && is_manual();
+    });
+  }
+  /// Holds the key until the robot drives.
+  bool drives(const std::string& key) {
+    return wait_for([&] {
+      terminal_.type(key);
+      return speed_ > 0.2;
+    });
+  }
+  /// Until the wheels are told to stand [s].
+  double until_zero() {
+    const auto since = Clock::now();
+    EXPECT_TRUE(wait_for([&] { return told_ == 0.0; }));
+    const double took = Seconds(Clock::now() - since).count();
+    EXPECT_TRUE(wait_for([&] { return speed_ < 0.02; }));
+    return took;
+  }
+  bool is_manual() const {
+    const auto status = robot_.status();
+    return status && status->state() == usher_msgs::msg::SupervisorStatus_Constants::STATE_MANUAL;
+  }
+  Terminal& terminal() { return terminal_; }
+  Process& teleop() { return *teleop_; }
+
+ private:
+  bool wait_for(const std::function<bool()>& condition) {
+    return robot_.wait_for(
+        [&] {
+          terminal_.text();
+          return condition();
+        },
+        Seconds(20));
+  }
+
+  RunningRobot& robot_;
+  Terminal terminal_;
+  std::unique_ptr<Process> teleop_;
+  std::atomic<double> told_{0.0}, speed_{0.0};
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::BaseCommand>> wheels_;
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::GroundTruth>> truths_;
+};
+
+constexpr double kKeyIsHeld = 0.5;    // [s] after its last repeat, unless --hold says otherwise
+constexpr double kJoyIsHeard = 0.25;  // [s] after its last sample
+constexpr double kZero = 0.2;         // [s] the promise
+
+TEST_F(Commands, TeleopDrivesWhileAKeyIsHeld) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const double slow = slowdown();
+  Driver driver(*robot_);
+  ASSERT_TRUE(driver.sits_down()) << driver.terminal().text() << driver.teleop().errors();
+  ASSERT_TRUE(driver.drives("w")) << driver.terminal().text() << robot_->complaints();
+  EXPECT_TRUE(contains(driver.terminal().text(), "driving   pace"));
+  EXPECT_LT(driver.until_zero(), kKeyIsHeld + kZero * slow) << "the key was let go";
+  ASSERT_TRUE(driver.drives("\033[B")) << "an arrow, and back";
+  driver.terminal().type(" ");
+  EXPECT_LT(driver.until_zero(), kZero * slow) << "the space bar waits for nothing";
+  EXPECT_TRUE(driver.is_manual());
+  driver.terminal().type("x");
+  EXPECT_EQ(driver.teleop().wait(), 0) << driver.teleop().errors();
+  EXPECT_TRUE(robot_->wait_for([&] { return !driver.is_manual(); }, Seconds(5)));
+  EXPECT_TRUE(well()) << robot_->complaints();
+}
+
+TEST_F(Commands, TeleopWhoseWindowIsClosedLeavesTheRobotStandingAndEndsTheManualMode) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const double slow = slowdown();
+  Driver driver(*robot_);
+  ASSERT_TRUE(driver.sits_down()) << driver.terminal().text() << driver.teleop().errors();
+  ASSERT_TRUE(driver.drives("w")) << driver.terminal().text() << robot_->complaints();
+  driver.terminal().close();
+  EXPECT_LT(driver.until_zero(), kZero * slow);
+  EXPECT_EQ(driver.teleop().wait(), 0) << driver.teleop().errors();
+  EXPECT_TRUE(robot_->wait_for([&] { return !driver.is_manual(); }, Seconds(5)));
+  EXPECT_TRUE(well()) << robot_->complaints();
+}
+
+TEST_F(Commands, TeleopThatIsKilledLeavesTheRobotStanding) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  const double slow = slowdown();
+  {
+    Driver driver(*robot_);
+    ASSERT_TRUE(driver.sits_down()) << driver.terminal().text() << driver.teleop().errors();
+    ASSERT_TRUE(driver.drives("s")) << driver.terminal().text() << robot_->complaints();
+    driver.teleop().signal(SIGKILL);
+    EXPECT_LT(driver.until_zero(), kJoyIsHeard + kZero * slow);
+    EXPECT_TRUE(driver.is_manual()) << "nobody ended it";
+  }
+  Driver next(*robot_);
+  ASSERT_TRUE(next.sits_down()) << next.terminal().text() << next.teleop().errors();
+  next.terminal().type("x");
+  EXPECT_EQ(next.teleop().wait(), 0) << next.teleop().errors();
+  EXPECT_TRUE(well()) << robot_->complaints();
 }
 
 TEST_F(Commands, StopHoldsTheRobotUntilMove) {

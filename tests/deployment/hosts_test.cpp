@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <mutex>
@@ -125,16 +126,27 @@ TEST(Hosts, ABadLinkDoesNotReachTheDriveChain) {
   EXPECT_GT(networks->frames(), 1000U) << "the link was used";
 }
 
-/// The simulated MARVIN whose laser, sensor board and scan filter run on the second machine, and a
-/// judge at its wheels on the first.
+/// What deploy/marvin-sim.yaml makes of the manifest that it extends.
+std::string simulated() {
+  std::string text = content_of(USHER_SOURCE_DIR "/deploy/marvin-sim.yaml");
+  const std::string extends = "extends: marvin.yaml\n";
+  const auto at = text.find(extends);
+  assert(at != std::string::npos);
+  return text.erase(at, extends.size());
+}
+
+/// deploy/marvin-three-hosts.yaml in simulation: laser, sensor board and scan filter run on the
+/// second machine, and a judge at its wheels on the first.
 class SensingElsewhere {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit SensingElsewhere(TwoNetworks& networks)
       : hosts_(networks, folder_,
-               {.lines = "components:\n  lms100: {host: tablet}\n  sensor_board: {host: tablet}\n"
-                         "  scan_filter: {host: tablet}\n",
+               {.base = "marvin-three-hosts.yaml",
+                .lines = simulated(),
+                .hosts_of_a = {"nuc", "tablet"},
+                .hosts_of_b = {"sensing"},
                 .listen = [this](runtime::Observer& observer) {
                   auto wheels =
                       observer.reader(topics::kSimBaseCommand, [this](const auto& m, const auto&) {

@@ -1,12 +1,19 @@
 // Without keys anybody on the network may write: what the running robot then does.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <functional>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <span>
 #include <thread>
 
 #include "deployment/driven_robot.hpp"
+#include "operations/security/packet_attack.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::test {
@@ -15,6 +22,7 @@ namespace {
 using runtime::Bytes;
 using Clock = DrivenRobot::Clock;
 using namespace usher_msgs::msg;
+using namespace operations;
 
 constexpr const char* kIntruder = "intruder";
 constexpr double kFirstZero = 0.2;     // [s] the promise
@@ -79,6 +87,45 @@ template <class Message>
 Target target(const topics::Topic<Message>& topic, const Message& message = {}) {
   return {std::string(topic.name), std::string(runtime::message_type<Message>().name),
           bytes_of(message)};
+}
+
+/// What the robot decides by, beside what moves it, scan and tf.
+std::vector<Target> decided_by() {
+  return {
+      target(topics::kJoy),
+      target(topics::kBaseStatus),
+      target(topics::kOdom),
+      target(topics::kTfStatic),
+      target(topics::kScanFiltered),
+      target(topics::kUltrasonic),
+      target(topics::kUltrasonicFiltered),
+      target(topics::kWhiskers),
+      target(topics::kPeople),
+      target(topics::kPersonAhead),
+      target(topics::kMap),
+      target(topics::kAmclPose),
+      target(topics::kLocalizationStatus),
+      target(topics::kLocalCosts),
+      target(topics::kGlobalCosts),
+      target(topics::kCostmapRequest),
+      target(topics::kPlanRequest),
+      target(topics::kPlanReply),
+      target(topics::kFollowGoal),
+      target(topics::kFollowCancel),
+      target(topics::kFollowStatus),
+      target(topics::kNavigateStatus),
+      target(topics::kNavigatePace),
+      target(topics::kMovementStatus),
+      target(topics::kSupervisorStatus),
+      target(topics::kLocations),
+      target(topics::kKinectTilt),
+      target(topics::kInteractionTarget),
+      target(topics::kTorsoFrame),
+      target(topics::kTorsoStatus),
+      target(topics::kVisitor),
+      target(topics::kGuideStatus),
+      target(topics::kDialogueScreen),
+  };
 }
 
 /// Whether the supervisor holds the robot for this, and says who writes what.
@@ -180,48 +227,164 @@ TEST_F(IntruderTest, WhoFloodsWhatOnlyComponentsWriteStopsTheRobotAndIsNamed) {
 }
 
 TEST_F(IntruderTest, IsNamedOnEachOtherTopicThatTheRobotDecidesBy) {
-  const Target targets[] = {
-      target(topics::kJoy),
-      target(topics::kBaseStatus),
-      target(topics::kOdom),
-      target(topics::kTfStatic),
-      target(topics::kScanFiltered),
-      target(topics::kUltrasonic),
-      target(topics::kUltrasonicFiltered),
-      target(topics::kWhiskers),
-      target(topics::kPeople),
-      target(topics::kPersonAhead),
-      target(topics::kMap),
-      target(topics::kAmclPose),
-      target(topics::kLocalizationStatus),
-      target(topics::kLocalCosts),
-      target(topics::kGlobalCosts),
-      target(topics::kCostmapRequest),
-      target(topics::kPlanRequest),
-      target(topics::kPlanReply),
-      target(topics::kFollowGoal),
-      target(topics::kFollowCancel),
-      target(topics::kFollowStatus),
-      target(topics::kNavigateStatus),
-      target(topics::kNavigatePace),
-      target(topics::kMovementStatus),
-      target(topics::kSupervisorStatus),
-      target(topics::kLocations),
-      target(topics::kKinectTilt),
-      target(topics::kInteractionTarget),
-      target(topics::kTorsoFrame),
-      target(topics::kTorsoStatus),
-      target(topics::kVisitor),
-      target(topics::kGuideStatus),
-      target(topics::kDialogueScreen),
-  };
-  for (const auto& target : targets) {
+  for (const auto& target : decided_by()) {
     SCOPED_TRACE(target.topic);
     ASSERT_TRUE(robot().is_ready()) << running().complaints();
     const Intruder intruder(running(), target.topic, target.type, {});
     EXPECT_TRUE(running().wait_for([&] { return names(running(), target.topic); }, Seconds(5)))
         << running().complaints();
   }
+  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+}
+
+/// Sends what is no message to everybody of a robot, in the name of who commands it, and what is no
+/// announcement in the name of a participant that writes nothing.
+class Vandal {
+ public:
+  explicit Vandal(RunningRobot& robot)
+      : everybody_(listeners(robot.domain())), tap_(PacketTap::open(robot.domain())) {
+    for (const auto& endpoint : robot.observer().endpoints()) {
+      if (endpoint.writer && endpoint.topic == "rt/drive/command") commander_ = endpoint.guid;
+    }
+    auto made =
+        runtime::Observer::create({.name = "stranger", .host = "nuc", .domain = robot.domain()});
+    assert(made);
+    stranger_ = std::move(made).value();
+  }
+
+  std::size_t places() const { return everybody_.size(); }
+  std::uint64_t sent() const { return sent_; }
+  bool knows_whom_to_name() const { return commander_ != runtime::Guid{}; }
+  /// Of the stranger, to be mangled; nothing where packets may not be heard.
+  bool hears_an_announcement() {
+    constexpr std::array<std::uint8_t, 4> kAnnouncer{0x00, 0x01, 0x00, 0xc2};
+    if (!tap_ || announcement_) return true;
+    runtime::Guid announcer = stranger_->guid();
+    std::ranges::copy(kAnnouncer, announcer.begin() + 12);
+    announcement_ = tap_->next_of(announcer);
+    return announcement_.has_value();
+  }
+  void attack(std::chrono::milliseconds time) {
+    const auto until = Clock::now() + time;
+    while (Clock::now() < until) {
+      for (const auto& message : malformed(commander_, payload_, random_)) send(message);
+      if (announcement_) {
+        for (int i = 0; i < 100; ++i) send(mangled_announcement());
+      }
+    }
+  }
+
+ private:
+  Bytes mangled_announcement() {
+    constexpr std::ptrdiff_t kHeader = 20;
+    const auto& whole = announcement_->bytes;
+    Bytes message(whole.begin(), whole.begin() + kHeader);
+    const Bytes rest = mangled(std::span(whole).subspan(kHeader), random_);
+    message.insert(message.end(), rest.begin(), rest.end());
+    return message;
+  }
+  void send(const Bytes& message) {
+    for (const auto& to : everybody_) sent_ += sender_.send(to, message) ? 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+
+  const Bytes payload_ = bytes_of(DriveCommand{});
+  const std::vector<sockaddr_in> everybody_;
+  Result<PacketTap> tap_;
+  runtime::Guid commander_{};
+  std::unique_ptr<runtime::Observer> stranger_;
+  std::optional<Datagram> announcement_;
+  const PacketSender sender_;
+  std::mt19937 random_{1};
+  std::uint64_t sent_ = 0;
+};
+
+TEST_F(IntruderTest, PacketsThatAreNoneStopNothingAndEndNobody) {
+  ASSERT_TRUE(robot().sets_out("lounge")) << running().complaints() << robot().errand_story();
+  const auto processes = running().components();
+  Vandal vandal(running());
+  ASSERT_TRUE(vandal.knows_whom_to_name());
+  ASSERT_GT(vandal.places(), 2 * processes.size());
+  ASSERT_TRUE(running().wait_for([&] { return vandal.hears_an_announcement(); }, Seconds(5)));
+  // A heartbeat may be late by chance on a busy machine.
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    ASSERT_TRUE(robot().under_way() || robot().sets_out("foyer")) << running().complaints();
+    const auto epoch = running().status()->epoch();
+    vandal.attack(std::chrono::seconds(4));
+    if (robot().reason().empty() && running().status()->epoch() == epoch) break;
+    EXPECT_EQ(attempt, 0) << running().fault_story();
+    std::printf("stopped: %s\n", running().fault_story().c_str());
+    ASSERT_TRUE(robot().is_ready()) << running().complaints();
+  }
+  const auto refusals = running().observer().refusals();
+  ASSERT_FALSE(refusals.empty()) << "nothing came";
+  std::printf("%lu packets to %zu places, %lu of them refused by the operator's participant\n",
+              vandal.sent(), vandal.places(), refusals[0].messages);
+  EXPECT_GT(refusals[0].messages, 100U);
+  EXPECT_EQ(running().components(), processes) << running().launcher().output();
+  EXPECT_TRUE(robot().may_drive()) << running().complaints();
+}
+
+/// The same targets with what the robot says there itself, as far as it does within a moment.
+std::vector<Target> as_heard(RunningRobot& robot, std::vector<Target> targets) {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<runtime::Observer::Subscription>> subscriptions;
+  for (auto& target : targets) {
+    auto made = robot.observer().subscribe(
+        "rt/" + target.topic, target.type, {true, false, 1}, [&](const auto& sample) {
+          const std::lock_guard lock(mutex);
+          target.bytes.assign(sample.cdr.begin(), sample.cdr.end());
+        });
+    EXPECT_TRUE(made) << target.topic;
+    if (made) subscriptions.push_back(std::move(made).value());
+  }
+  robot.wait_for([] { return false; }, Seconds(1.0));
+  subscriptions.clear();
+  return targets;
+}
+
+TEST_F(IntruderTest, SamplesThatAreNoneEndNobody) {
+  const auto targets = as_heard(running(), decided_by());
+  ASSERT_TRUE(robot().sets_out("lounge")) << running().complaints() << robot().errand_story();
+  const auto processes = running().components();
+  const double slow = slowdown();
+  robot().forget();
+  {
+    auto intruder =
+        runtime::Observer::create({.name = kIntruder, .host = "nuc", .domain = running().domain()});
+    ASSERT_TRUE(intruder) << intruder.error();
+    const auto born = Clock::now();
+    std::vector<std::unique_ptr<runtime::Observer::RawWriter>> writers;
+    for (const auto& target : targets) {
+      auto made = (*intruder)->foreign_writer("rt/" + target.topic, target.type, {});
+      ASSERT_TRUE(made) << made.error();
+      writers.push_back(std::move(made).value());
+    }
+    std::mt19937 random(1);
+    std::uint64_t written = 0;
+    const auto until = Clock::now() + std::chrono::seconds(3);
+    while (Clock::now() < until) {
+      for (std::size_t i = 0; i < targets.size(); ++i)
+        written += writers[i]->write(mangled(targets[i].bytes, random)) ? 1 : 0;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    EXPECT_TRUE(running().wait_for(
+        [&] {
+          const auto status = running().status();
+          return status && !status->granted() &&
+                 status->reason().find(std::string(kIntruder) + ": writes ") != std::string::npos;
+        },
+        Seconds(2)))
+        << running().complaints();
+    const auto zero = robot().zero_since(born);
+    ASSERT_TRUE(zero);
+    const Seconds took = *zero - born;
+    std::printf("%lu mangled samples on %zu topics, zero after %.0f ms\n", written, targets.size(),
+                took.count() * 1e3);
+    EXPECT_LT(took.count(), kFirstZero * slow);
+    EXPECT_LT(robot().speed(), 0.02);
+  }
+  EXPECT_EQ(running().components(), processes) << running().launcher().output();
   EXPECT_TRUE(robot().is_ready()) << running().complaints();
 }
 

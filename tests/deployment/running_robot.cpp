@@ -149,11 +149,12 @@ void RunningRobot::launch(const std::vector<std::string>& before,
   launcher_ = std::make_unique<Process>(std::move(words));
 }
 
-std::unique_ptr<Process> RunningRobot::command(std::vector<std::string> words) const {
+std::unique_ptr<Process> RunningRobot::command(std::vector<std::string> words,
+                                               const std::string& terminal) const {
   words.insert(words.begin(), usher_program());
   words.push_back("--domain");
   words.push_back(std::to_string(domain_));
-  return std::make_unique<Process>(std::move(words));
+  return std::make_unique<Process>(std::move(words), terminal);
 }
 
 std::optional<SupervisorStatus> RunningRobot::status() const {

@@ -71,8 +71,10 @@ class RunningRobot {
   runtime::Observer& observer() { return *observer_; }
   std::map<std::string, pid_t> components() const { return components_from(folder_.path()); }
 
-  /// A command of the program for this robot: its name, arguments and `--domain N`.
-  std::unique_ptr<Process> command(std::vector<std::string> words) const;
+  /// A command of the program for this robot: its name, arguments and `--domain N`; at a terminal
+  /// where one is given.
+  std::unique_ptr<Process> command(std::vector<std::string> words,
+                                   const std::string& terminal = "") const;
 
   std::optional<usher_msgs::msg::SupervisorStatus> status() const;
   /// Within the last second.

@@ -225,22 +225,12 @@ TEST_F(Security, AMalformedPacketEndsNobody) {
   runtime::Bytes payload;
   const DriveCommand nothing;
   ASSERT_TRUE(runtime::message_type<DriveCommand>().serialize(&nothing, payload));
-  auto packet = forge(Forgery::kUnsigned, {}, writer->guid(), payload, 100);
-  runtime::Bytes statistics(60, 0);
-  statistics[0] = 0x80;
-  statistics[1] = 0x01;
-  statistics[2] = 56;
-  packet.insert(packet.begin() + 20, statistics.begin(), statistics.end());
   const PacketSender sender;
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const auto first = static_cast<std::uint16_t>(7400 + 250 * test_domain());
-  for (std::uint16_t port = 10; port < 250; ++port) {  // of every participant of the domain
-    to.sin_port = htons(static_cast<std::uint16_t>(first + port));
-    for (std::size_t size = 0; size <= packet.size(); ++size) {
-      sender.send(to, std::span(packet).first(size));
-    }
+  const auto everybody = listeners(test_domain());
+  ASSERT_GT(everybody.size(), 2U);
+  std::mt19937 random(1);
+  for (const auto& message : malformed(writer->guid(), payload, random)) {
+    for (const auto& to : everybody) sender.send(to, message);
   }
   ASSERT_TRUE(eventually([&] {
     const auto refusals = reading->refusals();

@@ -23,8 +23,8 @@ TwoHosts::TwoHosts(TwoNetworks& networks, const Folder& folder, const Options& o
         {usher_program(), "keys", folder.path() + "/deploy/keys", "--manifest", manifest_});
     EXPECT_EQ(keys.wait(), 0) << keys.errors();
   }
-  nuc_ = launch(networks.a(), "nuc");
-  tablet_ = launch(networks.b(), "tablet");
+  for (const auto& host : options.hosts_of_a) launchers_.push_back(launch(networks.a(), host));
+  for (const auto& host : options.hosts_of_b) launchers_.push_back(launch(networks.b(), host));
   ::setenv("XDG_RUNTIME_DIR", (folder.path() + "/nuc").c_str(), 1);
   ::setenv("XDG_STATE_HOME", (folder.path() + "/nuc").c_str(), 1);
   TwoNetworks::within(networks.a(), [&] { observe(options); });
@@ -35,8 +35,8 @@ TwoHosts::~TwoHosts() { stop(); }
 void TwoHosts::stop() {
   statuses_.reset();
   observer_.reset();
-  for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->signal(SIGTERM);
-  for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->wait(std::chrono::seconds(30));
+  for (const auto& launcher : launchers_) launcher->signal(SIGTERM);
+  for (const auto& launcher : launchers_) launcher->wait(std::chrono::seconds(30));
 }
 
 /// Each machine has a run directory of its own.
@@ -71,8 +71,9 @@ void TwoHosts::observe(const Options& options) {
 bool TwoHosts::wait_for(const std::function<bool()>& condition, Seconds limit) const {
   const auto end = std::chrono::steady_clock::now() + limit * kSanitizerFactor;
   while (!condition()) {
-    for (auto* launcher : {nuc_.get(), tablet_.get()}) launcher->wait(std::chrono::milliseconds(0));
-    const bool launched = nuc_->pid() > 0 && tablet_->pid() > 0;
+    for (const auto& launcher : launchers_) launcher->wait(std::chrono::milliseconds(0));
+    const bool launched =
+        std::ranges::all_of(launchers_, [](const auto& launcher) { return launcher->pid() > 0; });
     if (!launched || std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -114,7 +115,8 @@ std::unique_ptr<Process> TwoHosts::command(std::vector<std::string> words) const
 }
 
 std::string TwoHosts::story() const {
-  std::string text = nuc_->output() + nuc_->errors() + tablet_->output() + tablet_->errors();
+  std::string text;
+  for (const auto& launcher : launchers_) text += launcher->output() + launcher->errors();
   if (const auto now = status()) {
     text += now->granted() ? "granted\n" : "not granted: " + now->reason() + "\n";
     for (const auto& component : now->components()) {

@@ -12,14 +12,15 @@
 
 namespace usher::test {
 
-/// One robot on two machines: the hosts `nuc` and `tablet` of a manifest, each launched in a
-/// network of its own, and somebody who listens on the nuc's.
+/// One robot on two machines: the hosts of a manifest, those of each machine launched in a network
+/// of its own, and somebody who listens on the first one's, the nuc's.
 class TwoHosts {
  public:
   struct Options {
     std::string base = "marvin-sim.yaml";  ///< in deploy/
     std::string lines;                     ///< the rest of the manifest
     bool secure = false;
+    std::vector<std::string> hosts_of_a = {"nuc"}, hosts_of_b = {"tablet"};
     /// Opens what else is listened to; runs where the observer lives.
     std::function<void(runtime::Observer&)> listen;
   };
@@ -28,7 +29,7 @@ class TwoHosts {
   TwoHosts(const TwoHosts&) = delete;
   TwoHosts& operator=(const TwoHosts&) = delete;
 
-  /// Ends both launchers; what was opened by `listen` must have been closed.
+  /// Ends the launchers; what was opened by `listen` must have been closed.
   void stop();
 
   /// False when the limit passes, or a launcher ends.
@@ -40,7 +41,7 @@ class TwoHosts {
   bool all_is_well() const;
   /// A command of the program, typed on the nuc.
   std::unique_ptr<Process> command(std::vector<std::string> words) const;
-  /// What both launchers said, and who is not well.
+  /// What the launchers said, and who is not well.
   std::string story() const;
 
  private:
@@ -51,7 +52,7 @@ class TwoHosts {
   const Folder& folder_;
   std::uint32_t domain_;
   std::string manifest_;
-  std::unique_ptr<Process> nuc_, tablet_;
+  std::vector<std::unique_ptr<Process>> launchers_;
   mutable std::mutex mutex_;
   std::optional<usher_msgs::msg::SupervisorStatus> status_;
   std::unique_ptr<runtime::Observer> observer_;

@@ -26,19 +26,31 @@ namespace usher::test {
 /// of the scope, with what it started when that watches its parent.
 class Process {
  public:
-  explicit Process(std::vector<std::string> words) {
+  /// With a terminal (its path) it is somebody's who sits there: reads from it, prints to it, and
+  /// is hung up on when it is closed.
+  explicit Process(std::vector<std::string> words, const std::string& terminal = "") {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
     const int flags = O_WRONLY | O_CREAT | O_APPEND;
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, path("output").c_str(), flags, 0600);
+    if (terminal.empty()) {
+      posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+      posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, path("output").c_str(), flags,
+                                       0600);
+    } else {
+      posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);  // it becomes the session's
+      posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, terminal.c_str(), O_RDWR, 0);
+      posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDOUT_FILENO);
+    }
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, path("errors").c_str(), flags, 0600);
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const int error =
-        ::posix_spawn(&pid_, arguments[0], &actions, nullptr, arguments.data(), environ);
+        ::posix_spawn(&pid_, arguments[0], &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) pid_ = -1;
   }

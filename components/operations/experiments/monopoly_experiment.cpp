@@ -172,6 +172,7 @@ std::vector<Target> targets() {
 struct Attack {
   std::string topic, way;
   std::uint64_t written = 0;
+  std::uint64_t with_the_right = 0;  ///< of those, before the robot's right to drive was withdrawn
   /// Commands at the wheels to drive, or to switch their motors off, though nobody else wished so.
   std::uint64_t executed = 0;
   double reported_ms = 0.0;  ///< from its writer's birth
@@ -268,8 +269,11 @@ class Monopoly {
           return named || (*writer)->reader_count() > 0;
         },
         milliseconds(500));
+    bool has_the_right = true;
     for (; attack.written < samples; ++attack.written) {
       const Forgery own = forgery();
+      has_the_right = has_the_right && is_granted();
+      if (has_the_right) ++attack.with_the_right;
       (*writer)->write(replay.empty() ? target.forge(own) : replay[attack.written % replay.size()]);
       if (commander) {
         Forgery granted = own;
@@ -313,6 +317,11 @@ class Monopoly {
                 std::chrono::duration<double, std::milli>(first->at - since).count());
     return static_cast<std::uint64_t>(
         std::count_if(first, robot_.wheels().end(), moves_or_switches_off));
+  }
+
+  bool is_granted() {
+    const auto lock = robot_.locked();
+    return robot_.status() && robot_.status()->granted();
   }
 
   static std::vector<std::uint8_t> way_to(std::uint8_t state) {
@@ -388,6 +397,59 @@ class Monopoly {
   AttackedRobot& robot_;
 };
 
+Table table_of(const std::vector<Attack>& attacks) {
+  Table table({"topic", "intruder", "samples", "of them while it had the right to drive",
+               "executed", "named after ms", "as"});
+  for (const auto& attack : attacks) {
+    table.add({attack.topic, attack.way, std::to_string(attack.written),
+               std::to_string(attack.with_the_right), std::to_string(attack.executed),
+               format("%.0f", attack.reported_ms), attack.reported_as});
+  }
+  return table;
+}
+
+std::string csv_of(const std::vector<Attack>& attacks) {
+  std::string csv = "topic,intruder,samples,samples_with_the_right,executed,named_ms\n";
+  for (const auto& attack : attacks) {
+    csv += attack.topic + "," + attack.way + "," + std::to_string(attack.written) + "," +
+           std::to_string(attack.with_the_right) + "," + std::to_string(attack.executed) + "," +
+           format("%.1f", attack.reported_ms) + "\n";
+  }
+  return csv;
+}
+
+ResultSheet sheet_of(const std::vector<Attack>& attacks, double wanted) {
+  double slowest = 0.0, samples = 0.0, with_the_right = 0.0, executed = 0.0;
+  double least_with_the_right = std::numeric_limits<double>::infinity();
+  for (const auto& attack : attacks) {
+    samples += static_cast<double>(attack.written);
+    with_the_right += static_cast<double>(attack.with_the_right);
+    least_with_the_right =
+        std::min(least_with_the_right, static_cast<double>(attack.with_the_right));
+    executed += static_cast<double>(attack.executed);
+    slowest = std::max(slowest, attack.reported_ms);
+  }
+  ResultSheet sheet;
+  sheet.name = "monopoly";
+  sheet.input =
+      "MARVIN as processes, standing in the state in which the topic would move it; a foreign "
+      "participant writes each topic that "
+      "moves the robot (drive/command; cmd_vel/*; drive/grant, for commands of its own; "
+      "movement/enable, for sticks that are held but not enabled; base/request, an emergency "
+      "stop): same quality, other quality, the right writer's name, exclusive ownership "
+      "of the highest strength, replayed bytes, also of a drive under navigation; it goes on after "
+      "the robot's right to drive was withdrawn";
+  sheet.metrics = {{"samples", samples},
+                   {"samples_with_the_right", with_the_right},
+                   {"samples_with_the_right_least", least_with_the_right},
+                   {"executed", executed},
+                   {"named_ms_max", slowest}};
+  sheet.targets = {{"samples", {Bound::kAtLeast, wanted}},
+                   {"executed", {Bound::kAtMost, 0.0}},
+                   {"named_ms_max", {Bound::kAtMost, kReported}}};
+  return sheet;
+}
+
 }  // namespace
 
 Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
@@ -410,9 +472,8 @@ Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
   }
   const std::uint64_t each = wanted / attacks;
   Monopoly monopoly(**robot);
-  Table table({"topic", "intruder", "samples", "executed", "named after ms", "as"});
-  ResultSheet sheet;
-  double slowest = 0.0, samples = 0.0, executed = 0.0;
+  std::vector<Attack> done;
+  double samples = 0.0;
   for (const auto& target : all) {
     for (const auto& way : ways()) {
       if (!target.takes(way)) continue;
@@ -421,30 +482,16 @@ Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
       const auto attack = monopoly.run(target, way, each);
       if (!attack) return Error{target.topic + ", " + way.name + ": " + attack.error()};
       samples += static_cast<double>(attack->written);
-      executed += static_cast<double>(attack->executed);
-      slowest = std::max(slowest, attack->reported_ms);
-      table.add({attack->topic, attack->way, std::to_string(attack->written),
-                 std::to_string(attack->executed), format("%.0f", attack->reported_ms),
-                 attack->reported_as});
+      done.push_back(*attack);
     }
   }
   show_progress("");
-  sheet.name = "monopoly";
-  sheet.input =
-      "MARVIN as processes, standing in the state in which the topic would move it; a foreign "
-      "participant writes each topic that "
-      "moves the robot (drive/command; cmd_vel/*; drive/grant, for commands of its own; "
-      "movement/enable, for sticks that are held but not enabled; base/request, an emergency "
-      "stop): same quality, other quality, the right writer's name, exclusive ownership "
-      "of the highest strength, replayed bytes, also of a drive under navigation";
-  sheet.metrics = {{"samples", samples}, {"executed", executed}, {"named_ms_max", slowest}};
-  sheet.targets = {{"samples", {Bound::kAtLeast, static_cast<double>(each * attacks)}},
-                   {"executed", {Bound::kAtMost, 0.0}},
-                   {"named_ms_max", {Bound::kAtMost, kReported}}};
+  const Table table = table_of(done);
   std::printf("%s\n", table.text().c_str());
-  if (auto saved = write_file(options.out + "/attacks.md", table.markdown()); !saved)
-    return Error{saved.error()};
-  return sheet;
+  Status saved = write_file(options.out + "/attacks.md", table.markdown());
+  if (saved) saved = write_file(options.out + "/attacks.csv", csv_of(done));
+  if (!saved) return Error{saved.error()};
+  return sheet_of(done, static_cast<double>(each * attacks));
 }
 
 }  // namespace usher::operations

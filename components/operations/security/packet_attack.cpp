@@ -10,7 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <set>
 #include <utility>
 
 namespace usher::operations {
@@ -258,6 +261,125 @@ std::vector<std::vector<std::uint8_t>> sabotage(const runtime::Guid& writer, std
   append_integer(body, std::uint32_t{0x7fffffff});
   append_submessage(heartbeat, 0x07, 0, body);
   return {farewell, gap, heartbeat};
+}
+
+std::vector<std::uint8_t> mangled(View bytes, std::mt19937& random) {
+  constexpr std::array<std::uint32_t, 6> kWords{0xffffffff, 0x7fffffff, 0x80000000,
+                                                0x7fc00000, 0x7f800000, 0};  // -1 .. NaN, infinite
+  Bytes result(bytes.begin(), bytes.end());
+  if (result.empty()) return result;
+  const auto place = [&](std::size_t size) { return random() % (result.size() - size + 1); };
+  switch (random() % 3) {
+    case 0:
+      result.resize(place(1));
+      break;
+    case 1:
+      for (std::size_t i = 1 + random() % 8; i > 0; --i)
+        result[place(1)] = static_cast<std::uint8_t>(random());
+      break;
+    default:
+      if (result.size() < 8) break;
+      for (std::size_t i = 1 + random() % 3; i > 0; --i) {
+        Bytes word;
+        append_integer(word, kWords[random() % kWords.size()]);
+        std::ranges::copy(word, result.begin() + static_cast<std::ptrdiff_t>(place(4) / 4 * 4));
+      }
+  }
+  return result;
+}
+
+std::vector<std::vector<std::uint8_t>> malformed(const runtime::Guid& writer, View payload,
+                                                 std::mt19937& random) {
+  constexpr std::size_t kLongest = 1400, kNoises = 40, kMangled = 40;
+  const Bytes head = header(prefix_of(writer));
+  std::vector<Bytes> all;
+  Bytes sample = head;
+  append_submessage(sample, 0x80, 0, Bytes(56, 0));
+  append_sample(sample, writer, 100, payload);
+  for (std::size_t size = 0; size <= sample.size(); ++size)
+    all.emplace_back(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(size));
+
+  Bytes ids(4, 0);
+  append(ids, entity_of(writer));
+  const auto add = [&](std::uint8_t id, std::uint8_t flags, const Bytes& body) {
+    Bytes message = head;
+    append_submessage(message, id, flags, body);
+    all.push_back(message);
+    message[kRtpsHeader + 2] = message[kRtpsHeader + 3] = 0xff;  // longer than the message
+    all.push_back(std::move(message));
+  };
+  const auto add_sample = [&](std::uint8_t id, std::uint8_t flags, std::uint16_t offset,
+                              const Bytes& rest) {
+    Bytes body{0, 0};
+    append_integer(body, offset);
+    append(body, ids);
+    append_number(body, 100);
+    append(body, rest);
+    add(id, flags, body);
+  };
+  const Bytes endless{0x0f, 0x80, 0xfc, 0x7f, 0, 0, 0, 0};
+  for (const std::uint16_t offset : std::array<std::uint16_t, 5>{0, 15, 0x7fff, 0x8000, 0xffff})
+    add_sample(0x15, 0x04, offset, Bytes(payload.begin(), payload.end()));
+  add_sample(0x15, 0x06, 16, endless);
+  add_sample(0x15, 0x0c, 16, Bytes(payload.begin(), payload.end()));
+  for (const std::uint32_t first : {0U, 1U, 0xffffffffU}) {
+    for (const std::uint32_t size : {0U, 8U, 0xffffffffU}) {
+      Bytes fragment;
+      append_integer(fragment, first);
+      append_integer(fragment, std::uint16_t{0xffff});
+      append_integer(fragment, static_cast<std::uint16_t>(size));
+      append_integer(fragment, size);
+      append(fragment, Bytes(16, 1));
+      add_sample(0x16, 0, 28, fragment);
+    }
+  }
+  for (const std::uint8_t id :
+       std::array<std::uint8_t, 3>{0x06, 0x08, 0x12}) {  // sets of numbers, of 4 billion of them
+    Bytes body = ids;
+    append_number(body, 1);
+    if (id == 0x08) append_number(body, 2);
+    append_integer(body, ~std::uint32_t{0});
+    append_integer(body, ~std::uint32_t{0});
+    add(id, 0, body);
+  }
+  constexpr std::array<std::uint8_t, 11> kOthers{0x07, 0x0c, 0x0d, 0x0e, 0x0f, 0x13,
+                                                 0x30, 0x31, 0x32, 0x33, 0x34};
+  for (const std::uint8_t id : kOthers) add(id, 0, Bytes(8, 0xff));  // too short, or too much
+
+  for (std::size_t i = 0; i < kNoises; ++i) {
+    Bytes message = head;
+    for (std::size_t size = random() % kLongest; size > 0; --size)
+      message.push_back(static_cast<std::uint8_t>(random()));
+    all.push_back(std::move(message));
+  }
+  Bytes broken = header(Bytes(kPrefix, 9));  // it may come out whole: then it is nobody's
+  append_sample(broken, writer, 100, payload);
+  for (std::size_t i = 0; i < kMangled; ++i) all.push_back(mangled(broken, random));
+  return all;
+}
+
+std::vector<sockaddr_in> listeners(std::uint32_t domain) {
+  const std::uint32_t first = 7400 + 250 * domain;
+  std::vector<sockaddr_in> all;
+  const auto add = [&](std::uint32_t address, std::uint32_t port) {
+    sockaddr_in& to = all.emplace_back();
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(address);
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+  };
+  constexpr std::uint32_t kGroup = 0xefff0001;  // 239.255.0.1
+  add(kGroup, first);
+  std::set<std::uint32_t> ports;
+  std::ifstream sockets("/proc/net/udp");
+  for (std::string line; std::getline(sockets, line);) {
+    const auto colon = line.find(':', line.find(':') + 1);  // number: address:port
+    if (colon == std::string::npos) continue;
+    const auto port =
+        static_cast<std::uint32_t>(std::strtoul(line.c_str() + colon + 1, nullptr, 16));
+    if (port >= first + 10 && port < first + 250) ports.insert(port);
+  }
+  for (const auto port : ports) add(INADDR_LOOPBACK, port);
+  return all;
 }
 
 PacketSender::PacketSender() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,6 +67,20 @@ std::vector<std::uint8_t> forge(Forgery forgery, const Datagram& heard, const ru
 /// Plain messages in a participant's name that would end what others know of it: its farewell, a
 /// gap in a writer's numbers, a heartbeat far ahead of them.
 std::vector<std::vector<std::uint8_t>> sabotage(const runtime::Guid& writer, std::uint64_t number);
+
+/// The same bytes with something wrong: an end that is missing, bytes, words or lengths that are
+/// others, a number that is none.
+std::vector<std::uint8_t> mangled(std::span<const std::uint8_t> bytes, std::mt19937& random);
+
+/// Messages in the name of a writer's participant that are none: a sample behind a submessage of
+/// Fast DDS's statistics, whole and cut off at each length; lengths, offsets and counts beyond what
+/// is there; noise behind a good header.
+std::vector<std::vector<std::uint8_t>> malformed(const runtime::Guid& writer,
+                                                 std::span<const std::uint8_t> payload,
+                                                 std::mt19937& random);
+
+/// Where participants of a domain listen on this machine: each one's own ports, and the group's.
+std::vector<sockaddr_in> listeners(std::uint32_t domain);
 
 /// Sends from an ordinary socket.
 class PacketSender {
