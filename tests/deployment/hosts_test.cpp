@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -25,10 +26,12 @@ using std::chrono::milliseconds;
 /// robot.
 class GuideElsewhere {
  public:
-  GuideElsewhere(TwoNetworks& networks, const std::string& lines, bool secure = false)
+  GuideElsewhere(TwoNetworks& networks, const std::string& lines, bool secure = false,
+                 bool discovery_server = false)
       : hosts_(networks, folder_,
                {.lines = lines + "components:\n  guide: {host: tablet}\n",
                 .secure = secure,
+                .discovery_server = discovery_server,
                 .listen = [this](runtime::Observer& observer) {
                   auto truths = observer.reader(
                       topics::kSimGroundTruth,
@@ -101,6 +104,117 @@ TEST(Hosts, LosingTheTabletIsAModeNotACrash) {
   EXPECT_TRUE(robot->granted()) << robot->story();
   networks->set(kGood, kGood);
   ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20))) << robot->story();
+}
+
+/// The simulated MARVIN with a visitor who wants to be guided: he touches what leads to a place, as
+/// long as the guide offers it.
+class GuidedVisit {
+ public:
+  GuidedVisit(TwoNetworks& networks, const std::string& place)
+      : place_(place),
+        hosts_(networks, folder_,
+               {.listen = [this](runtime::Observer& observer) { listen(observer); }}) {}
+  ~GuidedVisit() {
+    truths_.reset();
+    screens_.reset();
+    answers_.reset();
+  }
+
+  TwoHosts* operator->() { return &hosts_; }
+  double speed() const { return speed_; }
+  std::string state() const {
+    const std::lock_guard lock(mutex_);
+    return screen_.state();
+  }
+  /// Waits as the hosts do; the visitor answers meanwhile.
+  bool wait_for(const std::function<bool()>& condition, Seconds limit) {
+    return hosts_.wait_for(
+        [&] {
+          answer();
+          return condition();
+        },
+        limit);
+  }
+
+ private:
+  void listen(runtime::Observer& observer) {
+    auto truths = observer.reader(topics::kSimGroundTruth,
+                                  [this](const auto& m, const auto&) { speed_ = std::abs(m.v()); });
+    auto screens = observer.reader(topics::kDialogueScreen, [this](const auto& m, const auto&) {
+      const std::lock_guard lock(mutex_);
+      screen_ = m;
+    });
+    auto answers = observer.writer(topics::kDialogueAnswer);
+    ASSERT_TRUE(truths && screens && answers);
+    truths_ = std::move(truths).value();
+    screens_ = std::move(screens).value();
+    answers_ = std::move(answers).value();
+  }
+  void answer() {
+    const std::lock_guard lock(mutex_);
+    const std::vector<std::string> wishes =
+        screen_.state() == "inactive" ? std::vector<std::string>{"language:en"}
+                                      : std::vector<std::string>{place_, "guide_me", "start"};
+    for (const std::string& wanted : wishes) {
+      for (const auto& option : screen_.options()) {
+        if (option.id() != wanted) continue;
+        usher_msgs::msg::DialogueAnswer answer;
+        answer.id(screen_.id());
+        answer.client("operator");
+        answer.screen_id(screen_.id());
+        answer.option_id(wanted);
+        answers_->write(answer);
+        return;
+      }
+    }
+  }
+
+  Folder folder_;
+  const std::string place_;
+  std::atomic<double> speed_{0.0};
+  mutable std::mutex mutex_;
+  usher_msgs::msg::DialogueScreen screen_;
+  std::optional<runtime::Observer::Reader<usher_sim_msgs::msg::GroundTruth>> truths_;
+  std::optional<runtime::Observer::Reader<usher_msgs::msg::DialogueScreen>> screens_;
+  std::optional<runtime::Observer::Writer<usher_msgs::msg::DialogueAnswer>> answers_;
+  TwoHosts hosts_;
+};
+
+TEST(Hosts, LosingTheTabletInAVisitEndsNoVisit) {
+  const auto networks = two_networks(TwoNetworks::Kind::kOneSubnet);
+  if (!networks) GTEST_SKIP() << kNoNamespaces;
+  GuidedVisit robot(*networks, "reception");
+  ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) << robot->story();
+  ASSERT_TRUE(robot.wait_for([&] { return robot.state() == "guide_active" && robot.speed() > 0.2; },
+                             Seconds(60)))
+      << robot.state() << "\n"
+      << robot->story();
+  networks->set(kCut, kCut);
+  bool lost_the_right = false;
+  const auto has_the_right = [&] {
+    lost_the_right = lost_the_right || !robot->granted();
+    return !lost_the_right;
+  };
+  ASSERT_TRUE(
+      robot->wait_for([&] { return has_the_right() && !robot->is_ok("tablet"); }, Seconds(10)))
+      << robot->story();
+  EXPECT_EQ(robot.state(), "guide_active") << "lost on the way";
+  EXPECT_TRUE(robot->wait_for([&] { return has_the_right() && robot.state() == "guide_success"; },
+                              Seconds(90)))
+      << robot.state() << "\n"
+      << robot->story();
+  EXPECT_FALSE(lost_the_right);
+  EXPECT_TRUE(robot->wait_for([&] { return robot.speed() < 0.01; }, Seconds(10))) << "it parks";
+  const auto status = robot->command({"status"});
+  EXPECT_EQ(status->wait(), 1);
+  EXPECT_THAT(status->output(), testing::ContainsRegex("\ntablet +missing"));
+
+  networks->set(kGood, kGood);
+  const auto restored = std::chrono::steady_clock::now();
+  ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20))) << robot->story();
+  const Seconds back = std::chrono::steady_clock::now() - restored;
+  std::printf("the tablet is back %.2f s after the link\n", back.count());
+  EXPECT_LT(back.count(), 3.0 * slowdown());
 }
 
 TEST(Hosts, ABadLinkDoesNotReachTheDriveChain) {
@@ -229,6 +343,46 @@ TEST(Hosts, MeetAcrossARouterByPeers) {
                                       "]}\n  tablet: {peers: [" + networks->address_of_a() +
                                       "]}\n");
   EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) << robot->story();
+}
+
+TEST(Hosts, MeetAcrossARouterByADiscoveryServerWhoseDeathStopsNothing) {
+  const char* const kServer = "discovery_server";
+  const auto networks = two_networks(TwoNetworks::Kind::kRouted);
+  if (!networks) GTEST_SKIP() << kNoNamespaces;
+  GuideElsewhere robot(*networks, "", false, true);
+  ASSERT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) << robot->story();
+  const auto errand = robot->command({"goto", "reception"});
+  ASSERT_TRUE(robot->wait_for([&] { return robot.speed() > 0.2; }, Seconds(30)))
+      << robot->story() << errand->errors();
+
+  // On the way it hangs for longer than any lease, then it is killed, and the launcher starts it
+  // again: the robot drives on.
+  const pid_t first = robot->components().at(kServer);
+  bool lost_the_right = false;
+  const auto arrived = [&] {
+    lost_the_right = lost_the_right || !robot->granted();
+    return errand->output().find("arrived") != std::string::npos || !errand->errors().empty();
+  };
+  ::kill(first, SIGSTOP);
+  EXPECT_FALSE(robot->wait_for(arrived, Seconds(1.5)));
+  ::kill(first, SIGKILL);
+  ASSERT_TRUE(robot->wait_for(arrived, Seconds(120))) << robot->story();
+  EXPECT_EQ(errand->wait(), 0) << errand->errors();
+  EXPECT_FALSE(lost_the_right) << robot->story();
+  EXPECT_NE(robot->components().at(kServer), first);
+  EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(10))) << robot->story();
+
+  // Who starts now is found by the next one: a component on each host, and an operator.
+  for (const auto* victim : {"amcl", "guide"}) {
+    const pid_t before = robot->components().at(victim);
+    ::kill(before, SIGKILL);
+    ASSERT_TRUE(robot->wait_for([&] { return !robot->is_ok(victim); }, Seconds(10))) << victim;
+    EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20)))
+        << victim << "\n"
+        << robot->story();
+  }
+  const auto stop = robot->command({"stop"});
+  EXPECT_EQ(stop->wait(), 0) << stop->errors();
 }
 
 TEST(Hosts, MeetAcrossARouterWithSecurity) {

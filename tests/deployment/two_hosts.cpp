@@ -17,6 +17,8 @@ TwoHosts::TwoHosts(TwoNetworks& networks, const Folder& folder, const Options& o
   std::string text = "extends: " + std::string(USHER_SOURCE_DIR) + "/deploy/" + options.base;
   text += "\ndomain: " + std::to_string(domain_) + "\n";
   if (options.secure) text += "security: keys\n";
+  if (options.discovery_server)
+    text += "discovery_server: {host: nuc, address: " + networks.address_of_a() + "}\n";
   manifest_ = folder.file("deploy/robot.yaml", text + options.lines);
   if (options.secure) {
     Process keys(
@@ -50,12 +52,14 @@ std::unique_ptr<Process> TwoHosts::launch(const std::string& network,
 }
 
 void TwoHosts::observe(const Options& options) {
-  auto made = runtime::Observer::create(
-      {.name = "tests",
-       .host = "nuc",
-       .domain = domain_,
-       .peers = {"127.0.0.1"},
-       .identity = options.secure ? folder_.path() + "/deploy/keys/operator" : std::string()});
+  runtime::Observer::Options how{.name = "tests", .host = "nuc", .domain = domain_};
+  if (options.secure) how.identity = folder_.path() + "/deploy/keys/operator";
+  if (options.discovery_server) {
+    how.discovery_server = networks_.address_of_a() + ":11811";
+  } else {
+    how.peers = {"127.0.0.1"};
+  }
+  auto made = runtime::Observer::create(how);
   ASSERT_TRUE(made) << made.error();
   observer_ = std::move(made).value();
   auto statuses =

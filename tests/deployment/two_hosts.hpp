@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,6 +21,7 @@ class TwoHosts {
     std::string base = "marvin-sim.yaml";  ///< in deploy/
     std::string lines;                     ///< the rest of the manifest
     bool secure = false;
+    bool discovery_server = false;  ///< the nuc's; nobody announces to anybody else
     std::vector<std::string> hosts_of_a = {"nuc"}, hosts_of_b = {"tablet"};
     /// Opens what else is listened to; runs where the observer lives.
     std::function<void(runtime::Observer&)> listen;
@@ -39,6 +41,7 @@ class TwoHosts {
   std::uint8_t health_of(const std::string& component) const;
   bool is_ok(const std::string& component) const;
   bool all_is_well() const;
+  std::map<std::string, pid_t> components() const { return components_from(folder_.path()); }
   /// A command of the program, typed on the nuc.
   std::unique_ptr<Process> command(std::vector<std::string> words) const;
   /// What the launchers said, and who is not well.

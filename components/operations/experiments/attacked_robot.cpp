@@ -130,6 +130,8 @@ Status AttackedRobot::listen() {
                            note([&] {
                              status_ = message;
                              status_at_ = Clock::now();
+                             if (!message.granted() && !withdrawn_)
+                               withdrawn_ = wire::from_message(message.header().stamp());
                            });
                          }),
        status_reader_);
@@ -293,6 +295,7 @@ void AttackedRobot::forget() {
   const std::lock_guard lock(mutex_);
   wheels_.clear();
   motions_.clear();
+  withdrawn_.reset();
 }
 
 pid_t AttackedRobot::process(const std::string& component) {

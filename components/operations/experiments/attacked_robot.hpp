@@ -83,6 +83,9 @@ class AttackedRobot {
   const std::vector<Motion>& motions() const { return motions_; }
   const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }
   Instant status_at() const { return status_at_; }
+  /// When the supervisor withdrew the right to drive, on its own clock, since forget(); however
+  /// late it was heard here.
+  std::optional<runtime::Time> withdrawn() const { return withdrawn_; }
   std::optional<runtime::Guid> life_of(const std::string& component) const;
   std::uint64_t grants_lost() const { return grants_lost_; }
   std::unique_lock<std::mutex> locked() { return std::unique_lock(mutex_); }
@@ -113,6 +116,7 @@ class AttackedRobot {
   std::vector<Motion> motions_;
   std::optional<usher_msgs::msg::SupervisorStatus> status_;
   Instant status_at_{};
+  std::optional<runtime::Time> withdrawn_;
   std::map<std::string, runtime::Guid> lives_;
   std::map<std::string, Instant> heard_;
   bool granted_ = false;

@@ -269,11 +269,10 @@ class Monopoly {
           return named || (*writer)->reader_count() > 0;
         },
         milliseconds(500));
-    bool has_the_right = true;
+    std::vector<runtime::Time> written_at;
     for (; attack.written < samples; ++attack.written) {
       const Forgery own = forgery();
-      has_the_right = has_the_right && is_granted();
-      if (has_the_right) ++attack.with_the_right;
+      written_at.push_back(own.now);
       (*writer)->write(replay.empty() ? target.forge(own) : replay[attack.written % replay.size()]);
       if (commander) {
         Forgery granted = own;
@@ -290,6 +289,7 @@ class Monopoly {
     }
     attack.reported_ms = named ? std::chrono::duration<double, std::milli>(*named - first).count()
                                : std::numeric_limits<double>::infinity();
+    attack.with_the_right = with_the_right(written_at);
     attack.executed = executed(first, target.name() + ", " + way.name);
     robot_.release();
     return attack;
@@ -319,9 +319,12 @@ class Monopoly {
         std::count_if(first, robot_.wheels().end(), moves_or_switches_off));
   }
 
-  bool is_granted() {
+  /// Of those, how many while the supervisor had not yet withdrawn the right to drive.
+  std::uint64_t with_the_right(const std::vector<runtime::Time>& written) {
     const auto lock = robot_.locked();
-    return robot_.status() && robot_.status()->granted();
+    const auto until = robot_.withdrawn();
+    return static_cast<std::uint64_t>(std::ranges::count_if(
+        written, [&](runtime::Time time) { return !until || time < *until; }));
   }
 
   static std::vector<std::uint8_t> way_to(std::uint8_t state) {
