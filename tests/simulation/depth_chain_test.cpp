@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "operations/experiments/depth_stage.hpp"
@@ -286,6 +289,55 @@ TEST(FittedFloor, ShowsABarOf10MillimetresInTheModelAsFarAsInThePixels) {
   const auto [pixels, model] = bar_found(2.8);
   EXPECT_LT(pixels, 0.1);
   EXPECT_LT(model, 0.1);
+}
+
+/// Of the bearings at which pixels or model see somebody, how many show him alike.
+struct Alike {
+  int bearings = 0, same = 0;
+  double share() const { return static_cast<double>(same) / bearings; }
+};
+
+/// Alone in an empty hall, at several distances, turned in eight ways.
+Alike scans_of(rendering::Posture posture) {
+  const auto building = parse_building(kEmptyHall, "hall.yaml");
+  Alike alike;
+  for (const double ahead : {1.8, 2.6, 3.6}) {
+    for (int turn = 0; turn < 8; ++turn) {
+      PersonPlan person{.name = "somebody", .start = {ahead, 0.1}, .yaw = turn * geometry::kPi / 4};
+      person.height = 1.75;
+      person.posture = posture;
+      World world({.moves_people = false}, *building, std::span(&person, 1), {0, 0, 0}, 4);
+      depth_pipeline::PipelineConfig config;
+      config.confidence_frames = 1;
+      Chain chain(world, 9, config);
+      for (int i = 0; i < 3; ++i) chain.step();
+      const auto view = chain.see(world.base().truth().pitch);
+      DepthScanModel model({}, 5);
+      DepthScanResult modelled;
+      model.scan(world, chain.camera(), modelled);
+      for (std::size_t i = 0; i < modelled.ranges.size(); ++i) {
+        const float ours = modelled.ranges[i], theirs = view.scan->ranges[i];
+        if (std::isnan(ours) || std::isnan(theirs)) continue;
+        if (!std::isfinite(ours) && !std::isfinite(theirs)) continue;
+        ++alike.bearings;
+        alike.same += std::abs(ours - theirs) < 0.12F;
+      }
+    }
+  }
+  return alike;
+}
+
+TEST(DepthScanModel, ShowsPeopleOfEveryPostureLikeThePixels) {
+  using rendering::Posture;
+  for (const auto& [name, posture, least] : {std::tuple{"standing", Posture::kStanding, 0.64},
+                                             {"sitting", Posture::kSitting, 0.44},
+                                             {"squatting", Posture::kSquatting, 0.61},
+                                             {"bending", Posture::kBending, 0.75},
+                                             {"arms out", Posture::kArmsOut, 0.79}}) {
+    const Alike alike = scans_of(posture);
+    std::printf("%s: %.3f of %d bearings alike\n", name, alike.share(), alike.bearings);
+    EXPECT_GT(alike.share(), least) << name;
+  }
 }
 
 struct MountErrors {

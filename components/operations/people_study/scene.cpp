@@ -90,6 +90,17 @@ void add_poses(std::vector<Scene>& scenes) {
                            {body(1.9, 0.0, yaw, Posture::kSitting)}));
 }
 
+void add_wheelchairs(std::vector<Scene>& scenes) {
+  for (int yaw = 0; yaw < 360; yaw += 45) {
+    const Body sitting = body(1.9, 0.0, yaw, Posture::kSitting);
+    scenes.push_back({"in a wheelchair, turned by " + std::to_string(yaw) + " deg",
+                      empty_room(),
+                      {sitting},
+                      camera(-10.0)});
+    add_wheelchair(scenes.back().model, sitting.pose);
+  }
+}
+
 void add_groups(std::vector<Scene>& scenes) {
   for (const double apart : {1.0, 0.7, 0.5, 0.46}) {
     scenes.push_back(named(
@@ -103,7 +114,7 @@ void add_groups(std::vector<Scene>& scenes) {
 }
 
 void add_distances(std::vector<Scene>& scenes) {
-  for (const double forward : {0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 5.9}) {
+  for (const double forward : {0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 5.9}) {
     for (const double down : {5.0, -10.0}) {
       scenes.push_back(named("at " + std::to_string(static_cast<int>(100 * forward)) +
                                  " cm, camera " + (down > 0 ? "5 deg down" : "10 deg up"),
@@ -111,15 +122,26 @@ void add_distances(std::vector<Scene>& scenes) {
       if (forward > 5.0) scenes.back().model = empty_room(7.5);
     }
   }
-  for (const double share : {0.0, 0.1}) {
-    const double edge = 2.0 * 255.5 / 365.0;  // [m] the image's border, 2 m away
-    scenes.push_back(named("half out of the image, left", {body(2.0, edge - share, 180)}));
-    scenes.push_back(named("half out of the image, right", {body(2.0, -edge + share, 180)}));
-  }
   for (const double pitch : {-12.0, -5.0, 8.0, 15.0})
     scenes.push_back(named("leaning by " + std::to_string(static_cast<int>(pitch)) + " deg",
                            {body(2.5, 0.3, 180), body(3.4, -0.6, 90, Posture::kWalking)},
                            5.0 + pitch));
+}
+
+/// Somebody whose hips are on the image's border, or 10 cm inside or outside of it.
+void add_borders(std::vector<Scene>& scenes) {
+  constexpr double kEdge = 255.5 / 365.0;  // tangent of the border's bearing
+  constexpr const char* kOut[] = {"a third", "half", "two thirds"};
+  for (const int forward : {1, 2, 4}) {
+    for (const int out : {0, 1, 2}) {
+      for (const double side : {1.0, -1.0}) {
+        const double left = side * (kEdge * forward + 0.1 * (out - 1));
+        scenes.push_back(named(std::string(kOut[out]) + " out, " + std::to_string(forward) +
+                                   " m away, " + (side > 0 ? "left" : "right"),
+                               {body(forward, left, 180)}));
+      }
+    }
+  }
 }
 
 void add_things(std::vector<Scene>& scenes) {
@@ -199,8 +221,10 @@ Scene rear_scene(std::uint64_t seed, Crowd crowd) {
 std::vector<Scene> thesis_scenes() {
   std::vector<Scene> scenes;
   add_poses(scenes);
+  add_wheelchairs(scenes);
   add_groups(scenes);
   add_distances(scenes);
+  add_borders(scenes);
   add_things(scenes);
   return scenes;
 }

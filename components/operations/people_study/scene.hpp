@@ -36,7 +36,8 @@ enum class Crowd { kUsual, kHard };
 Scene random_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
 /// The same room seen by MARVIN's rear camera, where config/robots/marvin.yaml mounts it.
 Scene rear_scene(std::uint64_t seed, Crowd crowd = Crowd::kUsual);
-/// The cases of thesis figures 8.17 to 8.21 and what the issue of partly visible people adds.
+/// The cases of thesis figures 8.17 to 8.21, and beyond them people in a wheelchair, half hidden,
+/// partly out of the image, at every distance and lean.
 std::vector<Scene> thesis_scenes();
 
 /// An image of a scene through the whole chain: camera, noise, depth pipeline.

@@ -144,6 +144,24 @@ TEST(DepthDetector, FindsThePeopleOfTheThesisAndNoneOfItsThings) {
   EXPECT_GE(score.precision(), 0.98);
 }
 
+TEST(DepthDetector, FindsWhoSitsInAWheelchairOrIsPartlyOutOfTheImage) {
+  Studio studio;
+  DepthDetector detector = detector_for(studio.intrinsics());
+  int scenes = 0;
+  for (const auto& scene : people_study::thesis_scenes()) {
+    if (scene.name.find("wheelchair") == std::string::npos &&
+        scene.name.find(" m away, ") == std::string::npos)
+      continue;
+    ++scenes;
+    const auto shot = studio.take(scene, 3).value();
+    const auto found = detector.find(shot.processed, shot.view).value();
+    ASSERT_EQ(found.size(), 1U) << scene.name;
+    const auto& body = scene.bodies.front().pose;
+    EXPECT_LT(std::hypot(found[0].forward - body.x, found[0].left - body.y), 0.25) << scene.name;
+  }
+  EXPECT_EQ(scenes, 8 + 18);
+}
+
 TEST(DepthDetector, FindsPeopleInAnyRoom) {
   std::vector<people_study::Scene> scenes;
   for (std::uint64_t seed = 1; seed <= 60; ++seed)

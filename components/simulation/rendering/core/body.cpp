@@ -102,6 +102,19 @@ constexpr double kBelt = 0.055;  // of the height, above the hips: over the thig
 
 }  // namespace
 
+double top_of(Posture posture, double height) {
+  switch (posture) {
+    case Posture::kSitting:
+      return kSeat + 0.53 * height;
+    case Posture::kSquatting:
+      return 0.58 * height;
+    case Posture::kBending:
+      return 0.67 * height;
+    default:
+      return height;
+  }
+}
+
 Waist waist_of(const Body& body, const std::vector<Limb>& limbs) {
   const Limb& left = limbs[kTrunk];
   const Limb& right = limbs[kTrunk + kLimbsOfASide];

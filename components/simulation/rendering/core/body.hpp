@@ -20,6 +20,10 @@ enum class Posture : std::uint8_t {
   kArmsOut = 5,
 };
 
+/// [m] The highest point of a body; of who walks, as if he stood.
+/// @param height [m] when standing upright
+double top_of(Posture posture, double height);
+
 struct Body {
   geometry::Pose2 pose;  ///< on the floor below the hips, x axis where the person looks
   double height = 1.75;  ///< [m] {0.8..2.2} when standing upright

@@ -109,19 +109,8 @@ TEST(Bodies, HaveTheirHeightAndStandOnTheFloor) {
         }
       }
       EXPECT_NEAR(bottom, 0.0, 0.17) << static_cast<int>(posture);
-      switch (posture) {
-        case Posture::kSitting:
-          EXPECT_NEAR(top, 1.35, 0.12);
-          break;
-        case Posture::kSquatting:
-          EXPECT_LT(top, 1.25);
-          break;
-        case Posture::kBending:
-          EXPECT_LT(top, 1.35);
-          break;
-        default:
-          EXPECT_NEAR(top, 1.8, 0.05);
-      }
+      const double slack = posture == Posture::kWalking ? 0.05 : 0.01;
+      EXPECT_NEAR(top, top_of(posture, 1.8), slack) << static_cast<int>(posture);
       EXPECT_EQ(posture == Posture::kArmsOut, side > 0.7F);
     }
   }

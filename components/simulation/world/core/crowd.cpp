@@ -121,7 +121,8 @@ void Crowd::step(const Scene& scene, std::span<const RobotView> robots) {
       push += config_.wall_push * std::exp((person.radius - wall.distance) / config_.wall_reach) *
               unit(person.position - wall.point);
     }
-    if (!walks && push.norm() < kStandsFirm) push.setZero();
+    const bool sits = mind.at_rest == rendering::Posture::kSitting;
+    if (!walks && (sits || push.norm() < kStandsFirm)) push.setZero();
     const bool by_a_wall = wall.distance < person.radius + 0.1;
     turn_sideways(person, walks, robot);
     move(i, (wanted - person.velocity) / config_.relaxation + push, by_a_wall, scene, robot);
@@ -182,12 +183,7 @@ void Crowd::hold(Person& person, const Mind& mind, Mover& mover) const {
   person.stride =
       std::remainder(person.stride + geometry::kPi * speed * kStep / (kStepLength * person.height),
                      2.0 * geometry::kPi);
-  double top = person.height;
-  if (person.posture == Posture::kSitting) top = 0.45 + 0.52 * person.height;
-  if (person.posture == Posture::kSquatting || person.posture == Posture::kBending) {
-    top = 0.65 * person.height;
-  }
-  mover.top = top;
+  mover.top = rendering::top_of(person.posture, person.height);
 }
 
 void Crowd::remember_robots(std::span<const RobotView> robots) {

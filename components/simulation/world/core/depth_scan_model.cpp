@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace usher::world {
 
@@ -20,6 +21,49 @@ Fan fan_for(const DepthScanModelConfig& config) {
   const double left = std::atan((lens.cx + 0.5) / lens.fx / config.widest);
   const double increment = std::atan(1.0 / lens.fx);
   return {-right, increment, static_cast<int>(std::ceil((left + right) / increment))};
+}
+
+/// What of a body is beyond the disc round its hips: a disc on the floor, for a scan keeps no
+/// heights. Shares of the standing height; what has two sides is there on both.
+struct Part {
+  double ahead, aside, radius, top;
+};
+constexpr Part kSitting[] = {{0.19, 0.0, 0.12, 0.46}, {0.33, 0.055, 0.03, 0.05}};
+constexpr Part kSquatting[] = {{0.18, 0.0, 0.12, 0.57},
+                               {0.32, 0.115, 0.03, 0.32},
+                               {0.38, 0.115, 0.03, 0.32},
+                               {0.45, 0.115, 0.03, 0.32}};
+constexpr Part kBending[] = {
+    {0.14, 0.0, 0.12, 0.66}, {0.28, 0.0, 0.14, 0.65}, {0.40, 0.0, 0.06, 0.67}};
+constexpr Part kArmsOut[] = {{0.0, 0.17, 0.03, 0.84},  {0.0, 0.22, 0.03, 0.84},
+                             {0.0, 0.27, 0.03, 0.84},  {0.0, 0.32, 0.03, 0.84},
+                             {0.0, 0.37, 0.025, 0.83}, {0.0, 0.42, 0.025, 0.83},
+                             {0.0, 0.47, 0.025, 0.82}};
+
+std::span<const Part> parts_of(rendering::Posture posture) {
+  switch (posture) {
+    case rendering::Posture::kSitting:
+      return kSitting;
+    case rendering::Posture::kSquatting:
+      return kSquatting;
+    case rendering::Posture::kBending:
+      return kBending;
+    case rendering::Posture::kArmsOut:
+      return kArmsOut;
+    default:
+      return {};
+  }
+}
+
+void add_parts(const Person& person, std::vector<Mover>& movers) {
+  const Pose2 pose{person.position.x(), person.position.y(), person.yaw};
+  for (const Part& part : parts_of(person.posture)) {
+    for (const double side : {1.0, -1.0}) {
+      if (side < 0.0 && part.aside == 0.0) continue;
+      const Point2 place = person.height * Point2(part.ahead, side * part.aside);
+      movers.push_back({pose * place, person.height * part.radius, person.height * part.top});
+    }
+  }
 }
 
 }  // namespace
@@ -70,12 +114,9 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
   version_ = world.scene_version();
   movers_.clear();
   for (const Person& person : world.people()) {
-    const double share = person.posture == rendering::Posture::kStanding ||
-                                 person.posture == rendering::Posture::kWalking
-                             ? 1.0
-                             : 0.75;
-    movers_.push_back(
-        {person.position, person.radius * config_.body_radius, share * person.height});
+    movers_.push_back({person.position, person.radius * config_.body_radius,
+                       rendering::top_of(person.posture, person.height)});
+    add_parts(person, movers_);
   }
   for (const Mover& body : world.robot_bodies()) movers_.push_back(body);
   const geometry::Pose3 pose = camera.pose(world);

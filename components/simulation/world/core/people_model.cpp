@@ -11,8 +11,8 @@ constexpr double kBeam = 4.0;        // [pixels] between two beams
 constexpr double kSlice = 0.2;       // [m] of a body that a fan stands for
 constexpr double kTallest = 2.0;     // [m]
 constexpr double kBurstBlind = 0.3;  // a burst of noise from which nobody is found
-constexpr double kSeated = 0.75;     // share of the standing height
-// Parts of a body whose colors the detector takes for those of the clothes, likewise.
+// Parts of a body whose colors the detector takes for those of the clothes: shares of the standing
+// height.
 constexpr double kUpperFrom = 0.55, kUpperTo = 0.82;
 constexpr double kLegsFrom = 0.10, kLegsTo = 0.46;
 constexpr std::uint8_t kOverexposed = 252, kUnderexposed = 4;  // colors that it leaves out
@@ -29,8 +29,6 @@ bool is_upright(const Person& person) {
          person.posture == rendering::Posture::kWalking ||
          person.posture == rendering::Posture::kArmsOut;
 }
-
-double top_of(const Person& person) { return (is_upright(person) ? 1.0 : kSeated) * person.height; }
 
 }  // namespace
 
@@ -62,7 +60,8 @@ void PeopleModel::look(const World& world, const DepthCamera& camera, const Pose
   const auto people = world.people();
   movers_.clear();
   for (const Person& person : people)
-    movers_.push_back({person.position, person.radius, top_of(person)});
+    movers_.push_back(
+        {person.position, person.radius, rendering::top_of(person.posture, person.height)});
   visible_.assign(people.size(), {});
   const auto things = static_cast<std::int32_t>(world.scene().things().size());
   for (int slice = 0; (slice + 0.5) * kSlice < kTallest; ++slice) {
