@@ -376,7 +376,13 @@ TEST(Hosts, MeetAcrossARouterByADiscoveryServerWhoseDeathStopsNothing) {
   for (const auto* victim : {"amcl", "guide"}) {
     const pid_t before = robot->components().at(victim);
     ::kill(before, SIGKILL);
-    ASSERT_TRUE(robot->wait_for([&] { return !robot->is_ok(victim); }, Seconds(10))) << victim;
+    ASSERT_TRUE(robot->wait_for(
+        [&] {
+          const auto now = robot->components();
+          return now.contains(victim) && now.at(victim) != before;
+        },
+        Seconds(10)))
+        << victim;
     EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(20)))
         << victim << "\n"
         << robot->story();

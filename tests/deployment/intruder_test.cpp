@@ -325,6 +325,30 @@ TEST_F(IntruderTest, PacketsThatAreNoneStopNothingAndEndNobody) {
   EXPECT_TRUE(robot().may_drive()) << running().complaints();
 }
 
+TEST_F(IntruderTest, WhoFloodsWhatAnybodyMayWriteSlowsNoStop) {
+  Heartbeat nobody;
+  nobody.component_name("nobody");
+  drives_beside(target(topics::kHeartbeat, nobody));
+  SupervisorRequest nothing;
+  nothing.client(kIntruder);
+  drives_beside(target(topics::kSupervisorRequest, nothing));
+  EXPECT_TRUE(robot().is_ready()) << running().complaints();
+}
+
+TEST_F(IntruderTest, WhoSpeaksInTheNameOfAComponentThatLivesStopsTheRobot) {
+  Heartbeat amcl;
+  amcl.component_name("amcl");
+  amcl.idl_digest(USHER_IDL_DIGEST);
+  amcl.state(usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+  stops_for(target(topics::kHeartbeat, amcl), [] {
+    const auto status = running().status();
+    return status && !status->granted() &&
+           status->reason() == "amcl: two live participants have this name";
+  });
+  EXPECT_TRUE(running().wait_for([] { return robot().is_ready(); }, Seconds(5)))
+      << running().complaints();
+}
+
 /// The same targets with what the robot says there itself, as far as it does within a moment.
 std::vector<Target> as_heard(RunningRobot& robot, std::vector<Target> targets) {
   std::mutex mutex;
@@ -343,6 +367,8 @@ std::vector<Target> as_heard(RunningRobot& robot, std::vector<Target> targets) {
   return targets;
 }
 
+/// The last one: components keep what they were told, and the robot is to be launched anew
+/// (docs/security.md).
 TEST_F(IntruderTest, SamplesThatAreNoneEndNobody) {
   const auto targets = as_heard(running(), decided_by());
   ASSERT_TRUE(robot().sets_out("lounge")) << running().complaints() << robot().errand_story();
@@ -382,34 +408,10 @@ TEST_F(IntruderTest, SamplesThatAreNoneEndNobody) {
     std::printf("%lu mangled samples on %zu topics, zero after %.0f ms\n", written, targets.size(),
                 took.count() * 1e3);
     EXPECT_LT(took.count(), kFirstZero * slow);
-    EXPECT_LT(robot().speed(), 0.02);
+    EXPECT_TRUE(running().wait_for([&] { return robot().speed() < 0.02; }, Seconds(3)));
   }
   EXPECT_EQ(running().components(), processes) << running().launcher().output();
   EXPECT_TRUE(robot().is_ready()) << running().complaints();
-}
-
-TEST_F(IntruderTest, WhoFloodsWhatAnybodyMayWriteSlowsNoStop) {
-  Heartbeat nobody;
-  nobody.component_name("nobody");
-  drives_beside(target(topics::kHeartbeat, nobody));
-  SupervisorRequest nothing;
-  nothing.client(kIntruder);
-  drives_beside(target(topics::kSupervisorRequest, nothing));
-  EXPECT_TRUE(robot().is_ready()) << running().complaints();
-}
-
-TEST_F(IntruderTest, WhoSpeaksInTheNameOfAComponentThatLivesStopsTheRobot) {
-  Heartbeat amcl;
-  amcl.component_name("amcl");
-  amcl.idl_digest(USHER_IDL_DIGEST);
-  amcl.state(usher_msgs::msg::Heartbeat_Constants::STATE_OK);
-  stops_for(target(topics::kHeartbeat, amcl), [] {
-    const auto status = running().status();
-    return status && !status->granted() &&
-           status->reason() == "amcl: two live participants have this name";
-  });
-  EXPECT_TRUE(running().wait_for([] { return robot().is_ready(); }, Seconds(5)))
-      << running().complaints();
 }
 
 }  // namespace
