@@ -205,8 +205,8 @@ INSTANTIATE_TEST_SUITE_P(
     EachKind, KinectInTheOffice,
     testing::Values(Kind{"v2", rendering::kinect_v2, false, 3.0, 1.0, 0.5, 0.03},
                     Kind{"v2Fitted", rendering::kinect_v2, true, 3.0, 1.0, 0.5, 0.03},
-                    Kind{"v1", rendering::kinect_v1, false, 3.0, 1.0, 0.5, 0.06},
-                    Kind{"v1Fitted", rendering::kinect_v1, true, 3.0, 1.0, 0.5, 0.06}),
+                    Kind{"v1", rendering::kinect_v1, false, 3.0, 2.5, 0.5, 0.06},
+                    Kind{"v1Fitted", rendering::kinect_v1, true, 3.0, 2.5, 0.5, 0.06}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
 constexpr const char* kEmptyHall = R"(name: hall

@@ -210,7 +210,7 @@ TEST_F(ManifestFile, FindsEveryUnknownKey) {
                           "you mean criticality?"));
   EXPECT_THAT(findings(std::string(kHead) + "wheels: 3\ncomponents: {amcl: {host: nuc}}\n"),
               ElementsAre("m.yaml:4: unknown key: manifest: unknown key 'wheels', expected one of "
-                          "name, robot, site, domain, seed, fresh_start, security, "
+                          "name, robot, site, domain, seed, fresh_start, robot_facts, security, "
                           "discovery_server, fleet, hosts, components"));
   EXPECT_THAT(findings("robot: r\nsite: s\nhosts: {nuc: {peer: [a]}}\n"
                        "components: {amcl: {host: nuc}}\n"),
