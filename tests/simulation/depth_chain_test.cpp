@@ -115,7 +115,7 @@ TEST(DepthScanModel, AgreesWithTheRenderedChain) {
   EXPECT_GT(same, 93 * bearings / 100) << "of " << bearings << ", only in the model " << model_only
                                        << ", only in the pixels " << pixels_only;
   EXPECT_LT(worst_bias, 0.03);
-  EXPECT_NEAR(model_unknown, pixels_unknown, all / 200) << "of " << all << " bearings not known";
+  EXPECT_NEAR(model_unknown, pixels_unknown, 0.005 * all) << "of " << all << " bearings not known";
 }
 
 TEST(ScanJudgement, CountsWhatIsNotKnownWhereSomethingIs) {

@@ -112,6 +112,7 @@ class PeopleChain {
 template <class Findings>
 std::vector<Point2> places_of(const Findings& findings) {
   std::vector<Point2> places;
+  places.reserve(findings.size());
   for (const auto& one : findings) places.emplace_back(one.forward, one.left);
   return places;
 }

@@ -110,8 +110,9 @@ Status draw_column(const DepthStage& stage, const Shot& shot, const std::string&
     add(farther, high, slope);
     add(ceiling, depth_of(shot.thesis.ceiling()[index]), slope);
     add(ours, 1e-3 * limits.rows(0)[row].obstacle, slope);
-    const double z =
-        1e-3 * shot.image.millimeters[static_cast<std::size_t>(row * lens.width + column)];
+    const double z = 1e-3 * shot.image.millimeters[static_cast<std::size_t>(row) *
+                                                       static_cast<std::size_t>(lens.width) +
+                                                   static_cast<std::size_t>(column)];
     if (z <= 0.0 || z > kFarthestDrawn) continue;
     for (const double side : {-0.012, 0.012}) pixels.points.emplace_back(z + side, -slope * z);
     pixels.points.emplace_back(kNone, kNone);

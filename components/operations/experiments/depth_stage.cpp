@@ -61,8 +61,9 @@ std::vector<float> DepthStage::nearest(const depth_pipeline::ScanGeometry& geome
   const double sine = std::sin(pose_.down), cosine = std::cos(pose_.down);
   for (int row = 0; row < lens.height; ++row) {
     for (int column = 0; column < lens.width; ++column) {
-      const auto z =
-          static_cast<double>(truth().depth[static_cast<std::size_t>(row * lens.width + column)]);
+      const auto pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(lens.width) +
+                         static_cast<std::size_t>(column);
+      const auto z = static_cast<double>(truth().depth[pixel]);
       const double y = (row - lens.cy) / lens.fy;
       const double height = pose_.height - z * (sine + y * cosine);
       if (z < sensor_.config().least || height < 0.05 || height > 1.95) continue;

@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
     return Prism{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, bottom, top, Material::kMatte};
   };
   for (int i = 0; i < 40; ++i) {
-    const double x = 1.5 + 0.7 * (i % 8), y = -2.5 + 1.0 * (i / 8);
+    const int row = i / 8;
+    const double x = 1.5 + 0.7 * (i % 8), y = -2.5 + 1.0 * row;
     model.prisms.push_back(slab(x, y, x + 0.4, y + 0.1, 0.7, 0.74));
     for (const double leg : {0.0, 0.36})
       model.prisms.push_back(slab(x + leg, y, x + leg + 0.04, y + 0.04, 0.0, 0.7));
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   model.prisms.push_back(slab(7.0, -5.0, 7.1, 5.0, 0.0, 2.7));
   Renderer renderer = Renderer::make(model).value();
   std::vector<Body> people;
+  people.reserve(5);
   for (int i = 0; i < 5; ++i) people.push_back({.pose = {2.0 + 0.5 * i, -1.0 + 0.5 * i, 1.0 * i}});
   DepthSensor v2(kinect_v2(), 1), v1(kinect_v1(), 1), rear(rear_camera(), 1);
   std::vector<std::uint16_t> image;
