@@ -420,7 +420,7 @@ Status Launcher::add_discovery_server(const Deployment& deployment, std::int64_t
   process.components = {kDiscoveryServer};
   process.budget = 1000;  // nothing finds anything without it
   process.criticality = Criticality::kStop;
-  process.goes_first = true;  // late, it forgets who lives
+  process.goes_first = true;  // everybody waits for it
   process.log = options_.run_directory + "/" + kDiscoveryServer + ".log";
   return {};
 }
