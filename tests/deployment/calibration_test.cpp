@@ -87,9 +87,7 @@ walls:
       servo.header(wire::header(now, "base_link"));
       servo.servo(asked);
       tilt.write(servo);
-      const imaging::Intrinsics intrinsics{lens.width, lens.height, lens.fx,
-                                           lens.fy,    lens.cx,     lens.cy};
-      info.write(wire::to_message(now, "kinect_depth_optical", intrinsics));
+      info.write(wire::to_message(now, "kinect_depth_optical", rendering::intrinsics_of(lens)));
       EXPECT_TRUE(renderer.update(world).ok());
       camera.measure(camera.exposure(world), renderer.renderer(), millimeters);
       wire::to_message(now, "kinect_depth_optical",

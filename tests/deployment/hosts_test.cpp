@@ -308,7 +308,8 @@ TEST(Hosts, LosingTheHostOfASensorStopsTheRobotInTime) {
   const std::pair<Line, Line> cuts[] = {{kCut, kCut}, {kGood, kCut}};
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(robot->wait_for([&] { return robot.drives(); }, Seconds(30))) << robot->story();
-    std::this_thread::sleep_for(milliseconds(500 + 7 * i));  // another phase of the heartbeats
+    // Another phase of the heartbeats.
+    robot->wait_for([] { return false; }, Seconds(0.5 + 0.007 * i));
     ASSERT_TRUE(robot->wait_for([&] { return robot.drives(); }, Seconds(30))) << robot->story();
     const double slow = slowdown();
     robot.forget();

@@ -14,6 +14,7 @@
 
 #include "deployment/driven_robot.hpp"
 #include "operations/security/packet_attack.hpp"
+#include "support/decided_by.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::test {
@@ -89,43 +90,27 @@ Target target(const topics::Topic<Message>& topic, const Message& message = {}) 
           bytes_of(message)};
 }
 
-/// What the robot decides by, beside what moves it, scan and tf.
 std::vector<Target> decided_by() {
-  return {
-      target(topics::kJoy),
-      target(topics::kBaseStatus),
-      target(topics::kOdom),
-      target(topics::kTfStatic),
-      target(topics::kScanFiltered),
-      target(topics::kUltrasonic),
-      target(topics::kUltrasonicFiltered),
-      target(topics::kWhiskers),
-      target(topics::kPeople),
-      target(topics::kPersonAhead),
-      target(topics::kMap),
-      target(topics::kAmclPose),
-      target(topics::kLocalizationStatus),
-      target(topics::kLocalCosts),
-      target(topics::kGlobalCosts),
-      target(topics::kCostmapRequest),
-      target(topics::kPlanRequest),
-      target(topics::kPlanReply),
-      target(topics::kFollowGoal),
-      target(topics::kFollowCancel),
-      target(topics::kFollowStatus),
-      target(topics::kNavigateStatus),
-      target(topics::kNavigatePace),
-      target(topics::kMovementStatus),
-      target(topics::kSupervisorStatus),
-      target(topics::kLocations),
-      target(topics::kKinectTilt),
-      target(topics::kInteractionTarget),
-      target(topics::kTorsoFrame),
-      target(topics::kTorsoStatus),
-      target(topics::kVisitor),
-      target(topics::kGuideStatus),
-      target(topics::kDialogueScreen),
-  };
+  std::vector<Target> all;
+  each_topic_that_it_decides_by([&](const auto& topic) { all.push_back(target(topic)); });
+  return all;
+}
+
+/// The newest fault's number; they grow.
+std::uint64_t newest(const std::vector<Fault>& faults) {
+  std::uint64_t id = 0;
+  for (const auto& fault : faults) id = std::max(id, fault.id());
+  return id;
+}
+/// Whether heartbeats that came late are all that was noted since, and some did.
+bool only_late_heartbeats(const std::vector<Fault>& faults, std::uint64_t since) {
+  bool late = false;
+  for (const auto& fault : faults) {
+    if (fault.id() <= since) continue;
+    if (fault.cause() != "component lost: silent") return false;
+    late = true;
+  }
+  return late;
 }
 
 /// Whether the supervisor holds the robot for this, and says who writes what.
@@ -255,7 +240,9 @@ class Vandal {
   std::size_t places() const { return everybody_.size(); }
   std::uint64_t sent() const { return sent_; }
   bool knows_whom_to_name() const { return commander_ != runtime::Guid{}; }
-  /// Of the stranger, to be mangled; nothing where packets may not be heard.
+  /// Why no announcement will be mangled; empty when one will.
+  std::string deaf() const { return tap_ ? std::string() : tap_.error(); }
+  /// Of the stranger, to be mangled; none is waited for by who is deaf.
   bool hears_an_announcement() {
     constexpr std::array<std::uint8_t, 4> kAnnouncer{0x00, 0x01, 0x00, 0xc2};
     if (!tap_ || announcement_) return true;
@@ -305,15 +292,25 @@ TEST_F(IntruderTest, PacketsThatAreNoneStopNothingAndEndNobody) {
   Vandal vandal(running());
   ASSERT_TRUE(vandal.knows_whom_to_name());
   ASSERT_GT(vandal.places(), 2 * processes.size());
+  if (const std::string why = vandal.deaf(); !why.empty())
+    std::printf("NO MANGLED ANNOUNCEMENTS: %s (CAP_NET_RAW)\n", why.c_str());
   ASSERT_TRUE(running().wait_for([&] { return vandal.hears_an_announcement(); }, Seconds(5)));
-  // A heartbeat may be late by chance on a busy machine.
   for (int attempt = 0; attempt < 2; ++attempt) {
     ASSERT_TRUE(robot().under_way() || robot().sets_out("foyer")) << running().complaints();
-    const auto epoch = running().status()->epoch();
+    const auto before = *running().status();
     vandal.attack(std::chrono::seconds(4));
-    if (robot().reason().empty() && running().status()->epoch() == epoch) break;
-    EXPECT_EQ(attempt, 0) << running().fault_story();
+    // What the last packets did is told by now.
+    const auto heard = running().status_count();
+    ASSERT_TRUE(
+        running().wait_for([&] { return running().status_count() >= heard + 2; }, Seconds(5)))
+        << running().complaints();
+    const auto after = *running().status();
+    if (robot().reason().empty() && after.epoch() == before.epoch()) break;
     std::printf("stopped: %s\n", running().fault_story().c_str());
+    // By chance, once, on a busy machine.
+    ASSERT_TRUE(attempt == 0 && only_late_heartbeats(after.faults(), newest(before.faults())))
+        << robot().reason() << "\n"
+        << running().fault_story();
     ASSERT_TRUE(robot().is_ready()) << running().complaints();
   }
   const auto refusals = running().observer().refusals();
@@ -388,12 +385,12 @@ TEST_F(IntruderTest, SamplesThatAreNoneEndNobody) {
     }
     std::mt19937 random(1);
     std::uint64_t written = 0;
-    const auto until = Clock::now() + std::chrono::seconds(3);
-    while (Clock::now() < until) {
+    const auto write_mangled = [&] {
       for (std::size_t i = 0; i < targets.size(); ++i)
         written += writers[i]->write(mangled(targets[i].bytes, random)) ? 1 : 0;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+      return false;  // goes on, after each message of the robot
+    };
+    running().wait_for(write_mangled, Seconds(3));
     EXPECT_TRUE(running().wait_for(
         [&] {
           const auto status = running().status();

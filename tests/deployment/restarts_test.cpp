@@ -42,6 +42,19 @@ unsigned seed() {
   return wanted != nullptr ? static_cast<unsigned>(std::strtoul(wanted, nullptr, 10)) : kSeed;
 }
 constexpr int kKills = 20;
+/// Errands that may be given up. The errand's program does so when the navigator is silent for 5 s,
+/// as long as the launcher waits for one that hangs, and the navigator when no plan comes for long.
+/// They are two of the 20 that are drawn, and every second one hangs: one errand of 20 kills is
+/// expected to end so, more than five by such chance in one run of 3000. Whoever else ends delays
+/// the errand only.
+constexpr int kMostGivenUp = kKills / 4;
+
+/// Whether somebody stopped the process, and nobody has killed it yet.
+bool hangs_already(pid_t process) {
+  const std::string line = content_of("/proc/" + std::to_string(process) + "/stat");
+  const auto name_ends = line.rfind(") ");
+  return name_ends != std::string::npos && line.compare(name_ends + 2, 1, "T") == 0;
+}
 
 std::vector<std::string> everybody() {
   std::vector<std::string> names(std::begin(kDriveChain), std::end(kDriveChain));
@@ -180,14 +193,20 @@ TEST_F(Restarts, AtRandomTimesEndOnTheWayOrInAStopWithAReason) {
   for (int i = 0; i < kKills; ++i) {
     const double pause = draw(0.1, 2.0);
     running().wait_for([] { return false; }, Seconds(pause));
-    const std::string& victim = victims[random() % victims.size()];
     const bool hangs = random() % 2 == 0;  // until the launcher kills it
+    std::string victim;
+    // Whoever is away just then, or hangs already, is not harmed: somebody else is.
+    const auto is_harmed = [&] {
+      victim = victims[random() % victims.size()];
+      const auto processes = running().components();
+      const auto found = processes.find(victim);
+      return found != processes.end() && !(hangs && hangs_already(found->second)) &&
+             ::kill(found->second, hangs ? SIGSTOP : SIGKILL) == 0;
+    };
+    ASSERT_TRUE(running().wait_for(is_harmed, Seconds(10))) << story();
     hung += hangs ? 1 : 0;
     kills += "after " + std::to_string(pause) + " s: " + victim + (hangs ? " hangs " : " ") +
              robot().contact_story() + "\n";
-    const auto processes = running().components();
-    if (const auto found = processes.find(victim); found != processes.end())
-      ::kill(found->second, hangs ? SIGSTOP : SIGKILL);
     if (robot().under_way()) continue;
     if (robot().errand(std::chrono::seconds(1)) != 0) {
       ++failed;
@@ -201,6 +220,7 @@ TEST_F(Restarts, AtRandomTimesEndOnTheWayOrInAStopWithAReason) {
   std::printf(
       "seed %u: %d kills and %d hangs, %d errands given up, longest motion after a grant %.3f s\n",
       seed(), kKills - hung, hung, failed, robot().longest_without_grant());
+  EXPECT_LE(failed, kMostGivenUp) << kills << story();
   EXPECT_LT(robot().longest_without_grant(), kWithoutGrant * slow);
   EXPECT_EQ(robot().contacts(), 0U) << kills << robot().contact_story() << story();
 }

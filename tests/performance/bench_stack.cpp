@@ -22,6 +22,7 @@
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/launcher/launcher.hpp"
 #include "operations/launcher/precedence.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "runtime/dds/observer.hpp"
 #include "support/bench.hpp"
 #include "support/test_domain.hpp"

@@ -11,7 +11,7 @@
 
 #include "foundation/grid/costs.hpp"
 #include "operations/command_line/installation.hpp"
-#include "operations/experiments/errand.hpp"
+#include "operations/experiments/commanded_robot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "support/folder.hpp"
@@ -19,8 +19,6 @@
 
 namespace usher::operations {
 namespace {
-
-using std::chrono::milliseconds;
 
 struct Way {
   const char* name;
@@ -88,58 +86,48 @@ Outcome drive_blindly(const Way& way, bool guard) {
   const test::Folder folder;
   if (way.world != nullptr)
     set_site_value(*deployment, "site.world", folder.file("world.yaml", way.world));
-  auto run = LockstepRun::create(*deployment, 1);
-  EXPECT_TRUE(run.ok()) << run.error();
-  auto& world = (*run)->world();
   Outcome outcome;
-  Errand errand(
-      way.goal, 1000,
-      {[&](const auto& request) {
-         world.publish(topics::kSupervisorRequest, request, Errand::kClient);
-       },
-       [&](const auto& goal) { world.publish(topics::kNavigateGoal, goal, Errand::kClient); }});
-  world.tamper(topics::kCmdVelNavigation, [&](const auto&, auto& wanted) {
-    wanted.twist().linear().x(way.v);
-    wanted.twist().angular().z(0.0);
-    return true;
-  });
-  world.tamper(topics::kWhiskers, [&](const auto&, auto& whiskers) {
-    if (!way.glass) whiskers.front_left(false), whiskers.front_right(false);
-    return true;
-  });
-  world.tamper(topics::kScanFiltered, [&](const auto&, auto& scan) {
-    const auto truth = (*run)->record().truth();
-    if (!way.glass || !truth) return true;
-    for (std::size_t i = 0; i < scan.ranges().size(); ++i) {
-      const double angle = scan.angle_min() + scan.angle_increment() * static_cast<double>(i);
-      const double range = scan.ranges()[i];
-      const geometry::Point2 end =
-          *truth * geometry::Point2(kLaserX + range * std::cos(angle), range * std::sin(angle));
-      if (std::abs(end.x() - kPaneX) < 0.15 && end.y() > 0.1 && end.y() < 1.3)
-        scan.ranges()[i] = std::numeric_limits<float>::infinity();
-    }
-    return true;
-  });
-  world.observe(topics::kSupervisorStatus,
-                [&](const auto& status, const auto&) { errand.take(status); });
-  world.observe(topics::kNavigateStatus,
-                [&](const auto& status, const auto&) { errand.take(status); });
-  world.observe(topics::kMovementStatus, [&](const auto& status, const auto&) {
-    outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
-                                    status.velocity_measured_linear() > 0.5F);
-  });
   geometry::Pose2 odom_T_base;
-  world.observe(topics::kOdom, [&](const auto& odom, const auto&) {
-    if (const auto pose = wire::to_planar(odom.pose().pose())) odom_T_base = *pose;
+  const auto robot = lockstep_robot(*deployment, 1, [&](LockstepRun& run) {
+    auto& world = run.world();
+    world.tamper(topics::kCmdVelNavigation, [&](const auto&, auto& wanted) {
+      wanted.twist().linear().x(way.v);
+      wanted.twist().angular().z(0.0);
+      return true;
+    });
+    world.tamper(topics::kWhiskers, [&](const auto&, auto& whiskers) {
+      if (!way.glass) whiskers.front_left(false), whiskers.front_right(false);
+      return true;
+    });
+    world.tamper(topics::kScanFiltered, [&, judge = &run](const auto&, auto& scan) {
+      const auto truth = judge->record().truth();
+      if (!way.glass || !truth) return true;
+      for (std::size_t i = 0; i < scan.ranges().size(); ++i) {
+        const double angle = scan.angle_min() + scan.angle_increment() * static_cast<double>(i);
+        const double range = scan.ranges()[i];
+        const geometry::Point2 end =
+            *truth * geometry::Point2(kLaserX + range * std::cos(angle), range * std::sin(angle));
+        if (std::abs(end.x() - kPaneX) < 0.15 && end.y() > 0.1 && end.y() < 1.3)
+          scan.ranges()[i] = std::numeric_limits<float>::infinity();
+      }
+      return true;
+    });
+    world.observe(topics::kMovementStatus, [&](const auto& status, const auto&) {
+      outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
+                                      status.velocity_measured_linear() > 0.5F);
+    });
+    world.observe(topics::kOdom, [&](const auto& odom, const auto&) {
+      if (const auto pose = wire::to_planar(odom.pose().pose())) odom_T_base = *pose;
+    });
+    world.observe(topics::kLocalCosts, [&](const auto& costs, const auto&) {
+      outcome.barred = barred(costs, odom_T_base);
+    });
   });
-  world.observe(topics::kLocalCosts, [&](const auto& costs, const auto&) {
-    outcome.barred = barred(costs, odom_T_base);
-  });
-  while (world.elapsed() < std::chrono::seconds(30) && !errand.over()) {
-    errand.step();
-    world.run_for(milliseconds(200));
-  }
-  const auto& samples = (*run)->record().samples();
+  EXPECT_TRUE(robot.ok()) << robot.error();
+  const auto arrival = (*robot)->send(way.goal, 30.0);
+  EXPECT_TRUE(arrival.ok()) << arrival.error();
+  const RunRecord record = (*robot)->take_record();
+  const auto& samples = record.samples();
   auto rolled = samples.front().stamp;
   for (const auto& sample : samples) {
     outcome.fastest = std::max(outcome.fastest, sample.v);
@@ -148,7 +136,7 @@ Outcome drive_blindly(const Way& way, bool guard) {
   outcome.stood = runtime::seconds(samples.back().stamp - rolled);
   outcome.speed = samples.back().v;
   outcome.way = geometry::distance(samples.front().truth, samples.back().truth);
-  outcome.summary = (*run)->record().summary();
+  outcome.summary = record.summary();
   return outcome;
 }
 

@@ -25,10 +25,6 @@ using geometry::radians;
 
 constexpr const char* kOffice = USHER_SOURCE_DIR "/config/sites/office/world.yaml";
 
-depth_pipeline::Intrinsics intrinsics_of(const rendering::Lens& lens) {
-  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
-}
-
 /// A Kinect in a world, with the pipeline that knows where it is.
 class Chain {
  public:
@@ -36,7 +32,8 @@ class Chain {
         const DepthCameraConfig& camera = {})
       : world_(world),
         camera_(camera, seed),
-        pipeline_(DepthPipeline::make(intrinsics_of(camera.sensor.lens), config).value()) {
+        pipeline_(
+            DepthPipeline::make(rendering::intrinsics_of(camera.sensor.lens), config).value()) {
     camera_.set_tilt(radians(-5.0));
     for (int i = 0; i < 50; ++i) camera_.step(world.base().truth());
   }
@@ -176,6 +173,7 @@ TEST_P(KinectInTheOffice, ShowsWhatIsThereWhileItLeans) {
   ASSERT_TRUE(stage.ok()) << stage.error();
   depth_pipeline::PipelineConfig config;
   config.confidence_frames = 1;
+  config.origin = operations::kScanOrigin;
   config.refit = kind.refit;
   if (kind.camera().noise == rendering::DepthSensorConfig::Noise::kStructuredLight)
     config.refitted = depth_pipeline::for_structured_light(config.refitted);
@@ -361,7 +359,7 @@ walls:
     Chain chain(world, seed, {}, camera);
     depth_pipeline::TiltSweep::Config config;
     config.images = config.settling = 6;
-    depth_pipeline::TiltSweep sweep(intrinsics_of(camera.sensor.lens), config);
+    depth_pipeline::TiltSweep sweep(rendering::intrinsics_of(camera.sensor.lens), config);
     for (int frame = 0; frame < 1200 && !sweep.done(); ++frame) {
       chain.camera().set_tilt(sweep.wanted());
       for (int i = 0; i < 3; ++i) chain.step();
@@ -389,7 +387,7 @@ walls:
   depth_pipeline::TiltSweep::Config config;
   config.patience = 15;
   config.positions = 5;
-  depth_pipeline::TiltSweep sweep(intrinsics_of(rendering::kinect_v2().lens), config);
+  depth_pipeline::TiltSweep sweep(rendering::intrinsics_of(rendering::kinect_v2().lens), config);
   for (int frame = 0; frame < 400 && !sweep.done(); ++frame) {
     chain.camera().set_tilt(sweep.wanted());
     for (int i = 0; i < 3; ++i) chain.step();

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "operations/command_line/installation.hpp"
-#include "operations/experiments/errand.hpp"
+#include "operations/experiments/commanded_robot.hpp"
 #include "operations/experiments/lockstep_run.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "support/folder.hpp"
@@ -16,7 +16,6 @@
 namespace usher::operations {
 namespace {
 
-using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double kEdge = 7.0;  // [m] x of the first step
@@ -58,37 +57,27 @@ class Stairway : public testing::Test {
     EXPECT_TRUE(deployment.ok()) << deployment.error();
     set_site_value(*deployment, "site.world", folder.file("world.yaml", hall(stairs)));
     set_site_value(*deployment, "site.initial_pose", "[1.0, 3.0, 0.0]");
-    auto run = LockstepRun::create(*deployment, seed);
-    EXPECT_TRUE(run.ok()) << run.error();
-    auto& world = (*run)->world();
+    const auto robot = lockstep_robot(*deployment, seed, [&](LockstepRun& run) {
+      auto& world = run.world();
+      if (blind) world.at(world.now() + seconds(2), [&world] { world.stop("depth_pipeline"); });
+    });
+    EXPECT_TRUE(robot.ok()) << robot.error();
     double front = 0.0;
     const auto footprint = robot_footprint(*deployment).value();
     for (const auto& corner : footprint) front = std::max(front, corner.x());
 
     Outcome outcome;
-    Errand errand(
-        "goal", 1000,
-        {[&](const auto& request) {
-           world.publish(topics::kSupervisorRequest, request, Errand::kClient);
-         },
-         [&](const auto& goal) { world.publish(topics::kNavigateGoal, goal, Errand::kClient); }});
-    world.observe(topics::kSupervisorStatus,
-                  [&](const auto& status, const auto&) { errand.take(status); });
-    world.observe(topics::kNavigateStatus,
-                  [&](const auto& status, const auto&) { errand.take(status); });
-    if (blind) world.at(world.now() + seconds(2), [&] { world.stop("depth_pipeline"); });
-    while (world.elapsed() < limit && !errand.over()) {
-      errand.step();
-      world.run_for(milliseconds(200));
-    }
-    for (const auto& sample : (*run)->record().samples()) {
+    const auto arrival = (*robot)->send("goal", runtime::seconds(limit));
+    EXPECT_TRUE(arrival.ok()) << arrival.error();
+    const RunRecord record = (*robot)->take_record();
+    for (const auto& sample : record.samples()) {
       outcome.fastest = std::max(outcome.fastest, sample.v);
       const double before = kEdge - sample.truth.x - front;
       outcome.nearest = std::min(outcome.nearest, before);
       if (before < 2.0) outcome.at_edge = std::max(outcome.at_edge, sample.v);
     }
-    outcome.contact = (*run)->record().summary().contact_with;
-    outcome.arrived = errand.succeeded();
+    outcome.contact = record.summary().contact_with;
+    outcome.arrived = arrival->reported;
     return outcome;
   }
   static void stands_before_it(const Outcome& outcome) {

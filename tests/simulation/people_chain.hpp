@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "perception/people_detector/core/clothes.hpp"
@@ -34,9 +36,7 @@ class PeopleChain {
       config_.sensor = rendering::rear_camera();
       config_.mount = {.x = -0.2, .z = 0.9, .yaw = geometry::kPi, .pitch = kRearDown};
     }
-    const auto& lens = config_.sensor.lens;
-    const imaging::Intrinsics intrinsics{lens.width, lens.height, lens.fx,
-                                         lens.fy,    lens.cx,     lens.cy};
+    const auto intrinsics = rendering::intrinsics_of(config_.sensor.lens);
     pipeline_.emplace(depth_pipeline::DepthPipeline::make(intrinsics, {.origin = 0.2}).value());
     detector_.emplace(people_detector::DepthDetector::make(intrinsics, {}).value());
     clothes_.emplace(intrinsics);
@@ -171,6 +171,52 @@ struct Found {
     });
     false_alarms += static_cast<int>(findings.size());
     return findings;
+  }
+};
+
+/// Whom the pixels and whom the model finds of the same people.
+struct Agreement {
+  Found pixels, modelled;
+  int images = 0;
+  int same = 0, either = 0;  // who is found by both, and by at least one of them
+
+  /// Before the first image of another place.
+  void move_on() { pixels.before.clear(), modelled.before.clear(); }
+
+  void take(const World& world, const Looks& looks) {
+    ++images;
+    std::vector<Point2> truths, others;
+    for (const Person& person : world.people()) {
+      const Point2 where = inverse(looks.origin) * person.position;
+      (counts(where) ? truths : others).push_back(where);
+    }
+    std::vector<bool> by_pixels, by_model;
+    pixels.take(truths, others, places_of(looks.pixels), by_pixels);
+    modelled.take(truths, others, places_of(looks.modelled), by_model);
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      either += by_pixels[i] || by_model[i];
+      same += by_pixels[i] && by_model[i];
+    }
+  }
+
+  void print(const std::string& name) const {
+    std::printf("%s: same %d of %d\n", name.c_str(), same, either);
+    for (const Found* one : {&pixels, &modelled})
+      std::printf(
+          "  %s: %d people, recall %.3f, %d false in %d images, along %.3f +- %.3f, across %.3f m; "
+          "of %d missed %d again\n",
+          one == &pixels ? "pixels" : "model", one->people, one->recall(), one->false_alarms,
+          images, one->bias(), one->along_sigma(), one->across_sigma(), one->missed,
+          one->missed_again);
+  }
+
+ private:
+  static constexpr double kLeast = 0.8;   // [m] ahead
+  static constexpr double kAside = 0.62;  // of that, to either side: inside of the image
+
+  /// Who is so near before the camera must be found; of others nobody says whether.
+  static bool counts(const Point2& where) {
+    return where.x() > kLeast && where.x() < kReach && std::abs(where.y()) < kAside * where.x();
   }
 };
 

@@ -85,26 +85,11 @@ std::optional<World> somewhere(Random& random, const Building& building, bool be
 struct Comparison {
   Colors upper, legs;
   Heights heights;
-  Found pixels, modelled;
-  int images = 0, same = 0, either = 0;
+  Agreement found;
 
   void take(const World& world, const Looks& looks) {
-    ++images;
+    found.take(world, looks);
     compare_looks(world, looks);
-    std::vector<Point2> truths, others;
-    for (const Person& person : world.people()) {
-      const Point2 where = inverse(looks.origin) * person.position;
-      const bool inside =
-          where.x() > 0.8 && where.x() < kReach && std::abs(where.y()) < 0.62 * where.x();
-      (inside ? truths : others).push_back(where);
-    }
-    std::vector<bool> by_pixels, by_model;
-    pixels.take(truths, others, places_of(looks.pixels), by_pixels);
-    modelled.take(truths, others, places_of(looks.modelled), by_model);
-    for (std::size_t i = 0; i < truths.size(); ++i) {
-      either += by_pixels[i] || by_model[i];
-      same += by_pixels[i] && by_model[i];
-    }
   }
 
  private:
@@ -138,7 +123,7 @@ Comparison compare(bool backward) {
     ++place;
     const std::uint64_t camera_seed = random.next();
     chain.enter(camera_seed, random.next());
-    comparison.pixels.before.clear(), comparison.modelled.before.clear();
+    comparison.found.move_on();
     for (int step = 0; step < 30 + 7 * kImages; ++step) {
       chain.step(*world);
       if (step < 30 || step % 7 != 0) continue;
@@ -179,15 +164,8 @@ class PeopleModelOf : public testing::TestWithParam<bool> {};
 TEST_P(PeopleModelOf, AgreesWithTheRenderedChain) {
   const bool backward = GetParam();
   const Comparison all = compare(backward);
-  const Found &pixels = all.pixels, &modelled = all.modelled;
-  for (const Found* one : {&pixels, &modelled})
-    std::printf(
-        "%s %s: %d people, recall %.3f, %d false in %d images, along %.3f +- %.3f, across %.3f m; "
-        "of %d missed %d again\n",
-        backward ? "rear" : "front", one == &pixels ? "pixels" : "model", one->people,
-        one->recall(), one->false_alarms, all.images, one->bias(), one->along_sigma(),
-        one->across_sigma(), one->missed, one->missed_again);
-  std::printf("same %d of %d\n", all.same, all.either);
+  const Found &pixels = all.found.pixels, &modelled = all.found.modelled;
+  all.found.print(backward ? "rear" : "front");
   expect_alike(all.upper, "upper", backward);
   expect_alike(all.legs, "legs", false);
   expect_alike(all.heights);
@@ -195,7 +173,7 @@ TEST_P(PeopleModelOf, AgreesWithTheRenderedChain) {
   EXPECT_LE(pixels.false_alarms, backward ? 8 : 2);
   EXPECT_EQ(modelled.false_alarms, 0);
   EXPECT_NEAR(modelled.recall(), pixels.recall(), 0.05);
-  EXPECT_GT(all.same, 85 * all.either / 100);
+  EXPECT_GT(all.found.same, 85 * all.found.either / 100);
   EXPECT_NEAR(modelled.bias(), pixels.bias(), 0.05);
   EXPECT_NEAR(modelled.along_sigma(), pixels.along_sigma(), 0.04);
   EXPECT_NEAR(modelled.across_sigma(), pixels.across_sigma(), 0.03);

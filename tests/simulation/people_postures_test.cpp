@@ -93,31 +93,19 @@ struct Tops {
 };
 
 struct Comparison {
-  Found pixels, modelled;
+  Agreement found;
   Tops tops;
-  int images = 0, same = 0, either = 0;
   double steepest = 0.0;  // [rad]
 
   void take(const World& world, const Looks& looks) {
-    ++images;
+    found.take(world, looks);
     steepest = std::max(steepest, std::abs(world.base().truth().pitch));
-    std::vector<Point2> truths, others;
     for (const Person& person : world.people()) {
       const Point2 where = inverse(looks.origin) * person.position;
-      const bool inside =
-          where.x() > 0.8 && where.x() < kReach && std::abs(where.y()) < 0.62 * where.x();
-      (inside ? truths : others).push_back(where);
       const auto* by_pixels = nearest(looks.pixels, where);
       const auto* by_model = nearest(looks.modelled, where);
       if (by_pixels != nullptr && by_model != nullptr)
         tops.take(*by_pixels, *by_model, rendering::top_of(person.posture, person.height));
-    }
-    std::vector<bool> by_pixels, by_model;
-    pixels.take(truths, others, places_of(looks.pixels), by_pixels);
-    modelled.take(truths, others, places_of(looks.modelled), by_model);
-    for (std::size_t i = 0; i < truths.size(); ++i) {
-      either += by_pixels[i] || by_model[i];
-      same += by_pixels[i] && by_model[i];
     }
   }
 };
@@ -156,26 +144,20 @@ Comparison compare(const Case& each, bool backward) {
     World world({.moves_people = false}, hall, people, {0.0, 0.0, 0.0}, random.next());
     const std::uint64_t camera_seed = random.next();
     chain.enter(camera_seed, random.next());
-    all.pixels.before.clear(), all.modelled.before.clear();
+    all.found.move_on();
     run(each, backward, world, chain, all);
   }
   return all;
 }
 
 void print(const Case& each, bool backward, const Comparison& all) {
-  std::printf("%s, %s: same %d of %d, up to %.1f deg\n", each.name, backward ? "rear" : "front",
-              all.same, all.either, geometry::degrees(all.steepest));
-  for (const Found* one : {&all.pixels, &all.modelled})
-    std::printf(
-        "  %s: %d people, recall %.3f, %d false in %d images, along %.3f +- %.3f, across %.3f m; "
-        "of %d missed %d again\n",
-        one == &all.pixels ? "pixels" : "model", one->people, one->recall(), one->false_alarms,
-        all.images, one->bias(), one->along_sigma(), one->across_sigma(), one->missed,
-        one->missed_again);
+  all.found.print(std::string(each.name) + (backward ? ", rear" : ", front"));
   const Tops& tops = all.tops;
-  std::printf("  tops of %d: hidden by pixels %d, by the model %d; of %d off by %.3f, %.3f m\n",
-              tops.people, tops.hidden_by_pixels, tops.hidden_by_model, tops.measured,
-              tops.pixels / tops.measured, tops.model / tops.measured);
+  std::printf(
+      "  up to %.1f deg; tops of %d: hidden by pixels %d, by the model %d; of %d off by "
+      "%.3f, %.3f m\n",
+      geometry::degrees(all.steepest), tops.people, tops.hidden_by_pixels, tops.hidden_by_model,
+      tops.measured, tops.pixels / tops.measured, tops.model / tops.measured);
 }
 
 Case people_who(const char* name, Posture posture) {
@@ -207,12 +189,13 @@ TEST_P(PeopleModelOf, AgreesWithTheRenderedChain) {
   const auto& [each, backward] = GetParam();
   const Comparison all = compare(each, backward);
   print(each, backward, all);
+  const Found &pixels = all.found.pixels, &modelled = all.found.modelled;
   // The rear camera finds fewer who squat or bend than the model says: by up to 0.153.
-  EXPECT_NEAR(all.modelled.recall(), all.pixels.recall(), 0.16);
-  EXPECT_LE(all.pixels.false_alarms, 2);
+  EXPECT_NEAR(modelled.recall(), pixels.recall(), 0.16);
+  EXPECT_LE(pixels.false_alarms, 2);
   EXPECT_LT(std::abs(all.tops.model) / all.tops.measured, 0.06);
   EXPECT_LT(std::abs(all.tops.pixels) / all.tops.measured, 0.12);
-  EXPECT_NEAR(all.modelled.bias(), all.pixels.bias(), 0.05);
+  EXPECT_NEAR(modelled.bias(), pixels.bias(), 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, PeopleModelOf,

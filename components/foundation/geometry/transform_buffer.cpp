@@ -14,10 +14,17 @@ constexpr TransformBuffer::Stamp kShortestStep = std::chrono::milliseconds(1);
 
 double in_seconds(TransformBuffer::Stamp d) { return std::chrono::duration<double>(d).count(); }
 
+bool alike(const Pose3& a, const Pose3& b) {
+  constexpr double kSame = 1e-6;  // [m] and [rad]
+  return (a.translation - b.translation).norm() < kSame &&
+         a.rotation.angularDistance(b.rotation) < kSame;
+}
+
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
 }  // namespace
 
-Status TransformBuffer::check(std::string_view parent, std::string_view child, const Pose3& pose) {
+Status TransformBuffer::check(std::string_view parent, std::string_view child, bool fixed,
+                              const Pose3& pose) const {
   if (parent.empty() || child.empty()) return Error{"transform without a frame name"};
   if (parent == child) return Error{"frame " + quoted(child) + " cannot be its own parent"};
   if (!pose.finite()) return Error{"transform to " + quoted(child) + " is not finite"};
@@ -32,16 +39,17 @@ Status TransformBuffer::check(std::string_view parent, std::string_view child, c
   } else if (found->second.parent != parent) {
     return Error{"frame " + quoted(child) + " has the parent " + quoted(found->second.parent) +
                  ", not " + quoted(parent)};
+  } else if (found->second.fixed != fixed) {
+    return Error{"frame " + quoted(child) + (fixed ? " moves" : " never moves")};
   }
   return {};
 }
 
 Status TransformBuffer::add(std::string_view parent, std::string_view child, Stamp stamp,
                             const Pose3& parent_T_child) {
-  if (auto status = check(parent, child, parent_T_child); !status) return status;
+  if (auto status = check(parent, child, false, parent_T_child); !status) return status;
   auto& frame = frames_[std::string(child)];
   frame.parent = parent;
-  frame.fixed = false;
   if (!frame.samples.empty() && stamp < frame.samples.back().stamp) {
     return Error{"transform to " + quoted(child) + " is older than the newest by " +
                  std::to_string(in_seconds(frame.samples.back().stamp - stamp)) + " s"};
@@ -55,8 +63,10 @@ Status TransformBuffer::add(std::string_view parent, std::string_view child, Sta
 
 Status TransformBuffer::add_static(std::string_view parent, std::string_view child,
                                    const Pose3& parent_T_child) {
-  if (auto status = check(parent, child, parent_T_child); !status) return status;
+  if (auto status = check(parent, child, true, parent_T_child); !status) return status;
   auto& frame = frames_[std::string(child)];
+  if (!frame.samples.empty() && !alike(frame.samples.front().pose, parent_T_child))
+    return Error{"frame " + quoted(child) + " never moves, and has another place"};
   frame.parent = parent;
   frame.fixed = true;
   frame.samples.assign(1, {Stamp{0}, parent_T_child});

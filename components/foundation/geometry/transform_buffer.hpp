@@ -24,12 +24,13 @@ class TransformBuffer {
                            Stamp reach = std::chrono::milliseconds(20))
       : memory_(memory), reach_(reach) {}
 
-  /// Adds parent_T_child at a time. Refused: a frame under another parent, non-finite numbers, a
-  /// rotation that is not of unit length (1e-3), a frame as its own parent, a time before the
-  /// newest (same time: replaced), too many frames.
+  /// Adds parent_T_child at a time. Refused: a frame under another parent, one that never moves,
+  /// non-finite numbers, a rotation that is not of unit length (1e-3), a frame as its own parent, a
+  /// time before the newest (same time: replaced), too many frames.
   Status add(std::string_view parent, std::string_view child, Stamp stamp,
              const Pose3& parent_T_child);
-  /// The same for a frame that never moves; it is known at all times. May be repeated.
+  /// The same for a frame that never moves; it is known at all times. May be repeated; refused: a
+  /// frame that moves, and another place than the first.
   Status add_static(std::string_view parent, std::string_view child, const Pose3& parent_T_child);
 
   /// target_T_source at a time. Fails with the reason: unknown frame, not connected, before the
@@ -50,7 +51,8 @@ class TransformBuffer {
     std::deque<Sample> samples;
   };
 
-  Status check(std::string_view parent, std::string_view child, const Pose3& pose);
+  Status check(std::string_view parent, std::string_view child, bool fixed,
+               const Pose3& pose) const;
   Result<Pose3> at(const std::string& child, const Frame& frame, Stamp stamp) const;
 
   Stamp memory_;

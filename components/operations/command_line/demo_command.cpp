@@ -17,6 +17,7 @@
 #include "operations/experiments/site_facts.hpp"
 #include "operations/host/machine_load.hpp"
 #include "operations/launcher/launcher.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "operations/results/result_sheet.hpp"
 #include "runtime/dds/observer.hpp"
 #include "wire/conversions.hpp"
@@ -286,8 +287,8 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   command->add_flag(
       "--pixels", arguments->pixels,
       "The guide: render every pixel of both depth cameras for the depth pipeline and "
-      "the people detector themselves, not for the models fitted to them; most of "
-      "a core more");
+      "the people detector themselves, not for the models fitted to them; half to "
+      "three quarters of a core more");
   command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
 }
 

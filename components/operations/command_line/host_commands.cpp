@@ -17,7 +17,7 @@
 #include "operations/command_line/usage.hpp"
 #include "operations/host/doctor.hpp"
 #include "operations/host/service.hpp"
-#include "operations/launcher/launcher.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "operations/security/keys.hpp"
 
 namespace usher::operations {

@@ -21,6 +21,7 @@
 #include "operations/command_line/usage.hpp"
 #include "operations/host/service.hpp"
 #include "operations/launcher/launcher.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "operations/security/permissions.hpp"
 #include "runtime/dds/observer.hpp"
 

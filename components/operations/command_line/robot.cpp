@@ -11,7 +11,7 @@
 #include "idl/topics.hpp"
 #include "operations/command_line/table.hpp"
 #include "operations/command_line/usage.hpp"
-#include "operations/launcher/launcher.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "operations/security/permissions.hpp"
 #include "runtime/parameters/parameter_file.hpp"
 #include "wire/conversions.hpp"

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "drivers/base_obedience/core/writer_id.hpp"
 #include "interaction/finger/core/tap.hpp"
 #include "runtime/guard/port.hpp"
 #include "wire/conversions.hpp"
@@ -130,16 +130,17 @@ Status AttackedRobot::listen() {
                            note([&] {
                              status_ = message;
                              status_at_ = Clock::now();
-                             if (!message.granted() && !withdrawn_)
-                               withdrawn_ = wire::from_message(message.header().stamp());
+                             if (!message.granted())
+                               note_withdrawn(wire::from_message(message.header().stamp()));
                            });
                          }),
        status_reader_);
   keep(observer_->reader(topics::kDriveGrant,
-                         [this, note](const auto& message, const auto&) {
+                         [this, note](const auto& message, const Observer::RawSample& sample) {
                            note([&] {
                              if (granted_ && !message.granted()) ++grants_lost_;
                              granted_ = message.granted();
+                             note_grant(message, sample.writer);
                            });
                          }),
        grant_reader_);
@@ -148,6 +149,7 @@ Status AttackedRobot::listen() {
                            note([&] {
                              lives_[message.component_name()] = sample.writer;
                              heard_[message.component_name()] = Clock::now();
+                             note_count(message);
                            });
                          }),
        heartbeat_reader_);
@@ -157,10 +159,40 @@ Status AttackedRobot::listen() {
                          }),
        screen_reader_);
   keep(observer_->writer(topics::kJoy), joy_);
+  keep(observer_->writer(topics::kInteractionTarget), target_);
   keep(observer_->writer(topics::kSupervisorRequest), request_);
   keep(observer_->writer(topics::kNavigateGoal), goal_);
   keep(observer_->writer(topics::kNavigateCancel), cancel_);
   return status;
+}
+
+/// Under the mutex.
+void AttackedRobot::note_count(const Heartbeat& heartbeat) {
+  if (heartbeat.component_name() != counted_component_) return;
+  std::uint64_t sum = 0;
+  for (const auto& counter : heartbeat.counters()) {
+    if (std::ranges::find(counted_names_, counter.name()) != counted_names_.end())
+      sum += counter.count();
+  }
+  counts_.push_back({wire::from_message(heartbeat.header().stamp()), sum});
+}
+
+/// Under the mutex. Somebody else may write grants, too.
+void AttackedRobot::note_grant(const DriveGrant& grant, const runtime::Guid& writer) {
+  const auto supervisor = lives_.find("supervisor");
+  if (supervisor == lives_.end() || !drive::same_participant(writer, supervisor->second)) return;
+  const auto at = wire::from_message(grant.stamp());
+  if (!grant.granted()) {
+    note_withdrawn(at);
+    return;
+  }
+  if (granted_until_ && at > *granted_until_) note_withdrawn(*granted_until_);  // it was late
+  granted_until_ = at + runtime::from_seconds(static_cast<double>(grant.valid_for()));
+}
+
+/// Under the mutex.
+void AttackedRobot::note_withdrawn(runtime::Time at) {
+  if (!withdrawn_) withdrawn_ = at;
 }
 
 void AttackedRobot::run() {
@@ -175,6 +207,7 @@ void AttackedRobot::run() {
     if (Clock::now() >= next_joy) {
       next_joy = Clock::now() + kJoyPeriod;
       send_joy();
+      send_target();
     }
     std::this_thread::sleep_for(kRound);
   }
@@ -189,6 +222,23 @@ void AttackedRobot::send_joy() {
     message.buttons({0, 0, 0, 0, held_ ? 1 : 0});
   }
   joy_->write(message);
+}
+
+void AttackedRobot::send_target() {
+  FaceTarget message;
+  message.header(wire::header(observer_->now(), "base_footprint"));
+  {
+    const std::lock_guard lock(mutex_);
+    if (!facing_) return;
+    message.mode(*facing_);
+  }
+  target_->write(message);
+}
+
+void AttackedRobot::let_it_search(bool search) {
+  using namespace FaceTarget_Constants;
+  const std::lock_guard lock(mutex_);
+  facing_ = search ? MODE_SEARCH : MODE_STAND;
 }
 
 void AttackedRobot::hold(double v, double w) {
@@ -266,24 +316,33 @@ bool AttackedRobot::all_well() const {
                      });
 }
 
-bool AttackedRobot::stands_or_turns(double turn_rate) const {
+bool AttackedRobot::stands() const {
   if (motions_.empty()) return false;
   for (auto motion = motions_.rbegin(); motion != motions_.rend(); ++motion) {
-    if (std::abs(motion->v) > kStanding || std::abs(motion->w) > turn_rate) return false;
+    if (std::abs(motion->v) > kStanding || std::abs(motion->w) > 3.0 * kStanding) return false;
     if (motions_.back().at - motion->at > milliseconds(100)) return true;
   }
   return false;
 }
-bool AttackedRobot::stands() const { return stands_or_turns(3.0 * kStanding); }
 bool AttackedRobot::stays() const {
   const Instant now = Clock::now();
   bool told_late = false;
   for (auto wheels = wheels_.rbegin(); wheels != wheels_.rend(); ++wheels) {
     if (now - wheels->at > milliseconds(200)) break;
-    if (!wheels->zero() || wheels->off) return false;
+    if (!wheels->still() || wheels->off) return false;
     told_late = true;
   }
-  return told_late && stands_or_turns(std::numeric_limits<double>::infinity());
+  return told_late && stands();
+}
+
+std::uint64_t AttackedRobot::counted_with_the_right() const {
+  if (!granted_until_ || counts_.empty()) return 0;
+  const runtime::Time until = withdrawn_ ? std::min(*withdrawn_, *granted_until_) : *granted_until_;
+  std::uint64_t most = counts_.front().number;
+  for (const Count& known : counts_) {
+    if (known.at <= until) most = std::max(most, known.number);
+  }
+  return most - counts_.front().number;
 }
 
 std::optional<runtime::Guid> AttackedRobot::life_of(const std::string& component) const {
@@ -296,6 +355,17 @@ void AttackedRobot::forget() {
   wheels_.clear();
   motions_.clear();
   withdrawn_.reset();
+  if (counts_.size() > 1) counts_ = {counts_.back()};
+}
+
+bool AttackedRobot::count(const std::string& component, std::vector<std::string> names) {
+  {
+    const std::lock_guard lock(mutex_);
+    counted_component_ = component;
+    counted_names_ = std::move(names);
+    counts_.clear();
+  }
+  return wait_for([&] { return !counts_.empty(); }, std::chrono::seconds(2));
 }
 
 pid_t AttackedRobot::process(const std::string& component) {

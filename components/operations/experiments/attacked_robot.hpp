@@ -36,6 +36,8 @@ class AttackedRobot {
     bool off = false;  ///< an emergency stop
     /// Told to stand; a turn rate may still keep it on its arc while it rolls out.
     bool zero() const { return v == 0.0; }
+    /// Told neither to drive nor to turn.
+    bool still() const { return v == 0.0 && w == 0.0; }
   };
   struct Motion {
     Instant at;
@@ -52,6 +54,9 @@ class AttackedRobot {
   /// What the operator's hand does from now on: holds the button and the sticks, or lets go.
   void hold(double v, double w);
   void release();
+  /// Has it search by turning on the spot where it seeks visitors, or face nobody and stand there,
+  /// from now on. Until the first call the robot decides.
+  void let_it_search(bool search);
   /// Puts a finger on a button of the tablet, if it is drawn; returns at once.
   Status touch(const std::string& button);
   /// Sends it to a place while the supervisor lets the navigation drive; true once it drives.
@@ -76,21 +81,25 @@ class AttackedRobot {
   bool all_well() const;  ///< every component is ok, the robot may drive
   bool drives(double v) const { return !motions_.empty() && motions_.back().v > v; }
   bool stands() const;  ///< for a tenth of a second
-  /// Likewise, though it may turn; and its wheels were told nothing but zero for two tenths: what
-  /// rolls out of an earlier drive is nobody else's.
+  /// Likewise, and its wheels were told neither to drive nor to turn for two tenths: what rolls out
+  /// of an earlier drive is nobody else's.
   bool stays() const;
   const std::vector<Wheels>& wheels() const { return wheels_; }
   const std::vector<Motion>& motions() const { return motions_; }
   const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }
   Instant status_at() const { return status_at_; }
-  /// When the supervisor withdrew the right to drive, on its own clock, since forget(); however
-  /// late it was heard here.
-  std::optional<runtime::Time> withdrawn() const { return withdrawn_; }
+  /// How much what is counted (see count()) has grown since forget(), by a heartbeat that was
+  /// written while the robot had the right to drive: by the robot's own stamps, however late they
+  /// were heard here.
+  std::uint64_t counted_with_the_right() const;
   std::optional<runtime::Guid> life_of(const std::string& component) const;
   std::uint64_t grants_lost() const { return grants_lost_; }
   std::unique_lock<std::mutex> locked() { return std::unique_lock(mutex_); }
   /// Forgets what the judge noted so far.
   void forget();
+  /// From now on adds up what this component counts under these names in its heartbeats; false when
+  /// none is heard.
+  bool count(const std::string& component, std::vector<std::string> names);
 
   /// Process of a component; 0 when it does not run.
   pid_t process(const std::string& component);
@@ -100,11 +109,20 @@ class AttackedRobot {
   std::vector<std::string> components(const std::string& criticality) const;
 
  private:
+  /// What a component had counted when it wrote a heartbeat.
+  struct Count {
+    runtime::Time at;
+    std::uint64_t number = 0;
+  };
+
   AttackedRobot(Launcher launcher, Deployment deployment, std::uint32_t domain);
   Status listen();
-  bool stands_or_turns(double turn_rate) const;
+  void note_count(const usher_msgs::msg::Heartbeat& heartbeat);
+  void note_grant(const usher_msgs::msg::DriveGrant& grant, const runtime::Guid& writer);
+  void note_withdrawn(runtime::Time at);
   void run();
   void send_joy();
+  void send_target();
 
   Launcher launcher_;
   const Deployment deployment_;
@@ -116,7 +134,11 @@ class AttackedRobot {
   std::vector<Motion> motions_;
   std::optional<usher_msgs::msg::SupervisorStatus> status_;
   Instant status_at_{};
-  std::optional<runtime::Time> withdrawn_;
+  std::optional<runtime::Time> granted_until_;  ///< the end of the newest grant's life
+  std::optional<runtime::Time> withdrawn_;  ///< when the right to drive ended first, since forget()
+  std::string counted_component_;
+  std::vector<std::string> counted_names_;
+  std::vector<Count> counts_;  ///< the first is the last one before forget()
   std::map<std::string, runtime::Guid> lives_;
   std::map<std::string, Instant> heard_;
   bool granted_ = false;
@@ -124,6 +146,7 @@ class AttackedRobot {
   std::uint64_t screen_ = 0;  ///< that the tablet shows
   bool held_ = false;
   float forward_ = 0.0F, turn_ = 0.0F;
+  std::optional<std::uint8_t> facing_;  ///< mode of interaction/target
   std::vector<std::string> events_;
 
   std::unique_ptr<runtime::Observer> observer_;
@@ -134,6 +157,7 @@ class AttackedRobot {
   std::optional<runtime::Observer::Reader<usher_msgs::msg::Heartbeat>> heartbeat_reader_;
   std::optional<runtime::Observer::Reader<usher_msgs::msg::DialogueScreen>> screen_reader_;
   std::optional<runtime::Observer::Writer<sensor_msgs::msg::Joy>> joy_;
+  std::optional<runtime::Observer::Writer<usher_msgs::msg::FaceTarget>> target_;
   std::optional<runtime::Observer::Writer<usher_msgs::msg::SupervisorRequest>> request_;
   std::optional<runtime::Observer::Writer<usher_msgs::msg::NavigateGoal>> goal_;
   std::optional<runtime::Observer::Writer<usher_msgs::msg::GoalCancel>> cancel_;

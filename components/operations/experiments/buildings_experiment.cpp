@@ -297,7 +297,8 @@ Result<ResultSheet> run_buildings_dds_experiment(const ExperimentOptions& option
   std::vector<Tour> tours;
   for (const auto& building : *buildings) {
     auto result = tour(options, building, 1, [&](const Deployment& deployment) {
-      return process_robot(deployment, 1, options.installation);
+      return process_robot(deployment, 1, options.installation, options.domain,
+                           options.out + "/run");
     });
     if (!result) return Error{result.error()};
     tours.push_back(std::move(result).value());

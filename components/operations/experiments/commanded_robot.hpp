@@ -41,8 +41,10 @@ class LockstepRun;
 Result<std::unique_ptr<CommandedRobot>> lockstep_robot(
     const Deployment& deployment, std::uint64_t seed,
     const std::function<void(LockstepRun&)>& watch = {});
-/// As real DDS processes, on the wall clock.
+/// As real DDS processes, on the wall clock; the launcher keeps its state in `run_directory`.
 Result<std::unique_ptr<CommandedRobot>> process_robot(Deployment deployment, std::uint64_t seed,
-                                                      const Installation& installation);
+                                                      const Installation& installation,
+                                                      std::uint32_t domain,
+                                                      const std::string& run_directory);
 
 }  // namespace usher::operations

@@ -18,8 +18,6 @@ using depth_pipeline::DepthPipeline;
 using depth_pipeline::ThesisMethod;
 using geometry::radians;
 
-constexpr double kTilt = -0.0872664626;  // [rad] 5 deg below the horizon
-
 /// The thesis' scan in the bearings of ours.
 std::vector<float> in_bearings(const ThesisMethod::Scan& scan,
                                const depth_pipeline::ScanGeometry& geometry) {
@@ -58,7 +56,7 @@ void judge_methods(DepthStage& stage, ResultSheet& sheet) {
       processor += static_cast<double>(after.tv_sec - before.tv_sec) +
                    1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
       usher.take(truth, view.scan->ranges);
-      auto upright = depth_pipeline::camera_pose({}, kTilt, 0.0);
+      auto upright = depth_pipeline::camera_pose({}, kCameraTilt, 0.0);
       const auto wrong = ours.process(image, upright).value();
       blind.take(truth, wrong.scan->ranges);
       ++frames;

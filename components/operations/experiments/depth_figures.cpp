@@ -21,7 +21,6 @@ using depth_pipeline::ThesisMethod;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr geometry::Pose2 kPlace{24.9, 1.6, 0.55};  // in the robotics lab
-constexpr double kScanOrigin = 0.2;                 // [m] of scans ahead of the axle
 constexpr double kFarthestDrawn = 8.0;              // [m] of figures 4.15 and 4.19
 
 const cv::Scalar kGrey(130, 130, 130), kOrange(80, 170, 240), kWhite(240, 240, 240),
@@ -205,6 +204,7 @@ Status draw_filter(DepthStage& stage, const std::string& out) {
 
 DepthPipeline pipeline_of(const DepthStage& stage, int confidence_frames) {
   depth_pipeline::PipelineConfig config;
+  config.origin = kScanOrigin;
   config.confidence_frames = confidence_frames;
   return DepthPipeline::make(stage.camera(), config).value();
 }

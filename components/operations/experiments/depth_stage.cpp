@@ -7,9 +7,7 @@ namespace usher::operations {
 
 namespace {
 
-constexpr double kTilt = -0.0872664626;  // [rad] 5 deg below the horizon
-constexpr double kScanOrigin = 0.2;      // [m] ahead of the axle
-constexpr double kAxle = 0.235;          // [m] above the floor
+constexpr double kAxle = 0.235;  // [m] above the floor
 
 std::vector<world::PersonPlan> people() {
   return {{.name = "a", .start = {27.8, 3.2}, .yaw = 2.4, .loop = {}},
@@ -42,15 +40,14 @@ DepthStage::DepthStage(world::Building building, const rendering::DepthSensorCon
 }
 
 imaging::Intrinsics DepthStage::camera() const {
-  const auto& lens = sensor_.config().lens;
-  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
+  return rendering::intrinsics_of(sensor_.config().lens);
 }
 
 imaging::DepthImage DepthStage::look(const geometry::Pose2& place, double pitch, double burst) {
-  const world::Mount mount{.x = 0.2, .z = 0.665, .pitch = -kTilt};
+  const world::Mount mount{.x = 0.2, .z = 0.665, .pitch = -kCameraTilt};
   world_T_camera_ = base_at(place, pitch) * mount.base_T_sensor();
   sensor_.measure(renderer_, world_T_camera_, burst, millimeters_);
-  pose_ = depth_pipeline::camera_pose({}, kTilt, pitch);
+  pose_ = depth_pipeline::camera_pose({}, kCameraTilt, pitch);
   const auto& lens = sensor_.config().lens;
   return {lens.width, lens.height, millimeters_};
 }

@@ -7,10 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "foundation/geometry/angle.hpp"
 #include "sensing/depth_pipeline/core/depth_pipeline.hpp"
 #include "simulation/world/core/depth_cameras.hpp"
 
 namespace usher::operations {
+
+/// [rad] Of the Kinect on the body while the robot navigates, positive up (the thesis' 5 deg below
+/// the horizon).
+inline constexpr double kCameraTilt = geometry::radians(-5.0);
+/// [m] Ahead of the axle: where scans of the depth pipeline begin.
+inline constexpr double kScanOrigin = 0.2;
 
 /// MARVIN in the office, with two people: its Kinect, of whichever kind, and its laser.
 class DepthStage {

@@ -33,6 +33,7 @@ struct Experiment {
 };
 
 Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options);
+Result<ResultSheet> run_guide_pixels_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_follow_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_visits_experiment(const ExperimentOptions& options);
 Result<ResultSheet> run_usability_experiment(const ExperimentOptions& options);

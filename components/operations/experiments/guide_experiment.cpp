@@ -16,10 +16,17 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr int kSeeds = 100;
 constexpr auto kLongest = seconds(600);
 constexpr double kArrival = 0.4;  // [m]
 constexpr double kVisitor = 3.5;  // [m]
+
+struct Setup {
+  const char* name;
+  const char* manifest;
+  int seeds;
+};
+constexpr Setup kModelled{"guide", "demo.yaml", 100};
+constexpr Setup kRendered{"guide-pixels", "demo-pixels.yaml", 5};
 
 struct Visit {
   std::string destination;
@@ -73,18 +80,16 @@ Result<Visit> visit(Deployment deployment, const std::string& place, std::uint64
   return visit;
 }
 
-}  // namespace
-
-Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
+Result<ResultSheet> run_guide(const Setup& setup, const ExperimentOptions& options) {
   const auto given = only_seed(options.only);
   if (!given) return Error{given.error()};
-  const auto deployment =
-      load_deployment(options.installation.share + "/deploy/demo.yaml", options.installation, {});
+  const auto deployment = load_deployment(options.installation.share + "/deploy/" + setup.manifest,
+                                          options.installation, {});
   if (!deployment) return Error{deployment.error()};
   const auto names = site_locations(*deployment);
   if (!names) return Error{names.error()};
   const int only = static_cast<int>(*given);
-  const int seeds = std::max(only, options.seeds > 0 ? options.seeds : kSeeds);
+  const int seeds = std::max(only, options.seeds > 0 ? options.seeds : setup.seeds);
 
   std::vector<std::optional<Visit>> visits(static_cast<std::size_t>(seeds));
   const auto run_seed = [&](std::size_t i) -> Result<std::string> {
@@ -98,8 +103,8 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
       said = "seed " + seed + " to " + place + ": " +
              (result->arrived ? "arrived" : result->outcome) + ", " +
              std::to_string(result->summary.contacts) + " contacts " +
-             result->summary.contact_with + " (replay: usher experiment guide --only " + seed +
-             ")\n" + result->complaints;
+             result->summary.contact_with + " (replay: usher experiment " + setup.name +
+             " --only " + seed + ")\n" + result->complaints;
     }
     visits[i] = std::move(result).value();
     return said;
@@ -110,7 +115,7 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   if (!done) return Error{done.error()};
 
   ResultSheet sheet;
-  sheet.name = "guide";
+  sheet.name = setup.name;
   sheet.input = std::to_string(seeds) + " seeded visits in the office, lock-step";
   Table table({"seed", "to", "arrived", "s", "m", "m/s", "clearance m", "error mean m",
                "error max m", "contacts", "touches", "held back", "outcome"});
@@ -171,6 +176,16 @@ Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
   if (auto saved = write_file(options.out + "/visits.md", table.markdown()); !saved)
     return Error{saved.error()};
   return sheet;
+}
+
+}  // namespace
+
+Result<ResultSheet> run_guide_experiment(const ExperimentOptions& options) {
+  return run_guide(kModelled, options);
+}
+
+Result<ResultSheet> run_guide_pixels_experiment(const ExperimentOptions& options) {
+  return run_guide(kRendered, options);
 }
 
 }  // namespace usher::operations

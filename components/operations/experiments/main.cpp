@@ -25,6 +25,10 @@ const std::vector<Experiment>& experiments() {
        "determinism",
        run_guide_experiment,
        {"--seeds", "--only"}},
+      {"guide-pixels",
+       "The same with every pixel of both depth cameras rendered, five seeds",
+       run_guide_pixels_experiment,
+       {"--seeds", "--only"}},
       {"follow",
        "MARVIN with its depth cameras guides visitors who follow, dawdle, tie a lace, walk away, "
        "lock-step: gaps, losses noticed, ETA; --only follows | dawdles | lace | returns | leaves",
@@ -49,7 +53,7 @@ const std::vector<Experiment>& experiments() {
       {"buildings-dds",
        "The same in one building as DDS processes; --only NAME",
        run_buildings_dds_experiment,
-       {"--only"}},
+       {"--only", "--domain"}},
       {"tracking-log",
        "Localizes on recorded logs from raw odometry and laser, against their reference poses; "
        "--only LOG",
@@ -102,7 +106,7 @@ const std::vector<Experiment>& experiments() {
        "Thesis 4.4: figures 4.11 to 4.21 (but for 4.13, 4.14 and 4.18, which hold no data), table "
        "4.2 over DDS processes, scans against the truth; --only images without processes",
        run_depth_pipeline_experiment,
-       {"--only"}},
+       {"--only", "--domain"}},
       {"human-detection",
        "Thesis 8.3: people in the cases of figures 8.16 to 8.21 and in random rooms (--seeds N), "
        "the thesis' blobs with each fix of 8.3.3 beside the shipped detector",

@@ -18,17 +18,17 @@ using std::chrono::steady_clock;
 constexpr auto kRepeat = milliseconds(200);
 constexpr auto kPoll = milliseconds(20);
 constexpr std::uint64_t kIdsPerErrand = 1000;
-constexpr std::uint32_t kDomain = 43;
 
 class ProcessRobot final : public CommandedRobot {
  public:
   static Result<std::unique_ptr<CommandedRobot>> create(const Deployment& deployment,
-                                                        const Installation& installation) {
-    auto launcher = Launcher::create(
-        deployment, {"", installation.programs, default_run_directory(kDomain, "")});
+                                                        const Installation& installation,
+                                                        const std::string& run_directory) {
+    auto launcher = Launcher::create(deployment, {"", installation.programs, run_directory});
     if (!launcher) return Error{launcher.error()};
     std::unique_ptr<ProcessRobot> robot(new ProcessRobot(std::move(launcher).value()));
-    if (auto status = robot->listen(); !status) return Error{status.error()};
+    if (auto status = robot->listen(deployment.manifest.domain); !status)
+      return Error{status.error()};
     return std::unique_ptr<CommandedRobot>(std::move(robot));
   }
 
@@ -76,8 +76,8 @@ class ProcessRobot final : public CommandedRobot {
  private:
   explicit ProcessRobot(Launcher launcher) : launcher_(std::move(launcher)) {}
 
-  Status listen() {
-    auto observer = Observer::create({.name = Errand::kClient, .host = "nuc", .domain = kDomain});
+  Status listen(std::uint32_t domain) {
+    auto observer = Observer::create({.name = Errand::kClient, .host = "nuc", .domain = domain});
     if (!observer) return Error{observer.error()};
     observer_ = std::move(observer).value();
     const auto note = [this](const auto& message, const auto&) {
@@ -133,13 +133,15 @@ class ProcessRobot final : public CommandedRobot {
 }  // namespace
 
 Result<std::unique_ptr<CommandedRobot>> process_robot(Deployment deployment, std::uint64_t seed,
-                                                      const Installation& installation) {
-  deployment.manifest.domain = kDomain;
+                                                      const Installation& installation,
+                                                      std::uint32_t domain,
+                                                      const std::string& run_directory) {
+  deployment.manifest.domain = domain;
   for (auto& file : deployment.files) {
     file.seed = seed;
-    file.domain = kDomain;
+    file.domain = domain;
   }
-  return ProcessRobot::create(deployment, installation);
+  return ProcessRobot::create(deployment, installation, run_directory);
 }
 
 }  // namespace usher::operations

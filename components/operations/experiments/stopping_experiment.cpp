@@ -5,6 +5,7 @@
 
 #include "foundation/geometry/angle.hpp"
 #include "operations/command_line/table.hpp"
+#include "operations/experiments/depth_stage.hpp"
 #include "operations/experiments/experiment.hpp"
 #include "operations/experiments/hall.hpp"
 #include "operations/experiments/line_plot.hpp"
@@ -26,7 +27,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOnSpeed = 0.98;                // share of the target that counts as reached ...
 constexpr auto kOnSpeedFor = milliseconds(200);  // ... when it is kept for so long
 constexpr auto kWatched = std::chrono::seconds(6);  // after the stop command
-constexpr double kCameraTilt = -0.0872664626;       // [rad] as it navigates
 constexpr double kUsable = 10.0;                    // [deg] of pitch: range data holds (T 8.1.3)
 
 /// A hall with a flat measurement surface at its end, 4.4 m to either side: open space. The surface

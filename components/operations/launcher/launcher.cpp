@@ -2,25 +2,20 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/prctl.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
-#include <string_view>
 #include <thread>
 
 #include "operations/launcher/precedence.hpp"
+#include "operations/launcher/run_places.hpp"
 
 namespace usher::operations {
 
@@ -41,8 +36,7 @@ constexpr std::uintmax_t kLeastRoom = 100'000;     // bytes; less is a full disk
 constexpr auto kLongestPollPause = milliseconds(500);
 constexpr const char* kOperator = "operator";
 constexpr const char* kDiscoveryServer = "discovery_server";
-constexpr const char* kServiceDirectory = "/run/usher";  // RuntimeDirectory of the units
-constexpr int kWrongParameters = 2;                      // exit code of a component program
+constexpr int kWrongParameters = 2;  // exit code of a component program
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -103,115 +97,7 @@ Status write_parameters(const runtime::ParameterFile& file, const std::string& p
   return {};
 }
 
-bool directory_of_mine(const std::string& path) {
-  struct stat facts {};
-  return lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();
-}
-
-/// Where this user's deployments keep their locks, until a boot.
-std::string runtime_directory() {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  if (runtime != nullptr && *runtime != '\0') return std::string(runtime) + "/usher";
-  const std::string user = std::to_string(geteuid());
-  if (directory_of_mine("/run/user/" + user)) return "/run/user/" + user + "/usher";
-  return "/tmp/usher-" + user;
-}
-
-/// Where what they remember outlives a boot; without a home it cannot.
-std::string state_directory() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  if (state != nullptr && *state != '\0') return std::string(state) + "/usher";
-  const char* home = std::getenv("HOME");
-  if (home != nullptr && *home != '\0') return std::string(home) + "/.local/state/usher";
-  return runtime_directory();
-}
-
-/// Makes it for this user alone. Where anybody may write beside it (/tmp), one that was there and
-/// is not ours, or that others may write, could hold somebody else's memory of our robot.
-Status make_runtime_directory(const std::string& path) {
-  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
-    return Error{"cannot write " + path + ": " + std::strerror(errno)};
-  struct stat facts {};
-  if (lstat(path.c_str(), &facts) != 0 || !directory_of_mine(path))
-    return Error{path + " must be a directory of this user, and is not"};
-  if (!path.starts_with("/tmp/") || (facts.st_mode & 077) == 0) return {};
-  if ((facts.st_mode & 022) != 0)
-    return Error{path + " must be writable by this user alone, and others may write there"};
-  if (chmod(path.c_str(), 0700) != 0)
-    return Error{"cannot close " + path + " to others: " + std::strerror(errno)};
-  return {};
-}
-
-std::string operator_file_of(std::uint32_t domain) {
-  return "/domain-" + std::to_string(domain) + "-operator.yaml";
-}
-
-/// The lock of a host's launcher in a domain.
-std::string lock_of(std::uint32_t domain, const std::string& host) {
-  return "domain-" + std::to_string(domain) + "-" + host + ".lock";
-}
-
-/// The inverse; nothing: it is no such name.
-std::optional<std::uint32_t> domain_of_lock(const std::string& name) {
-  constexpr std::string_view kBefore = "domain-", kAfter = ".lock";
-  if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return std::nullopt;
-  std::uint32_t domain = 0;
-  const auto read =
-      std::from_chars(name.data() + kBefore.size(), name.data() + name.size(), domain);
-  if (read.ec != std::errc() || *read.ptr != '-') return std::nullopt;
-  return domain;
-}
-
-/// Whether the process lives that wrote its number into a lock: a launcher that was killed leaves
-/// its files. To try the lock itself could refuse it to one who starts now. A service's lock, which
-/// its user alone may read, counts as held.
-bool holder_lives(const std::string& lock) {
-  if (access(lock.c_str(), R_OK) != 0) return errno == EACCES;
-  pid_t pid = 0;
-  std::ifstream(lock) >> pid;
-  return pid > 0 && (kill(pid, 0) == 0 || errno == EPERM);
-}
-
-/// What the kernel calls the time since the machine started.
-std::string boot() {
-  std::ifstream file("/proc/sys/kernel/random/boot_id");
-  std::string id;
-  file >> id;
-  return id;
-}
-
-/// A lock file holds its launcher's process and boot.
-bool written_since_boot(const std::string& lock_file) {
-  std::ifstream file(lock_file);
-  std::string pid;
-  std::string id;
-  return file >> pid >> id && id == boot();
-}
-
 }  // namespace
-
-std::string default_run_directory(std::uint32_t domain, const std::string& host) {
-  return state_directory() + "/domain-" + std::to_string(domain) + (host.empty() ? "" : "-" + host);
-}
-
-std::vector<std::string> operator_files(std::uint32_t domain) {
-  const std::string name = operator_file_of(domain);
-  return {runtime_directory() + name, kServiceDirectory + name};
-}
-
-std::vector<std::uint32_t> launched_domains() {
-  std::set<std::uint32_t> domains;
-  for (const std::string& directory : {runtime_directory(), std::string(kServiceDirectory)}) {
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-      const auto domain = domain_of_lock(entry.path().filename());
-      if (domain && holder_lives(entry.path()) &&
-          access((directory + operator_file_of(*domain)).c_str(), F_OK) == 0)
-        domains.insert(*domain);
-    }
-  }
-  return {domains.begin(), domains.end()};
-}
 
 std::string to_yaml(const runtime::ParameterFile& file) {
   std::ostringstream out;
@@ -270,37 +156,22 @@ Launcher::~Launcher() {
 }
 
 Status Launcher::lock(const Deployment& deployment) {
-  if (auto status = make_runtime_directory(runtime_directory()); !status) return status;
+  if (auto status = make_lock_directory(); !status) return status;
   std::error_code error;
   // Memories of visitors and the paths of keys are of nobody else's concern.
   if (std::filesystem::create_directories(options_.run_directory, error))
     std::filesystem::permissions(options_.run_directory, std::filesystem::perms::owner_all, error);
   if (error) return Error{"cannot write " + options_.run_directory + ": " + error.message()};
-  if (auto status = lock_file(options_.run_directory + "/lock"); !status) return status;
+  std::vector<std::string> paths{options_.run_directory + "/lock"};
   for (const auto& host : deployment.manifest.hosts) {
     if (!options_.host.empty() && host.name != options_.host) continue;
-    const std::string path =
-        runtime_directory() + "/" + lock_of(deployment.manifest.domain, host.name);
-    since_boot_ = since_boot_ || written_since_boot(path);
-    if (auto status = lock_file(path); !status) return status;
+    paths.push_back(launcher_lock(deployment.manifest.domain, host.name));
+    since_boot_ = since_boot_ || written_since_boot(paths.back());
   }
-  return {};
-}
-
-Status Launcher::lock_file(const std::string& path) {
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0) return Error{"cannot write " + path + ": " + std::strerror(errno)};
-  locks_.push_back(file);
-  if (flock(file, LOCK_EX | LOCK_NB) != 0) {
-    std::ifstream holder(path);
-    std::string pid;
-    holder >> pid;
-    return Error{"this robot is already launched here, by process " + pid + " (" + path + ")"};
-  }
-  const std::string text = std::to_string(getpid()) + "\n" + boot() + "\n";
-  if (ftruncate(file, 0) != 0 ||
-      write(file, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
-    return Error{"cannot write " + path + ": " + std::strerror(errno)};
+  for (const std::string& path : paths) {
+    const auto held = take_lock(path);
+    if (!held) return Error{held.error()};
+    locks_.push_back(*held);
   }
   return {};
 }

@@ -112,7 +112,6 @@ class Launcher {
  private:
   explicit Launcher(LaunchOptions options) : options_(std::move(options)) {}
   Status lock(const Deployment& deployment);
-  Status lock_file(const std::string& path);
   Status prepare(const Deployment& deployment);
   Status forget_session() const;
   Status leave_operator_file(const Deployment& deployment, std::int64_t anchor);
@@ -142,20 +141,6 @@ class Launcher {
   std::chrono::steady_clock::time_point logs_bounded_{};
   bool disk_full_ = false;  ///< said
 };
-
-/// Where a deployment runs on this machine by default: one place for each user and DDS domain that
-/// a boot leaves, so that what is latched stays so: in XDG_STATE_HOME/usher, else in
-/// HOME/.local/state/usher, and where there is no home beside the locks. Those are in
-/// XDG_RUNTIME_DIR/usher, else in /run/user/UID/usher, else in /tmp/usher-UID, which the launcher
-/// takes only when it belongs to this user alone.
-std::string default_run_directory(std::uint32_t domain, const std::string& host);
-
-/// Where a launcher leaves how its robot is reached (a parameter file without parameters), and
-/// where it is looked for: that of this user first, then that of a service.
-std::vector<std::string> operator_files(std::uint32_t domain);
-/// Domains in which a robot was launched on this machine, by this user or as a service, and whose
-/// launcher lives; rising.
-std::vector<std::uint32_t> launched_domains();
 
 /// The file that a component gets with --parameters.
 std::string to_yaml(const runtime::ParameterFile& file);

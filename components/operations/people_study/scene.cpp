@@ -231,8 +231,7 @@ std::vector<Scene> thesis_scenes() {
 
 Studio::Studio(const rendering::DepthSensorConfig& sensor)
     : sensor_(sensor),
-      intrinsics_{sensor.lens.width, sensor.lens.height, sensor.lens.fx,
-                  sensor.lens.fy,    sensor.lens.cx,     sensor.lens.cy},
+      intrinsics_(rendering::intrinsics_of(sensor.lens)),
       pipeline_(depth_pipeline::DepthPipeline::make(intrinsics_, {.origin = 0.0}).value()) {}
 
 std::vector<Truth> Studio::truths_of(const Scene& scene) const {

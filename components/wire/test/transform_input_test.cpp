@@ -14,6 +14,7 @@ using testing::IsEmpty;
 
 /// What became known of the scans that a Waiter was given: their frames, in order.
 std::vector<std::string> placed;
+Eigen::Vector3d place_of_laser;  // in odom, of the last one
 
 /// Wants to know where each scan was made.
 class Waiter final : public runtime::Component {
@@ -23,7 +24,10 @@ class Waiter final : public runtime::Component {
       const std::string frame = scan.header().frame_id();
       const std::string name = frame + std::to_string(scan.header().stamp().nanosec() / 1'000'000);
       transforms_.when_known(frames::kOdom, frame, from_message(scan.header().stamp()),
-                             [name](const auto&) { placed.push_back(name); });
+                             [name](const geometry::Pose3& odom_T_sensor) {
+                               placed.push_back(name);
+                               place_of_laser = odom_T_sensor.translation;
+                             });
     });
   }
 
@@ -89,6 +93,20 @@ TEST_F(TransformInputTest, PeopleDoNotFillTheBuffer) {
   EXPECT_THAT(placed, ElementsAre("laser110"));
   host.run_for(milliseconds(200));
   EXPECT_EQ(host.counter("tf: refused"), 0U);
+}
+
+TEST_F(TransformInputTest, AnotherMountThanTheFirstIsRefusedAndCounted) {
+  tf2_msgs::msg::TFMessage fixed;
+  geometry::Pose3 elsewhere;
+  elsewhere.translation.x() = 1.0;
+  fixed.transforms().push_back(transform(host.now(), frames::kBaseFootprint, "laser", elsewhere));
+  host.publish(topics::kTfStatic, fixed);
+  odometry(10);
+  scan("laser", 10);
+  ASSERT_THAT(placed, ElementsAre("laser10"));
+  EXPECT_EQ(place_of_laser.x(), 0.0);
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(host.counter("tf: refused"), 1U);
 }
 
 TEST_F(TransformInputTest, WorkRunsInTheHandlerThatMakesTheTransformKnown) {

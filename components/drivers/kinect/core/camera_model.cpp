@@ -1,5 +1,6 @@
 #include "drivers/kinect/core/camera_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -62,18 +63,32 @@ Result<Rectifier> Rectifier::make(const imaging::Intrinsics& intrinsics,
   return rectifier;
 }
 
+Status Rectifier::check_size(int width, int height, std::size_t pixels) const {
+  if (width == width_ && height == height_ && pixels == source_.size()) return {};
+  return Error{"expected an image of " + std::to_string(width_) + " x " + std::to_string(height_) +
+               ", got " + std::to_string(width) + " x " + std::to_string(height)};
+}
+
 Status Rectifier::rectify(const Frame& raw, Frame& rectified) const {
-  if (raw.width != width_ || raw.height != height_ || raw.millimeters.size() != source_.size()) {
-    return Error{"expected an image of " + std::to_string(width_) + " x " +
-                 std::to_string(height_) + ", got " + std::to_string(raw.width) + " x " +
-                 std::to_string(raw.height)};
-  }
+  if (auto fits = check_size(raw.width, raw.height, raw.millimeters.size()); !fits) return fits;
   rectified.width = width_;
   rectified.height = height_;
   rectified.millimeters.resize(source_.size());
   for (std::size_t i = 0; i < source_.size(); ++i) {
     rectified.millimeters[i] =
         source_[i] < 0 ? std::uint16_t{0} : raw.millimeters[static_cast<std::size_t>(source_[i])];
+  }
+  return {};
+}
+
+Status Rectifier::rectify(const ColorFrame& raw, ColorFrame& rectified) const {
+  if (auto fits = check_size(raw.width, raw.height, raw.rgb.size() / 3); !fits) return fits;
+  rectified.width = width_;
+  rectified.height = height_;
+  rectified.rgb.assign(3 * source_.size(), 0);
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] < 0) continue;
+    std::copy_n(&raw.rgb[3 * static_cast<std::size_t>(source_[i])], 3, &rectified.rgb[3 * i]);
   }
   return {};
 }

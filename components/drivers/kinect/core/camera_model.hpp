@@ -33,9 +33,12 @@ class Rectifier {
 
   /// An image of another size than the intrinsics' is refused.
   Status rectify(const Frame& raw, Frame& rectified) const;
+  /// The same for the colors of its pixels; black where nothing is known.
+  Status rectify(const ColorFrame& raw, ColorFrame& rectified) const;
 
  private:
   Rectifier(int width, int height) : width_(width), height_(height) {}
+  Status check_size(int width, int height, std::size_t pixels) const;
   int width_, height_;
   std::vector<std::int32_t> source_;  // index of the pixel to take; -1: outside
 };

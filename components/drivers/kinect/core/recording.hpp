@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "drivers/kinect/core/device.hpp"
-#include "foundation/imaging/color_image.hpp"
 
 namespace usher::kinect {
 
@@ -16,15 +15,6 @@ enum class Values { kMillimeters, kRaw11 };
 /// A 16-bit grey PGM image (P5, 256..65535, most significant byte first as the format wants it;
 /// recordings of libfreenect have the least significant one first). The error says what was found.
 Result<Frame> parse_pgm(std::span<const std::uint8_t> bytes, bool little_endian);
-
-/// A color image as it was recorded.
-struct ColorFrame {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;  ///< red, green, blue, row by row from the top left
-
-  imaging::ColorImage view() const { return {width, height, rgb}; }
-};
 
 /// An 8-bit color PPM image (P6, 255). The error says what was found.
 Result<ColorFrame> parse_ppm(std::span<const std::uint8_t> bytes);

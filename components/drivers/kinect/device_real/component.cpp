@@ -20,8 +20,10 @@ constexpr auto kOnItsWay = milliseconds(33);  // exposure and transfer of an ima
 void KinectComponent::Job::run() {
   error.clear();
   color.rgb.clear();
+  rectified_color.rgb.clear();
   Status done = fetch();
   if (done) done = rectifier->rectify(read, rectified);
+  if (done && !color.rgb.empty()) done = rectifier->rectify(color, rectified_color);
   if (!done) error = done.error();
 }
 
@@ -157,7 +159,7 @@ void KinectComponent::take_frame() {
   }
   const runtime::Time stamp = live_ ? measured() : host_.now();
   // Whoever has the depths of a moment has its colors, too.
-  if (!job_->color.rgb.empty()) publisher_.publish(stamp, job_->color);
+  if (!job_->rectified_color.rgb.empty()) publisher_.publish(stamp, job_->rectified_color);
   publisher_.publish(stamp, job_->rectified);
   host_.health().set(HealthState::kOk);
 }

@@ -27,8 +27,8 @@ class KinectComponent final : public runtime::Component {
     std::optional<Rectifier> rectifier;
     std::size_t index = 0;
     Frame read, rectified;
-    ColorFrame color;  ///< empty: none
-    Stamps stamps;     ///< of a live one's images
+    ColorFrame color, rectified_color;  ///< empty: none
+    Stamps stamps;                      ///< of a live one's images
     std::string error;
     void run();
     Status fetch();

@@ -108,6 +108,27 @@ TEST(Rectifier, MirrorsAndLeavesAloneWithoutDistortion) {
   EXPECT_EQ(out.millimeters[15], 1);
 }
 
+TEST(Rectifier, MovesColorsWithTheDepthsOfTheirPixels) {
+  const imaging::Intrinsics camera{16, 16, 16, 16, 7.5, 7.5};
+  Frame depths{16, 16, std::vector<std::uint16_t>(256)}, depths_out;
+  ColorFrame colors{16, 16, std::vector<std::uint8_t>(768)}, colors_out;
+  for (std::size_t i = 0; i < 256; ++i) {
+    depths.millimeters[i] = static_cast<std::uint16_t>(i);
+    colors.rgb[3 * i] = colors.rgb[3 * i + 2] = static_cast<std::uint8_t>(i);
+  }
+  for (const bool mirrored : {false, true}) {
+    const auto rectifier = Rectifier::make(camera, {0.3, 0, 0, 0, 0}, mirrored).value();
+    ASSERT_TRUE(rectifier.rectify(depths, depths_out).ok());
+    ASSERT_TRUE(rectifier.rectify(colors, colors_out).ok());
+    for (std::size_t i = 0; i < 256; ++i) {
+      EXPECT_EQ(colors_out.rgb[3 * i], depths_out.millimeters[i]);
+      EXPECT_EQ(colors_out.rgb[3 * i + 1], 0);
+      EXPECT_EQ(colors_out.rgb[3 * i + 2], depths_out.millimeters[i]);
+    }
+    EXPECT_NE(depths_out.millimeters, depths.millimeters);
+  }
+}
+
 TEST(Rectifier, RefusesWhatCannotBe) {
   Distortion distortion{};
   distortion[1] = std::numeric_limits<double>::quiet_NaN();
@@ -115,6 +136,8 @@ TEST(Rectifier, RefusesWhatCannotBe) {
   Frame out;
   const Rectifier rectifier = Rectifier::make(kinect_v2(), {}, false).value();
   EXPECT_THAT(rectifier.rectify({640, 480, {}}, out).error(), HasSubstr("512 x 424"));
+  ColorFrame colors;
+  EXPECT_THAT(rectifier.rectify({1920, 1080, {}}, colors).error(), HasSubstr("1920 x 1080"));
 }
 
 TEST(Recording, PlaysAFolderInOrderAndByItsIndex) {

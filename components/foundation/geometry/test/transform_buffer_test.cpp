@@ -1,5 +1,6 @@
 #include "foundation/geometry/transform_buffer.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,6 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using testing::HasSubstr;
 
 Pose3 along_x(double x, double yaw = 0.0) { return to_space({x, 0.0, yaw}); }
 
@@ -92,6 +94,17 @@ TEST(TransformBuffer, SurvivesALoopOfParents) {
   ASSERT_TRUE(buffer.add_static("b", "a", along_x(1.0)));
   EXPECT_FALSE(buffer.lookup("c", "a", seconds(0)));
   EXPECT_FALSE(buffer.newest("c", "a"));
+}
+
+TEST(TransformBuffer, AFrameThatNeverMovesKeepsItsPlace) {
+  auto buffer = robot();
+  EXPECT_TRUE(buffer.add_static("base", "laser", along_x(0.5)));
+  EXPECT_THAT(buffer.add_static("base", "laser", along_x(0.6)).error(), HasSubstr("another place"));
+  EXPECT_THAT(buffer.add("base", "laser", seconds(3), along_x(0.6)).error(),
+              HasSubstr("never moves"));
+  EXPECT_THAT(buffer.add_static("odom", "base", along_x(9.0)).error(), HasSubstr("moves"));
+  EXPECT_EQ(buffer.lookup("base", "laser", seconds(60))->translation.x(), 0.5);
+  EXPECT_NEAR(buffer.lookup("odom", "base", seconds(2))->translation.x(), 1.0, 1e-12);
 }
 
 TEST(TransformBuffer, NewestIsTheOldestOfTheNewestOnTheWay) {

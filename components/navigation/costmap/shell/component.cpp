@@ -1,5 +1,6 @@
 #include "navigation/costmap/shell/component.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/costmap/core/echo_check.hpp"
@@ -61,7 +62,29 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       rejected_maps_(host.health().counter("map: rejected")),
       rejected_people_(host.health().counter("people: rejected")),
       transforms_(host) {
-  auto& parameters = host.parameters();
+  read_settings(host.parameters());
+  local_.frame = frames::kOdom;
+  global_.frame = frames::kMap;
+  const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
+  local_.costs.emplace(make(true, {cells, cells, resolution_, 0.0, 0.0}));
+  add_layers(local_);
+  listen();
+  local_costs_ = host.output(topics::kLocalCosts);
+  global_costs_ = host.output(topics::kGlobalCosts);
+  local_view_ = host.output(topics::kLocalCostmap);
+  global_view_ = host.output(topics::kGlobalCostmap);
+  global_timer_ =
+      host.timer("global costs", milliseconds(1000), [this](auto) { publish_global(); });
+  view_timer_ = host.timer("views", milliseconds(200), [this](auto) {
+    if (local_.costs && local_view_.reader_count() > 0) {
+      local_view_.publish(
+          wire::to_message(local_.newest, local_.frame, viewed(local_.costs->costs())));
+    }
+    report();
+  });
+}
+
+void CostmapComponent::read_settings(runtime::Parameters& parameters) {
   resolution_ =
       parameters.number("resolution", "m", {0.01, 0.5}, 0.05, "Side of a cell of the local costs.");
   local_size_ = parameters.number("local_size", "m", {2, 40}, 6.0,
@@ -109,8 +132,11 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   ultrasonic_settings_.overrules_static_map = false;
   ultrasonic_settings_.persistence = parameters.number("ultrasonic_persistence", "s", {0, 600}, 5.0,
                                                        "The same for the ultrasonic sensors.");
-
   read_depth_settings(parameters);
+  read_echo_settings(parameters);
+}
+
+void CostmapComponent::read_echo_settings(runtime::Parameters& parameters) {
   echo_half_cone_ =
       parameters.number("echo_half_cone", "rad", {0, 0.8}, 0.21,
                         "Half of an ultrasonic cone, where the laser explains echoes.");
@@ -121,12 +147,14 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       "The middle of it, which tells that nothing is there, in 13 rays; 0: the axis alone.");
   echo_tolerance_ = parameters.number("echo_tolerance", "m", {0, 1}, 0.3,
                                       "So much nearer than an echo may be what explains it.");
+}
 
-  const auto judge = [&host](Beams& beams, runtime::Duration max_age, const std::string& name) {
+void CostmapComponent::listen() {
+  const auto judge = [this](Beams& beams, runtime::Duration max_age, const std::string& name) {
     beams.max_age = max_age;
-    beams.late = &host.health().counter(name + ": late");
+    beams.late = &host_.health().counter(name + ": late");
   };
-  const runtime::Duration silence = runtime::from_seconds(parameters.number(
+  const runtime::Duration silence = runtime::from_seconds(host_.parameters().number(
       "robot.laser.silence", "s", {0.05, 1}, 0.3, "A laser without a scan for so long is lost."));
   judge(laser_beams_, silence, "scan");
   judge(ultrasonic_beams_, kUltrasonicAge, "ultrasonic");
@@ -134,15 +162,9 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
   judge(low_beams_, kDepthAge, "kinect low");
   judge(rear_beams_, kDepthAge, "rear camera");
 
-  local_.frame = frames::kOdom;
-  global_.frame = frames::kMap;
-  const int cells = static_cast<int>(std::lround(local_size_ / resolution_));
-  local_.costs.emplace(make(true, {cells, cells, resolution_, 0.0, 0.0}));
-  add_layers(local_);
-
-  map_ =
-      host.input(topics::kMap, {}, [this](const auto& message, const auto&) { take_map(message); });
-  scan_ = host.input(
+  map_ = host_.input(topics::kMap, {},
+                     [this](const auto& message, const auto&) { take_map(message); });
+  scan_ = host_.input(
       topics::kScanFiltered,
       {.max_age = silence, .on_loss = "publishes no local costs: the local planner stops"},
       [this](const auto&, const auto& info) {
@@ -150,41 +172,28 @@ CostmapComponent::CostmapComponent(runtime::Host& host)
       },
       [this] { host_.health().set(HealthState::kDegraded, "no scan"); });
   ultrasonic_ =
-      host.input(topics::kUltrasonicFiltered,
-                 {.max_age = kUltrasonicAge, .on_loss = "goes on without glass", .optional = true},
-                 [this](const auto&, const auto& info) {
-                   take_scan(ultrasonic_.share(), info, ultrasonic_beams_, &Map::ultrasonic);
-                 });
+      host_.input(topics::kUltrasonicFiltered,
+                  {.max_age = kUltrasonicAge, .on_loss = "goes on without glass", .optional = true},
+                  [this](const auto&, const auto& info) {
+                    take_scan(ultrasonic_.share(), info, ultrasonic_beams_, &Map::ultrasonic);
+                  });
   read_depth();
   whiskers_ =
-      host.input(topics::kWhiskers,
-                 {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
-                 [this](const auto&, const auto&) { take_whiskers(whiskers_.share()); });
-  people_ = host.input(
+      host_.input(topics::kWhiskers,
+                  {.max_age = kWhiskerAge, .on_loss = "keeps the last contacts", .optional = true},
+                  [this](const auto&, const auto&) { take_whiskers(whiskers_.share()); });
+  people_ = host_.input(
       topics::kPeople,
       {.max_age = kPeopleAge, .on_loss = "gives nobody room but as obstacles", .optional = true},
       [this](const auto& people, const auto&) { take_people(people); },
       [this] { forget_people(); });
-  request_ = host.input(topics::kCostmapRequest, {.optional = true},
-                        [this](const auto& request, const auto&) {
-                          if (request.id() == last_request_) return;
-                          last_request_ = request.id();
-                          if (local_.costs) local_.costs->forget(blind_range_);
-                          if (global_.costs) global_.costs->forget(blind_range_);
-                        });
-  local_costs_ = host.output(topics::kLocalCosts);
-  global_costs_ = host.output(topics::kGlobalCosts);
-  local_view_ = host.output(topics::kLocalCostmap);
-  global_view_ = host.output(topics::kGlobalCostmap);
-  global_timer_ =
-      host.timer("global costs", milliseconds(1000), [this](auto) { publish_global(); });
-  view_timer_ = host.timer("views", milliseconds(200), [this](auto) {
-    if (local_.costs && local_view_.reader_count() > 0) {
-      local_view_.publish(
-          wire::to_message(local_.newest, local_.frame, viewed(local_.costs->costs())));
-    }
-    report();
-  });
+  request_ = host_.input(topics::kCostmapRequest, {.optional = true},
+                         [this](const auto& request, const auto&) {
+                           if (request.id() == last_request_) return;
+                           last_request_ = request.id();
+                           if (local_.costs) local_.costs->forget(blind_range_);
+                           if (global_.costs) global_.costs->forget(blind_range_);
+                         });
 }
 
 void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
@@ -452,8 +461,18 @@ void CostmapComponent::remember_contacts(std::span<const geometry::Point2> in_od
   std::erase_if(contacts_, [&](const Contact& one) { return stamp - one.stamp > kContactsKept; });
   for (const geometry::Point2& point : in_odom) {
     const geometry::Point2 place = *map_T_odom * point;
+    const auto known = std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact& one) {
+      return (one.place - place).norm() < kFelt;
+    });
+    if (known != contacts_.end()) {
+      known->stamp = stamp;
+      continue;
+    }
     if (bars_near(global_.costs->costs(), place)) continue;
-    if (contacts_.size() == kMostContacts) contacts_.erase(contacts_.begin());
+    if (contacts_.size() == kMostContacts)
+      contacts_.erase(
+          std::min_element(contacts_.begin(), contacts_.end(),
+                           [](const Contact& a, const Contact& b) { return a.stamp < b.stamp; }));
     contacts_.push_back({place, stamp});
   }
   contact_places_.clear();

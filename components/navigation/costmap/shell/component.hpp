@@ -40,7 +40,10 @@ class CostmapComponent final : public runtime::Component {
   CostmapConfig config(bool rolling, const grid::GridGeometry& window) const;
   Costmap make(bool rolling, const grid::GridGeometry& window);
   void add_layers(Map& map);
+  void read_settings(runtime::Parameters& parameters);
   void read_depth_settings(runtime::Parameters& parameters);
+  void read_echo_settings(runtime::Parameters& parameters);
+  void listen();
   void read_depth();
   void take_map(const nav_msgs::msg::OccupancyGrid& message);
   void refuse_map(const std::string& reason);

@@ -323,6 +323,55 @@ TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
   EXPECT_LT(global_cost(0.42, 0.32), 252);
 }
 
+TEST_F(Component, KeepsAContactWhileWhiskersAreHeldAtAnotherPlace) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  const auto feel = [&](bool left, bool right, int ms) {
+    whiskers.header(wire::header(last_scan, frames::kBaseLink));
+    whiskers.front_left(left);
+    whiskers.front_right(right);
+    host.publish(topics::kWhiskers, whiskers);
+    run(ms);
+  };
+  feel(true, false, 1500);
+  base.x -= 1.0;
+  run(100);
+  for (int i = 0; i < 200; ++i) feel(true, true, 20);
+  base.x -= 1.0;
+  run(100);
+  feel(false, false, 1500);
+  EXPECT_EQ(global_cost(0.42, 0.32), 252);
+  EXPECT_EQ(global_cost(-0.58, 0.32), 252);
+  EXPECT_EQ(global_cost(-0.58, -0.32), 252);
+}
+
+TEST_F(Component, KeepsAContactAsLongAfterTheLastTouch) {
+  give_map();
+  run(500);
+  usher_msgs::msg::Whiskers whiskers;
+  const auto feel = [&](bool pressed) {
+    whiskers.header(wire::header(last_scan, frames::kBaseLink));
+    whiskers.front_left(pressed);
+    host.publish(topics::kWhiskers, whiskers);
+    run(1500);
+  };
+  feel(true);
+  base.x -= 1.0;
+  run(100);
+  feel(false);
+  run(50'000);
+  base.x += 1.0;
+  run(100);
+  feel(true);
+  base.x -= 1.0;
+  run(100);
+  feel(false);
+  run(20'000);
+  feel(false);
+  EXPECT_EQ(global_cost(0.42, 0.32), 252) << "more than 60 s after the first touch";
+}
+
 TEST_F(Component, AnotherMapHasNoContactsOfTheOneBefore) {
   give_map();
   run(500);

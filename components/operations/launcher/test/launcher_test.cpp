@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "operations/launcher/precedence.hpp"
+#include "operations/launcher/run_places.hpp"
 #include "support/folder.hpp"
 
 namespace usher::operations {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "foundation/geometry/pose3.hpp"
+#include "foundation/imaging/depth_image.hpp"
 #include "foundation/result/result.hpp"
 #include "simulation/rendering/core/body.hpp"
 
@@ -36,13 +37,17 @@ struct Model {
   Material floor = Material::kVinyl;
 };
 
-/// A pinhole camera's image; see depth_pipeline's Intrinsics for the convention.
+/// A pinhole camera's image; see imaging::Intrinsics for the convention.
 struct Lens {
   int width = 512;
   int height = 424;
   double fx = 365.46, fy = 365.46;  ///< [pixels]
   double cx = 255.5, cy = 211.5;    ///< [pixels]
 };
+/// What those who get its images know of it.
+inline imaging::Intrinsics intrinsics_of(const Lens& lens) {
+  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
+}
 
 /// What the rays of one image met, pixel by pixel from the top left.
 struct Hits {

@@ -400,7 +400,8 @@ void Crowd::move(std::size_t index, const Point2& acceleration, bool by_a_wall, 
     // Stays where it was; what still overlaps is the robot's doing and shoves the person away.
     person.position = before;
     person.velocity.setZero();
-    if (robot_gap() < kSkin) {
+    const bool sits = person.posture == rendering::Posture::kSitting;
+    if (!sits && robot_gap() < kSkin) {
       person.position += 1.5 * kStep * unit(before - shapes::Polygon(robot.footprint).center());
     }
   }

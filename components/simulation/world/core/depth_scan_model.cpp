@@ -66,6 +66,16 @@ void add_parts(const Person& person, std::vector<Mover>& movers) {
   }
 }
 
+/// [m] height of the lowest feet that stick out, of those who sit; infinite: nobody sits.
+double lowest_feet(std::span<const Person> people) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Person& person : people) {
+    if (person.posture == rendering::Posture::kSitting)
+      lowest = std::min(lowest, person.height * kSitting[1].top);
+  }
+  return lowest;
+}
+
 }  // namespace
 
 DepthScanModel::DepthScanModel(const DepthScanModelConfig& config, std::uint64_t seed)
@@ -76,13 +86,14 @@ DepthScanModel::DepthScanModel(const DepthScanModelConfig& config, std::uint64_t
   low_.resize(count);
 }
 
-/// Heights so that every thing is cut by a fan, low things near their top.
-void DepthScanModel::choose_heights(const Scene& scene) {
+/// Heights so that every thing is cut by a fan, low things near their top, and feet of that height.
+void DepthScanModel::choose_heights(const Scene& scene, double feet) {
   struct Span {
     double bottom, top;
   };
   std::vector<Span> spans;
   for (const double height : {0.3, 0.6, 1.0, 1.5, 1.9}) spans.push_back({height - 0.1, height});
+  if (std::isfinite(feet)) spans.push_back({0.5 * feet, feet});
   for (const Thing& thing : scene.things()) {
     if (thing.top <= 0.0 || thing.bottom >= config_.ceiling) continue;
     const double top = std::min(thing.top, config_.ceiling);
@@ -110,8 +121,10 @@ void DepthScanModel::cast(const World& world, const Pose2& camera, double height
 }
 
 void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthScanResult& result) {
-  if (version_ != world.scene_version()) choose_heights(world.scene());
+  const double feet = lowest_feet(world.people());
+  if (version_ != world.scene_version() || feet_ != feet) choose_heights(world.scene(), feet);
   version_ = world.scene_version();
+  feet_ = feet;
   movers_.clear();
   for (const Person& person : world.people()) {
     movers_.push_back({person.position, person.radius * config_.body_radius,

@@ -58,7 +58,7 @@ class DepthScanModel {
   void scan(const World& world, const DepthCamera& camera, DepthScanResult& result);
 
  private:
-  void choose_heights(const Scene& scene);
+  void choose_heights(const Scene& scene, double feet);
   void cast(const World& world, const Pose2& camera, double height);
   bool in_view(double forward, double height) const;
   void disturb(double burst, DepthScanResult& result);
@@ -72,6 +72,7 @@ class DepthScanModel {
   std::vector<Mover> movers_;
   std::vector<double> heights_;
   std::uint64_t version_ = 0;
+  double feet_ = 0.0;  // [m] that the heights are chosen for
   double camera_height_ = 0.0, down_ = 0.0;
   std::vector<float> high_, low_;
 };

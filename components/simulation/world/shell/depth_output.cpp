@@ -18,10 +18,6 @@ constexpr int kRearEvery = 2;    ///< the rear camera has 15 Hz: the detector lo
 constexpr const char* kKinectFrame = "kinect_depth_optical";
 constexpr const char* kRearFrame = "rear_camera_depth_optical";
 
-imaging::Intrinsics intrinsics_of(const rendering::Lens& lens) {
-  return {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
-}
-
 template <class Config>
 Config model_for(const DepthCameraConfig& camera) {
   Config config;
@@ -159,11 +155,11 @@ void DepthOutput::publish_next() {
 }
 
 void DepthOutput::publish_info() {
-  kinect_info_.publish(
-      wire::to_message(stepped_, kKinectFrame, intrinsics_of(kinect_.config().sensor.lens)));
+  kinect_info_.publish(wire::to_message(stepped_, kKinectFrame,
+                                        rendering::intrinsics_of(kinect_.config().sensor.lens)));
   if (!has_rear_) return;
   rear_info_.publish(
-      wire::to_message(stepped_, kRearFrame, intrinsics_of(rear_.config().sensor.lens)));
+      wire::to_message(stepped_, kRearFrame, rendering::intrinsics_of(rear_.config().sensor.lens)));
 }
 
 void DepthOutput::publish_kinect() {

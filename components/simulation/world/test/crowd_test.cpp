@@ -96,5 +96,19 @@ TEST(Crowd, WhoFollowsMakesRoomForARobotThatBacksOff) {
   EXPECT_LT(crowd.people()[0].position.x(), -1.6);
 }
 
+TEST(Crowd, WhoSitsStaysOnTheSeatThoughARobotDrivesIntoHim) {
+  const PersonPlan plan{
+      .name = "ada", .start = {1.0, 0.0}, .posture = rendering::Posture::kSitting};
+  Crowd crowd({}, std::span(&plan, 1), {0, 0}, 1);
+  const Scene scene = corridor();
+  for (int i = 0; i < static_cast<int>(5.0 / kStep); ++i) {
+    const Robot robot({std::min(0.5, 0.2 * kStep * i), 0.0, 0.0});
+    crowd.step(scene, {robot.pose, robot.footprint});
+  }
+  EXPECT_EQ(crowd.people()[0].position.x(), 1.0);
+  EXPECT_EQ(crowd.people()[0].position.y(), 0.0);
+  EXPECT_EQ(crowd.people()[0].posture, rendering::Posture::kSitting);
+}
+
 }  // namespace
 }  // namespace usher::world
