@@ -335,6 +335,16 @@ bool AttackedRobot::stays() const {
   return told_late && stands();
 }
 
+std::string AttackedRobot::motion_story() {
+  const std::lock_guard lock(mutex_);
+  if (motions_.empty() || wheels_.empty()) return "nothing is heard of its base";
+  const auto twist = [](double v, double w) {
+    return std::to_string(v) + " m/s " + std::to_string(w) + " rad/s";
+  };
+  return twist(motions_.back().v, motions_.back().w) + ", its wheels told " +
+         twist(wheels_.back().v, wheels_.back().w) + (wheels_.back().off ? " and off" : "");
+}
+
 std::uint64_t AttackedRobot::counted_with_the_right() const {
   if (!granted_until_ || counts_.empty()) return 0;
   const runtime::Time until = withdrawn_ ? std::min(*withdrawn_, *granted_until_) : *granted_until_;

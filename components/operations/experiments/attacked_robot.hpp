@@ -84,6 +84,8 @@ class AttackedRobot {
   /// Likewise, and its wheels were told neither to drive nor to turn for two tenths: what rolls out
   /// of an earlier drive is nobody else's.
   bool stays() const;
+  /// How it moves, and what its wheels were told last. Locks by itself.
+  std::string motion_story();
   const std::vector<Wheels>& wheels() const { return wheels_; }
   const std::vector<Motion>& motions() const { return motions_; }
   const std::optional<usher_msgs::msg::SupervisorStatus>& status() const { return status_; }

@@ -418,16 +418,15 @@ class Monopoly {
     const auto ready = [&] { return robot_.all_well() && robot_.status()->state() == state; };
     milliseconds patience(0);  // what stopped it is over only when that is asked for
     while (Clock::now() < until) {
-      if (robot_.wait_for(ready, patience)) {
-        return robot_.wait_for([&] { return robot_.stays(); }, seconds(10))
-                   ? Status()
-                   : Status(Error{"the robot does not stand"});
-      }
+      const bool stands = robot_.wait_for(ready, patience) &&
+                          robot_.wait_for([&] { return robot_.stays(); }, seconds(3));
+      if (stands) return {};
       robot_.ask(SupervisorRequest_Constants::COMMAND_CLEAR, milliseconds(1000));
       for (const std::uint8_t command : way_to(state)) robot_.ask(command, milliseconds(1000));
       patience = milliseconds(500);
     }
-    return Error{"the robot is not well: " + robot_.complaints()};
+    return Error{"the robot is not well or does not stand: " + robot_.motion_story() + "\n" +
+                 robot_.complaints()};
   }
 
   /// Ready for the attack, and nothing is noted yet.
@@ -688,6 +687,10 @@ Result<ResultSheet> run_monopoly_experiment(const ExperimentOptions& options) {
           wanted * (number + 1) / attacks - wanted * number / attacks;  // none is left over
       const auto attack = monopoly.run(target, way, share);
       if (!attack) return Error{target.topic + ", " + way.name + ": " + attack.error()};
+      if (attack->executed > 0) {
+        std::printf("%s, %s: %lu executed\n", attack->topic.c_str(), attack->way.c_str(),
+                    attack->executed);
+      }
       samples += static_cast<double>(attack->written);
       done.push_back(*attack);
     }

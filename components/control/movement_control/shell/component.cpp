@@ -7,6 +7,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/manifest.hpp"
 #include "wire/stopping.hpp"
 
 namespace usher::movement_control {
@@ -35,6 +36,18 @@ bool is_window(const usher_msgs::msg::Costmap& costs) {
          costs.costs().size() == std::size_t{costs.width()} * costs.height() &&
          costs.resolution() > 0.0F && std::isfinite(costs.resolution()) &&
          std::isfinite(costs.origin_x()) && std::isfinite(costs.origin_y());
+}
+
+const runtime::InputOptions kSource{.max_age = kCommandAge,
+                                    .on_loss = "passes to the next source, or zero",
+                                    .optional = true,
+                                    .one_writer = true};
+
+std::vector<drive::NamedComponent> components_of(const std::vector<runtime::Record>& manifest) {
+  std::vector<drive::NamedComponent> components;
+  for (const auto& record : manifest)
+    components.push_back({record.text("name"), record.text("type")});
+  return components;
 }
 
 float single(double value) { return static_cast<float>(value); }
@@ -136,7 +149,16 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
       surroundings_({.base_T_sensor = free_space_.base_T_sensor}),
       rejected_(host.health().counter("cmd_vel: rejected")),
       held_back_(host.health().counter("guard: held back the navigation")),
-      rejected_costs_(host.health().counter("local costs: rejected")) {
+      rejected_costs_(host.health().counter("local costs: rejected")),
+      manifest_(components_of(wire::read_manifest(host))),
+      enable_(host, topics::kMovementEnable,
+              {.max_age = kEnableAge, .on_loss = "commands zero", .one_writer = true}, manifest_,
+              {}),
+      manual_(host, topics::kCmdVelManual, kSource, manifest_, [this] { decide(); }),
+      interaction_(host, topics::kCmdVelInteraction, kSource, manifest_, [this] { decide(); }),
+      navigation_(host, topics::kCmdVelNavigation,
+                  {.max_age = kCommandAge, .on_loss = "commands zero", .one_writer = true},
+                  manifest_, [this] { decide(); }) {
   auto& parameters = host.parameters();
   assume_person_ =
       parameters.flag("assume_person_ahead", true,
@@ -147,24 +169,6 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
   scan_silence_ = runtime::from_seconds(parameters.number(
       "robot.laser.silence", "s", {0.05, 1}, 0.3, "A laser without a scan for so long is lost."));
 
-  const auto wake = [this](const auto&, const auto&) { decide(); };
-  enable_ = host.input(topics::kMovementEnable,
-                       {.max_age = kEnableAge, .on_loss = "commands zero", .one_writer = true});
-  manual_ = host.input(topics::kCmdVelManual,
-                       {.max_age = kCommandAge,
-                        .on_loss = "passes to the next source, or zero",
-                        .optional = true,
-                        .one_writer = true},
-                       wake);
-  interaction_ = host.input(topics::kCmdVelInteraction,
-                            {.max_age = kCommandAge,
-                             .on_loss = "passes to the next source, or zero",
-                             .optional = true,
-                             .one_writer = true},
-                            wake);
-  navigation_ =
-      host.input(topics::kCmdVelNavigation,
-                 {.max_age = kCommandAge, .on_loss = "commands zero", .one_writer = true}, wake);
   whiskers_ = host.input(topics::kWhiskers, {.max_age = kWhiskerAge,
                                              .on_loss = "commands zero where whiskers are required",
                                              .optional = true});
@@ -198,7 +202,7 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
 }
 
 std::optional<geometry::Twist2> MovementControlComponent::velocity(
-    const runtime::Input<geometry_msgs::msg::TwistStamped>& source) {
+    const RightfulInput<geometry_msgs::msg::TwistStamped>& source) {
   const auto* message = source.fresh();
   if (message == nullptr) return std::nullopt;
   // Not checked here: the core turns what is not finite into zero and says who sent it.

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "control/movement_control/core/lethal_cells.hpp"
 #include "control/movement_control/core/movement_control.hpp"
 #include "control/movement_control/core/surroundings.hpp"
+#include "control/movement_control/shell/rightful_input.hpp"
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
 
@@ -20,8 +22,8 @@ class MovementControlComponent final : public runtime::Component {
   static Guard::Parameters read_guard(runtime::Host& host);
   static Parameters read_parameters(runtime::Host& host);
   static FreeSpaceParameters read_free_space(runtime::Parameters& parameters);
-  std::optional<geometry::Twist2> velocity(
-      const runtime::Input<geometry_msgs::msg::TwistStamped>& source);
+  static std::optional<geometry::Twist2> velocity(
+      const RightfulInput<geometry_msgs::msg::TwistStamped>& source);
   std::optional<geometry::Twist2> measured() const;
   bool sees() const;
   Guard::View view(double speed);
@@ -49,10 +51,11 @@ class MovementControlComponent final : public runtime::Component {
   std::uint64_t& held_back_;
   std::uint64_t& rejected_costs_;
 
-  runtime::Input<usher_msgs::msg::MovementEnable> enable_;
-  runtime::Input<geometry_msgs::msg::TwistStamped> manual_;
-  runtime::Input<geometry_msgs::msg::TwistStamped> interaction_;
-  runtime::Input<geometry_msgs::msg::TwistStamped> navigation_;
+  std::vector<drive::NamedComponent> manifest_;
+  RightfulInput<usher_msgs::msg::MovementEnable> enable_;
+  RightfulInput<geometry_msgs::msg::TwistStamped> manual_;
+  RightfulInput<geometry_msgs::msg::TwistStamped> interaction_;
+  RightfulInput<geometry_msgs::msg::TwistStamped> navigation_;
   runtime::Input<usher_msgs::msg::Whiskers> whiskers_;
   runtime::Input<usher_msgs::msg::BaseStatus> base_;
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;

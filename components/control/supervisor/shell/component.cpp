@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "wire/conversions.hpp"
+#include "wire/manifest.hpp"
 
 namespace usher::supervisor {
 
@@ -99,14 +100,7 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   Parameters p;
   p.base_age = kBaseAge;
   p.idl_digest = USHER_IDL_DIGEST;
-  const auto components = parameters.records(
-      "manifest.components",
-      {{"name", ParameterKind::kText, "-", {}, "Name in the manifest."},
-       {"type", ParameterKind::kText, "-", {}, "Its type."},
-       {"host", ParameterKind::kText, "-", {}, "Where it runs."},
-       {"criticality", ParameterKind::kText, "-", {}, "stop, degrade or notify."},
-       {"timeout", ParameterKind::kNumber, "s", {0.05, 60}, "Silence that counts as loss."}},
-      "Every component of the manifest, from the launcher.");
+  const auto components = wire::read_manifest(host);
   std::vector<drive::NamedComponent> manifest;
   for (const auto& record : components) {
     manifest.push_back({record.text("name"), record.text("type")});

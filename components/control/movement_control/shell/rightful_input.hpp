@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "drivers/base_obedience/core/writer_right.hpp"
+#include "idl/topics.hpp"
+#include "runtime/api/host.hpp"
+
+namespace usher::movement_control {
+
+/// A topic that moves the robot, heard from those who may write it by the manifest. A second writer
+/// of such a name is heard after 250 ms only: if the first one lives, the supervisor knows by then
+/// that there are two, and has stopped the robot. Whoever else writes is counted. Without a
+/// manifest (tests) everybody may.
+template <class Message>
+class RightfulInput {
+ public:
+  /// `on_sample` runs for each sample that is heard.
+  RightfulInput(runtime::Host& host, const topics::Topic<Message>& topic,
+                const runtime::InputOptions& options,
+                const std::vector<drive::NamedComponent>& manifest, std::function<void()> on_sample)
+      : host_(host),
+        anybody_(manifest.empty()),
+        right_(drive::allowed_writers(topic.writers, manifest)),
+        foreign_(host.health().counter(std::string(topic.name) + ": foreign writer")),
+        on_sample_(std::move(on_sample)),
+        input_(host.input(topic, options, [this](const auto&, const auto& info) {
+          if (!may_write(info.writer)) {
+            ++foreign_;
+          } else if (on_sample_) {
+            on_sample_();
+          }
+        })) {
+    host.watch_writers(std::string(topic.name), [this](const runtime::WriterInfo& writer) {
+      if (writer.alive) {
+        right_.appeared({writer.guid, writer.participant, writer.host}, now());
+      } else {
+        right_.gone(writer.guid);
+      }
+    });
+  }
+  RightfulInput(const RightfulInput&) = delete;
+  RightfulInput& operator=(const RightfulInput&) = delete;
+
+  /// The newest sample; null when it is older than declared, or of somebody who may not write.
+  const Message* fresh() const {
+    const Message* message = input_.fresh();
+    return message != nullptr && may_write(input_.info()->writer) ? message : nullptr;
+  }
+
+ private:
+  static constexpr auto kProbation = std::chrono::milliseconds(250);
+
+  drive::Time now() const { return host_.now().time_since_epoch(); }
+  bool may_write(const runtime::Guid& writer) const {
+    return anybody_ || right_.may_be_heard(writer, now(), kProbation);
+  }
+
+  runtime::Host& host_;
+  const bool anybody_;
+  drive::WriterRight right_;
+  std::uint64_t& foreign_;
+  std::function<void()> on_sample_;
+  runtime::Input<Message> input_;
+};
+
+}  // namespace usher::movement_control
