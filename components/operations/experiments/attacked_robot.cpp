@@ -375,7 +375,7 @@ bool AttackedRobot::count(const std::string& component, std::vector<std::string>
     counted_names_ = std::move(names);
     counts_.clear();
   }
-  return wait_for([&] { return !counts_.empty(); }, std::chrono::seconds(2));
+  return wait_for([&] { return !counts_.empty(); }, std::chrono::seconds(20));
 }
 
 pid_t AttackedRobot::process(const std::string& component) {
