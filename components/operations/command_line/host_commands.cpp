@@ -1,3 +1,4 @@
+#include <pwd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +24,8 @@
 namespace usher::operations {
 
 namespace {
+
+constexpr const char* kUnits = "/etc/systemd/system";
 
 /// Asks at the terminal; no without one.
 bool agreed(const std::string& question) {
@@ -102,6 +105,10 @@ int install_units(const InstallArguments& arguments) {
   const Manifest& manifest = deployment->manifest;
   if (!arguments.host.empty() && manifest.host(arguments.host) == nullptr)
     return fail("unknown host '" + arguments.host + "' (" + manifest.path + ")");
+  // Units that go elsewhere are another machine's.
+  if (arguments.folder == kUnits && !arguments.user.empty() &&
+      getpwnam(arguments.user.c_str()) == nullptr)
+    return fail("unknown user '" + arguments.user + "'; nothing was installed");
   std::string remark;  // one line for each host: nobody pastes the unit of another one
   for (const auto& host : manifest.hosts) {
     if (!arguments.host.empty() && host.name != arguments.host) continue;
@@ -152,7 +159,7 @@ int doctor(std::uint32_t domain) {
 
 void add_host_commands(CLI::App& app, int& exit_code) {
   auto installing = std::make_shared<InstallArguments>();
-  installing->folder = "/etc/systemd/system";
+  installing->folder = kUnits;
   auto* install_command =
       app.add_subcommand("install", "Make this machine run a deployment from boot on");
   install_command->add_flag("--systemd", installing->systemd,
