@@ -45,6 +45,7 @@ const runtime::InputOptions kSource{.max_age = kCommandAge,
 
 std::vector<drive::NamedComponent> components_of(const std::vector<runtime::Record>& manifest) {
   std::vector<drive::NamedComponent> components;
+  components.reserve(manifest.size());
   for (const auto& record : manifest)
     components.push_back({record.text("name"), record.text("type")});
   return components;
