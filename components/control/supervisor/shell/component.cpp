@@ -10,7 +10,6 @@ namespace usher::supervisor {
 namespace {
 
 using runtime::HealthState;
-using runtime::ParameterKind;
 using std::chrono::milliseconds;
 
 constexpr auto kPeriod = milliseconds(20);
