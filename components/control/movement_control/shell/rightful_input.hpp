@@ -12,9 +12,9 @@
 namespace usher::movement_control {
 
 /// A topic that moves the robot, heard from those who may write it by the manifest. A second writer
-/// of such a name is heard after 250 ms only: if the first one lives, the supervisor knows by then
-/// that there are two, and has stopped the robot. Whoever else writes is counted. Without a
-/// manifest (tests) everybody may.
+/// of such a name is heard after 250 ms only: if the first one lives, the supervisor mostly knows
+/// by then that there are two, and has stopped the robot (it took 254 ms once on a busy machine).
+/// Whoever else writes is counted. Without a manifest (tests) everybody may.
 template <class Message>
 class RightfulInput {
  public:

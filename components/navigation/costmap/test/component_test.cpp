@@ -61,6 +61,15 @@ class Component : public testing::Test {
       host.run_for(milliseconds(20));
     }
   }
+  /// The front whiskers say so, then time passes.
+  void feel(bool left, bool right = false, int ms = 1500) {
+    usher_msgs::msg::Whiskers whiskers;
+    whiskers.header(wire::header(last_scan, frames::kBaseLink));
+    whiskers.front_left(left);
+    whiskers.front_right(right);
+    host.publish(topics::kWhiskers, whiskers);
+    run(ms);
+  }
   std::string reason() const { return host.heartbeat().reason(); }
   /// The highest cost within a cell's width: points lie on the borders of cells.
   int local_cost(double x, double y) const {
@@ -305,13 +314,6 @@ TEST_F(Component, KeepsTheLastContactsOfWhiskersThatFallSilent) {
 TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
   give_map();
   run(500);
-  usher_msgs::msg::Whiskers whiskers;
-  const auto feel = [&](bool pressed) {
-    whiskers.header(wire::header(last_scan, frames::kBaseLink));
-    whiskers.front_left(pressed);
-    host.publish(topics::kWhiskers, whiskers);
-    run(1500);
-  };
   feel(true);
   base.x -= 1.0;  // it backs off
   run(100);
@@ -326,14 +328,6 @@ TEST_F(Component, PlansRoundWhatAWhiskerFelt) {
 TEST_F(Component, KeepsAContactWhileWhiskersAreHeldAtAnotherPlace) {
   give_map();
   run(500);
-  usher_msgs::msg::Whiskers whiskers;
-  const auto feel = [&](bool left, bool right, int ms) {
-    whiskers.header(wire::header(last_scan, frames::kBaseLink));
-    whiskers.front_left(left);
-    whiskers.front_right(right);
-    host.publish(topics::kWhiskers, whiskers);
-    run(ms);
-  };
   feel(true, false, 1500);
   base.x -= 1.0;
   run(100);
@@ -349,13 +343,6 @@ TEST_F(Component, KeepsAContactWhileWhiskersAreHeldAtAnotherPlace) {
 TEST_F(Component, KeepsAContactAsLongAfterTheLastTouch) {
   give_map();
   run(500);
-  usher_msgs::msg::Whiskers whiskers;
-  const auto feel = [&](bool pressed) {
-    whiskers.header(wire::header(last_scan, frames::kBaseLink));
-    whiskers.front_left(pressed);
-    host.publish(topics::kWhiskers, whiskers);
-    run(1500);
-  };
   feel(true);
   base.x -= 1.0;
   run(100);
