@@ -168,7 +168,7 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   qos.transport().use_builtin_transports = false;
   guard.only_signed = !options.identity.empty();
   // Clients hear of one another through the server, whose messages are its own.
-  guard.watch_presence = options.discovery_server.empty();
+  if (!options.discovery_server.empty()) guard.presence = nullptr;
   // Peers are asked where multicast does not go, perhaps on this very host.
   guard.announces_by_multicast = options.discovery_server.empty() && options.peers.empty();
   if (guard.only_signed) {
@@ -263,9 +263,34 @@ class Participant::Listener : public dds::DomainParticipantListener {
   DiscoveryBook& book_;
 };
 
+/// Hears that somebody has met us; on a thread of the library.
+class Participant::Greeted : public dds::DataReaderListener, private PayloadSink {
+ public:
+  explicit Greeted(SignedPresence& presence) : presence_(presence) {}
+
+  void on_data_available(dds::DataReader* reader) override {
+    dds::SampleInfo info;
+    while (reader->take_next_sample(static_cast<PayloadSink*>(this), &info) ==
+           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      const Guid writer = to_guid(info.publication_handle);
+      SignedPresence::Prefix prefix{};
+      std::copy_n(writer.begin(), prefix.size(), prefix.begin());
+      presence_.met(prefix, MonotonicClock::read(CLOCK_MONOTONIC));
+    }
+  }
+
+ private:
+  void take(std::span<const std::uint8_t>) override {}
+
+  SignedPresence& presence_;
+};
+
 Participant::Participant(const ParticipantOptions& options, const MonotonicClock& clock)
     : book_(options.host, [clock] { return clock.now(); }),
       listener_(std::make_unique<Listener>(book_)),
+      presence_(std::make_shared<SignedPresence>()),
+      greeted_(std::make_unique<Greeted>(*presence_)),
       identity_(options.identity) {}
 
 Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
@@ -282,6 +307,7 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
     book->message_refused(address);
   };
   guard.open = open;
+  guard.presence = self->presence_;
   const auto qos = participant_qos(options, std::move(guard));
   if (!qos) return Error{qos.error()};
   auto* factory = dds::DomainParticipantFactory::get_instance();
@@ -302,19 +328,19 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   self->publisher_ = self->participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   self->subscriber_ = self->participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   if (!options.identity.empty()) {
-    if (const Status status = self->sign_regularly(); !status) return Error{status.error()};
+    if (const Status status = self->greet_regularly(); !status) return Error{status.error()};
   }
   warn_of_small_socket_buffers(options.domain, kSocketBuffer);
   return self;
 }
 
-Status Participant::sign_regularly() {
+Status Participant::greet_regularly() {
   const ForeignQuality best_effort{.best_effort = true};
   const auto writer = create_writer(kAliveTopic, kAliveTopic, {}, nullptr, best_effort);
   if (!writer) return Error{writer.error()};
-  // What arrives needs no reading: the transport sees it.
-  const Qos ignored{.reliable = false};
-  if (const auto reader = create_reader(kAliveTopic, kAliveTopic, ignored, nullptr); !reader)
+  const Qos unreliable{.reliable = false};
+  if (const auto reader = create_reader(kAliveTopic, kAliveTopic, unreliable, greeted_.get());
+      !reader)
     return Error{reader.error()};
   alive_ = std::jthread([writer = *writer](const std::stop_token& stop) {
     constexpr std::array<std::uint8_t, 4> kNothing{0, 1, 0, 0};

@@ -17,6 +17,7 @@
 #include "foundation/result/result.hpp"
 #include "runtime/dds/discovery.hpp"
 #include "runtime/dds/host_clock.hpp"
+#include "runtime/dds/signed_presence.hpp"
 
 namespace usher::runtime {
 
@@ -63,15 +64,18 @@ class Participant {
 
  private:
   class Listener;
+  class Greeted;
   Participant(const ParticipantOptions& options, const MonotonicClock& clock);
   Result<eprosima::fastdds::dds::Topic*> topic(const std::string& name, const std::string& type);
-  /// Tells every participant of the domain that this one lives, in a thread of its own
+  /// Tells every participant that this one has met that it lives, in a thread of its own
   /// (SignedPresence).
-  Status sign_regularly();
+  Status greet_regularly();
   Error refusal(const std::string& what, const std::string& topic_name) const;
 
   DiscoveryBook book_;
   std::unique_ptr<Listener> listener_;
+  std::shared_ptr<SignedPresence> presence_;
+  std::unique_ptr<Greeted> greeted_;
   std::string identity_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

@@ -18,7 +18,6 @@
 
 #include "runtime/dds/host_clock.hpp"
 #include "runtime/dds/rtps_message.hpp"
-#include "runtime/dds/signed_presence.hpp"
 
 namespace usher::runtime {
 namespace {
@@ -67,9 +66,8 @@ class GuardedTransport final : public ChainingTransport {
       if (kind != MessageKind::kFarewell) options_.refused(rtps::IPLocator::toIPv4string(remote));
       return;
     }
-    if (options_.only_signed && options_.watch_presence &&
-        !presence_.hears(source_of({bytes, size}), kind == MessageKind::kSigned,
-                         MonotonicClock::read(CLOCK_MONOTONIC)))
+    if (options_.only_signed && options_.presence &&
+        !options_.presence->hears(source_of({bytes, size}), MonotonicClock::read(CLOCK_MONOTONIC)))
       return;
     // Fast DDS 2.9.1 forgets how far the authentication of a participant got when its announcement
     // and its handshake arrive on two sockets at once; the two then never authenticate.
@@ -96,7 +94,6 @@ class GuardedTransport final : public ChainingTransport {
 
   const GuardOptions options_;
   std::mutex authentication_;
-  SignedPresence presence_;
 };
 
 class GuardedTransportDescriptor final : public ChainingTransportDescriptor {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "foundation/result/result.hpp"
+#include "runtime/dds/signed_presence.hpp"
 
 namespace usher::runtime {
 
@@ -21,8 +22,8 @@ Status apply_identity(const std::string& folder, eprosima::fastdds::dds::DomainP
 
 struct GuardOptions {
   bool only_signed = false;
-  /// With `only_signed`: announcements do not keep somebody who signs nothing (SignedPresence).
-  bool watch_presence = false;
+  /// With `only_signed`: whom it does not hear is ignored; null: nobody.
+  std::shared_ptr<SignedPresence> presence;
   /// Announcements go out by multicast, which this host hears too: those that Fast DDS also sends
   /// to each participant of this host alone stay unsent (20 of the 21 datagrams of an announcement
   /// on a robot of 20 participants, 5 times a second from each).

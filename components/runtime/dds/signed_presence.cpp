@@ -2,13 +2,13 @@
 
 namespace usher::runtime {
 
-bool SignedPresence::hears(const Prefix& from, bool is_signed, Duration now) {
+bool SignedPresence::hears(const Prefix& from, Duration now) {
   const std::lock_guard lock(mutex_);
   auto found = peers_.find(from);
   if (found == peers_.end()) {
     if (peers_.size() >= kMostPeers) {
       std::erase_if(peers_, [&](const auto& peer) {
-        return now - peer.second.last > kAuthentication + kForgetting;
+        return now - peer.second.last > kMeeting + kForgetting;
       });
       if (peers_.size() >= kMostPeers) return true;
     }
@@ -19,16 +19,20 @@ bool SignedPresence::hears(const Prefix& from, bool is_signed, Duration now) {
   if (peer.ignored) {
     if (now - peer.since < kForgetting) return false;
     peer = {.since = now, .last = now};
-  } else if (now - peer.since > (peer.signed_once ? kSilence : kAuthentication)) {
+  } else if (now - peer.since > (peer.met ? kSilence : kMeeting)) {
     peer.since = now;
     peer.ignored = true;
     return false;
   }
-  if (is_signed) {
-    peer.since = now;
-    peer.signed_once = true;
-  }
   return true;
+}
+
+void SignedPresence::met(const Prefix& who, Duration now) {
+  const std::lock_guard lock(mutex_);
+  const auto found = peers_.find(who);
+  if (found == peers_.end() || found->second.ignored) return;
+  found->second.since = now;
+  found->second.met = true;
 }
 
 }  // namespace usher::runtime

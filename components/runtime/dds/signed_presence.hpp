@@ -9,36 +9,41 @@
 
 namespace usher::runtime {
 
-/// What every participant with keys writes, so that it signs something; all permissions name it.
+/// What every participant with keys writes and reads, so that each knows whom it has met; all
+/// permissions name it.
 inline constexpr const char* kAliveTopic = "usher/alive";
 
 /// Whom a participant with keys goes on hearing. Announcements are in the clear and tell no more
-/// than that somebody may be there; who takes part signs something every `kAliveEvery`. Whoever
-/// announces itself and signs nothing is ignored until Fast DDS has forgotten it, then heard anew.
-/// Without that, of two participants that had lost one another in one direction only (a cut line, a
-/// machine that stood still for a second), one would wait forever for an authentication that the
-/// other takes for done. Any thread.
+/// than that somebody may be there; whom we have met, authenticated and with all that discovery
+/// exchanges, writes us a sample of `kAliveTopic` every `kAliveEvery`. Whoever announces itself
+/// without such samples is ignored until Fast DDS has forgotten it, then heard anew. Without that,
+/// two participants that lost one another in one direction only (a cut line, a machine that stood
+/// still for a second) would wait forever for an authentication that one of them takes for done;
+/// and two whose exchange of endpoints got stuck repeat its heartbeats forever, signed and all.
+/// Any thread.
 class SignedPresence {
  public:
   using Prefix = std::array<std::uint8_t, 12>;  ///< of a participant's GUID
 
-  /// How often a participant signs something for everybody.
+  /// How often a participant writes a sample to everybody whom it has met.
   static constexpr Duration kAliveEvery = std::chrono::milliseconds(500);
-  /// Without a signed message after the first announcement: an authentication that got stuck.
-  static constexpr Duration kAuthentication = std::chrono::seconds(15);
-  /// Without a signed message after the last: it has forgotten us.
+  /// Without a sample after the first announcement: an authentication or a discovery is stuck.
+  static constexpr Duration kMeeting = std::chrono::seconds(15);
+  /// Without a sample after the last: it has forgotten us.
   static constexpr Duration kSilence = std::chrono::seconds(4);
   /// Longer than the lease of a participant.
   static constexpr Duration kForgetting = std::chrono::milliseconds(1500);
 
-  /// Whether a message of a participant shall be heard; `is_signed` by its structure.
-  bool hears(const Prefix& from, bool is_signed, Duration now);
+  /// Whether a message of a participant shall be heard.
+  bool hears(const Prefix& from, Duration now);
+  /// A sample of `kAliveTopic` arrived.
+  void met(const Prefix& who, Duration now);
 
  private:
   struct Peer {
-    Duration since;   ///< of the last sign of life that counts
+    Duration since;   ///< of the last sample, or of the first message
     Duration last{};  ///< of any message
-    bool signed_once = false;
+    bool met = false;
     bool ignored = false;
   };
   /// More than a robot has; beyond them everybody is heard.
