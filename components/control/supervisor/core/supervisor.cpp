@@ -13,6 +13,9 @@ constexpr std::uint64_t kHighestEpoch = std::uint64_t{1} << 62;
 
 /// A crash may have lost the last epochs that were granted; a restart begins safely above them.
 constexpr std::uint64_t kUnsavedEpochs = 1024;
+/// A base that has just started hears no epoch above kLongestLeap: one that is remembered must
+/// leave room below. What a base that ran on has heard, it tells.
+constexpr std::uint64_t kHighestRemembered = drive::kLongestLeap / 2;
 /// So long the answer to an operator stays in the status; others ask again until they are answered.
 constexpr Time kOperatorsFirst = std::chrono::milliseconds(100);
 constexpr const char* kItself = "supervisor";
@@ -30,7 +33,7 @@ Supervisor::Supervisor(const Parameters& parameters, Memory memory)
       table_(parameters.components, parameters.idl_digest),
       behavior_(parameters.dwell),
       watch_(parameters.response),
-      epoch_(std::min(memory.epoch, kHighestEpoch) + (memory.epoch > 0 ? kUnsavedEpochs : 0)) {
+      epoch_(std::min(memory.epoch, kHighestRemembered) + (memory.epoch > 0 ? kUnsavedEpochs : 0)) {
   assert(parameters.degraded_speed_factor >= 0.0 && parameters.degraded_speed_factor <= 1.0);
   assert(!parameters.topics.empty());
   for (const WatchedTopic& topic : parameters.topics) {
@@ -100,11 +103,26 @@ void Supervisor::base(const BaseReport& report, Time now) {
                         now - commanded_->at < parameters_.command_expiry;
     watch_.observe(driven ? commanded_->twist : geometry::Twist2{}, report.measured, now);
   }
-  // Another supervisor's epochs, or ours of before the memory was lost: continue above them.
-  if (report.epoch > epoch_ && report.epoch < kHighestEpoch) {
-    epoch_ = report.epoch;
-    decision_.grant = {drive::kNobody, epoch_, drive::kNobody};
+  take_epoch(report);
+}
+
+bool Supervisor::speaks_for_base(const WriterId& writer) const {
+  return std::ranges::none_of(watched_, [&](const Watched& watched) {
+    return watched.topic == parameters_.base_topic && !watched.right.holds(writer);
+  });
+}
+
+/// Another supervisor's epochs, or ours of before the memory was lost: continue above them. Not
+/// above what somebody else says that the base has heard: further than by kLongestLeap it follows
+/// no grant, and would be deaf for ever.
+void Supervisor::take_epoch(const BaseReport& report) {
+  if (report.epoch <= epoch_) return;
+  if (report.epoch >= kHighestEpoch || !speaks_for_base(report.writer)) {
+    ++rejected_reports_;
+    return;
   }
+  epoch_ = report.epoch;
+  decision_.grant = {drive::kNobody, epoch_, drive::kNobody};
 }
 
 void Supervisor::movement(const std::string& barred_by, Time now) {

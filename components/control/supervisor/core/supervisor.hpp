@@ -43,6 +43,9 @@ struct Parameters {
   std::vector<WatchedComponent> components;  ///< from the manifest
   /// The first one is drive/command, whose writer gets the right to drive.
   std::vector<WatchedTopic> topics{{"drive/command", {"movement_control"}}};
+  /// Of `topics`, on which the base tells of itself. Its epoch is believed of nobody who does not
+  /// hold the right to write that; where it is not watched (tests), of everybody.
+  std::string base_topic;
   std::uint64_t idl_digest = 0;  ///< of the supervisor's own build
   Names names;
   Time dwell = std::chrono::milliseconds(250);  ///< least time in Inactive; outlasts old commands
@@ -107,6 +110,7 @@ struct BaseReport {
   Time age{};                 ///< {>= 0} of the measurement when it arrived
   std::string refusal;        ///< why it does not drive what it is told; empty when it does
   double battery_percent = std::numeric_limits<double>::quiet_NaN();  ///< {0..100, NaN unknown}
+  WriterId writer{};                                                  ///< who says so
 };
 
 /// What is to be published, at 50 Hz and after each event.
@@ -242,6 +246,9 @@ class Supervisor {
   void movement_on(const std::string& client);
   bool is_operator(const std::string& client) const;
   Watched* watched(std::string_view topic);
+  /// Whether the base's own driver writes so, and nobody else.
+  bool speaks_for_base(const WriterId& writer) const;
+  void take_epoch(const BaseReport& report);
   /// Who may drive, if anybody.
   std::optional<WriterId> holder() const { return watched_.front().right.holder(); }
   /// The first topic that somebody writes who must not; null when all is well.

@@ -110,6 +110,7 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
   p.names.movement = parameters.text("movement_name", p.names.movement,
                                      "The component that may write drive/command.");
   p.topics = {{std::string(topics::kDriveCommand.name), {p.names.movement}}};
+  p.base_topic = topics::kBaseStatus.name;
   watch_topics(manifest, p.topics);
   p.names.interaction = parameters.text("interaction_name", p.names.interaction,
                                         "The component that poses the robot.");
@@ -196,7 +197,8 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
                                    message.epoch(),
                                    host_.now() - info.effective,
                                    refusal_of(message),
-                                   message.battery_percent()},
+                                   message.battery_percent(),
+                                   info.writer},
                                   now());
                      });
   movement_ = host.input(

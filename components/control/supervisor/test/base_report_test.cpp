@@ -208,6 +208,67 @@ TEST(Supervisor, ContinuesAboveTheBasesEpochWhenItsMemoryIsLost) {
   EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U);
 }
 
+/// A base that has just started and hears a supervisor's grant.
+bool hears(const Robot& robot) {
+  drive::BaseObedience base;
+  base.grant(robot.supervisor.decision().grant, robot.now());
+  return base.highest_epoch() == robot.supervisor.decision().grant.epoch;
+}
+
+TEST(Supervisor, BelievesAnEpochOfNobodyButTheBase) {
+  constexpr WriterId kBase{3};
+  constexpr const char* kStatus = "base/status";
+  Parameters watching = parameters();
+  watching.base_topic = kStatus;
+  watching.topics.push_back({kStatus, {"segway_rmp"}, false});
+  Robot robot(watching);
+  robot.base.writer = kBase;
+  robot.supervisor.writer_appeared(kStatus, {kBase, "segway_rmp", "nuc"}, robot.now());
+  robot.appear();
+  robot.run(400);
+  ASSERT_EQ(robot.supervisor.decision().grant.epoch, 1U);
+
+  BaseReport lie = robot.base;
+  lie.writer = kRogue;
+  const auto lies = [&] {
+    for (lie.epoch = 1; lie.epoch < std::uint64_t{1} << 61; lie.epoch *= 8)
+      robot.supervisor.base(lie, robot.now());
+    robot.supervisor.step(robot.now());
+  };
+  lies();  // before discovery tells of its writer
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 1U);
+  EXPECT_EQ(robot.supervisor.rejected_reports(), 20U) << "of 21, the epoch of one is not higher";
+  for (const char* name : {"stranger", "segway_rmp"}) {
+    SCOPED_TRACE(name);
+    robot.supervisor.writer_appeared(kStatus, {kRogue, name, "elsewhere"}, robot.now());
+    lies();
+    robot.run(100);
+    robot.supervisor.writer_gone(kStatus, kRogue);
+    robot.ask(Command::kClear);
+    robot.run(400);
+    EXPECT_TRUE(robot.granted()) << robot.reason();
+    EXPECT_LE(robot.supervisor.decision().grant.epoch, 3U);
+    EXPECT_TRUE(hears(robot));
+  }
+
+  robot.base.epoch = 5000;
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 5001U) << "the base itself is believed";
+}
+
+TEST(Supervisor, OfARememberedEpochABaseThatStartsAnewHearsTheNextOnes) {
+  for (const std::uint64_t remembered :
+       {drive::kLongestLeap, std::uint64_t{1} << 40, std::numeric_limits<std::uint64_t>::max()}) {
+    Memory memory;
+    memory.epoch = remembered;
+    Robot robot(parameters(), memory);
+    robot.appear();
+    robot.run(400);
+    EXPECT_TRUE(robot.granted());
+    EXPECT_TRUE(hears(robot)) << remembered;
+  }
+}
+
 TEST(Supervisor, TellsWhatTheBaseRefuses) {
   Robot robot = guiding();
   robot.base.refusal = "a repeated or late command";

@@ -166,6 +166,26 @@ TEST_F(Component, WithoutABaseNothingIsGrantedAndTheReasonSaysSo) {
   EXPECT_GE(host.written(topics::kDriveGrant).size(), 20U) << "silence is no answer";
 }
 
+TEST(BasesEpoch, IsTakenFromItsDriverAlone) {
+  runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"),
+                         std::string(kManifest) +
+                             "  - {name: segway_rmp, type: segway_rmp, host: nuc, criticality: "
+                             "stop, timeout: 0.12 s}\n"};
+  const auto hear = [&](std::uint64_t epoch, const char* participant) {
+    usher_msgs::msg::BaseStatus base;
+    base.header(wire::header(host.now(), ""));
+    base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+    base.epoch(epoch);
+    host.publish(topics::kBaseStatus, base, participant);
+    host.run_for(milliseconds(120));
+    return host.last(topics::kDriveGrant)->epoch();
+  };
+  EXPECT_EQ(hear(7, "segway_rmp"), 7U);
+  EXPECT_EQ(hear(std::uint64_t{1} << 40, "stranger"), 7U);
+  EXPECT_EQ(host.counter("reports: rejected"), 1U);
+  EXPECT_EQ(hear(9, "segway_rmp"), 9U);
+}
+
 TEST_F(Component, TellsOfThePowerWhatTheBaseSaysOfItsBattery) {
   const auto hear = [&](float battery_percent) {
     usher_msgs::msg::BaseStatus base;
