@@ -217,14 +217,14 @@ double MovementControl::slowed(double cut, double before, const Inputs& inputs) 
   return measured * before > 0.0 && slowest > std::abs(cut) ? std::copysign(slowest, before) : cut;
 }
 
-/// A standing base turns in place, and every touch that bars the turn is where something is seen or
-/// known anyway: the guard has looked at that, with the outline's own corners.
+/// A standing base turns in place, and every touch that bars the turn is where something was seen
+/// or is known anyway: the guard has looked at that, with the outline's own corners. No scan has to
+/// tell what is ahead: a laser before a wall across a corridor is too near to measure it.
 bool MovementControl::turns_beside_what_is_known(const geometry::Twist2& ramped,
                                                  const Inputs& inputs) const {
   const bool stands =
       inputs.measured && std::abs(inputs.measured->v) < kinematics::RollOut::kStanding;
-  if (!parameters_.guarded || !inputs.view.sees || !inputs.whiskers || !stands || ramped.v != 0.0)
-    return false;
+  if (!parameters_.guarded || !inputs.whiskers || !stands || ramped.v != 0.0) return false;
   if (!kinematics::bars_turn(*inputs.whiskers, ramped.w)) return false;
   const Whiskers unseen =
       kinematics::without(*inputs.whiskers, rods_.at(Guard::seen(inputs.view).points));

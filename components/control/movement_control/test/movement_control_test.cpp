@@ -521,6 +521,9 @@ TEST_F(InACorridor, TurnsOnCreepingWhereItSeesOrKnowsWhatItTouches) {
   inputs.view.points = left;
   inputs.view.cells = right;
   EXPECT_NEAR(turn(), creeping, 1e-9) << "the one sees, the other knows";
+  inputs.view.sees = false;
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "the laser is too near to measure what was seen";
+  inputs.view.sees = true;
   inputs.navigation.reset();
   inputs.manual = Twist2{0.0, 0.8};
   EXPECT_NEAR(turn(), creeping, 1e-9) << "an operator";
@@ -537,9 +540,9 @@ TEST_F(InACorridor, TurnsIntoNothingThatOnlyAWhiskerFeels) {
   inputs.view.guessed = right.size();
   EXPECT_EQ(turn(), 0.0) << "nobody has seen the wall on the right";
   inputs.view.guessed = 0;
-  inputs.view.sees = false;
-  EXPECT_EQ(turn(), 0.0) << "a scan that has ended";
-  inputs.view.sees = true;
+  inputs.view = {};
+  EXPECT_EQ(turn(), 0.0) << "a scan that has ended, and no costs";
+  inputs.view.points = both;
   parameters.guarded = false;
   EXPECT_EQ(turn(), 0.0) << "nothing looks at the outline";
 }
