@@ -2,7 +2,7 @@
 // walls.
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <cstdint>
 #include <string>
 
 #include "operations/command_line/installation.hpp"
