@@ -15,6 +15,12 @@ struct Whiskers {
   bool back_right = false;
 };
 
+/// A turn to this side swings a touched corner outward (the thesis, fig. 6.3): to the left the
+/// front left and the back right one.
+inline bool bars_turn(const Whiskers& t, double w) {
+  return w > 0.0 ? t.front_left || t.back_right : w < 0.0 && (t.front_right || t.back_left);
+}
+
 /// The command without the motion that would press a touched corner further (the thesis, fig. 6.3):
 /// a front whisker bars forward motion and the turn toward its side; a back whisker bars backward
 /// motion and the turn that swings its corner outward. Two refinements, without which a robot
@@ -33,10 +39,7 @@ inline geometry::Twist2 whisker_reflex(geometry::Twist2 twist, const Whiskers& w
   const bool bar_backward =
       (t.back_left && (t.back_right || !beside_left)) || (t.back_right && !beside_right);
   if ((twist.v > 0.0 && bar_forward) || (twist.v < 0.0 && bar_backward)) twist.v = 0.0;
-  // Turning left moves the front left corner outward, and the back right one.
-  const bool bar_left = t.front_left || t.back_right;
-  const bool bar_right = t.front_right || t.back_left;
-  const bool turn_barred = (twist.w > 0.0 && bar_left) || (twist.w < 0.0 && bar_right);
+  const bool turn_barred = bars_turn(t, twist.w);
   const double most_v = turn_barred ? 0.5 * creep : creep;
   if (beside_left || beside_right || turn_barred) twist.v = std::clamp(twist.v, -most_v, most_v);
   if (!turn_barred) return twist;

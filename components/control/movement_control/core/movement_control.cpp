@@ -85,7 +85,10 @@ std::string_view text(Limit limit) {
 MovementControl::MovementControl() : MovementControl(Parameters{}) {}
 
 MovementControl::MovementControl(const Parameters& parameters)
-    : parameters_(parameters), guard_(parameters.guard), watch_(parameters.response) {
+    : parameters_(parameters),
+      guard_(parameters.guard),
+      rods_(parameters.guard.outline, parameters.whiskers),
+      watch_(parameters.response) {
   assert(parameters.longest_step > Time::zero() && parameters.reverse >= 0.0);
   status_.max_human = parameters.person_ahead;
   status_.max_normal = parameters.open;
@@ -214,9 +217,29 @@ double MovementControl::slowed(double cut, double before, const Inputs& inputs) 
   return measured * before > 0.0 && slowest > std::abs(cut) ? std::copysign(slowest, before) : cut;
 }
 
+/// A standing base turns in place, and every touch that bars the turn is where something was seen
+/// or is known anyway: the guard has looked at that, with the outline's own corners. No scan has to
+/// tell what is ahead: a laser before a wall across a corridor is too near to measure it.
+bool MovementControl::turns_beside_what_is_known(const geometry::Twist2& ramped,
+                                                 const Inputs& inputs) const {
+  const bool stands =
+      inputs.measured && std::abs(inputs.measured->v) < kinematics::RollOut::kStanding;
+  if (!parameters_.guarded || !inputs.whiskers || !stands || ramped.v != 0.0) return false;
+  if (!kinematics::bars_turn(*inputs.whiskers, ramped.w)) return false;
+  const Whiskers unseen =
+      kinematics::without(*inputs.whiskers, rods_.at(Guard::seen(inputs.view).points));
+  const Whiskers unknown = kinematics::without(unseen, rods_.at(inputs.view.cells));
+  return !kinematics::bars_turn(unknown, ramped.w);
+}
+
 /// While it rolls it keeps its arc where straight on it would meet something before it stands.
 geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
                                          const Inputs& inputs) const {
+  if (turns_beside_what_is_known(ramped, inputs)) {
+    const double most =
+        0.5 * parameters_.touched / parameters_.guard.outline.circumscribed_radius();
+    return {0.0, std::clamp(ramped.w, -most, most)};
+  }
   geometry::Twist2 twist =
       kinematics::whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
   twist.v = slowed(twist.v, ramped.v, inputs);

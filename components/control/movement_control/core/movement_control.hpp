@@ -10,6 +10,7 @@
 #include "foundation/geometry/pose2.hpp"
 #include "foundation/kinematics/roll_out.hpp"
 #include "foundation/kinematics/whisker_reflex.hpp"
+#include "foundation/kinematics/whisker_rods.hpp"
 
 namespace usher::movement_control {
 
@@ -56,6 +57,7 @@ struct Parameters {
   VelocityLimit low_battery{0.8, 0.6};
   double reverse = 0.4;  ///< [m/s] {>= 0} nothing sees behind
   double touched = 0.1;  ///< [m/s] {>= 0} creeping past what a whisker touches
+  kinematics::WhiskerMount whiskers;
   /// [m/s] {> 0} Guard and reflex tell a base that rolls to be no more than this slower than it is:
   /// a balancing one that is told to drop by more holds its speed first, to lean back.
   double largest_drop = 5.0;
@@ -169,6 +171,8 @@ class MovementControl {
   std::uint64_t held_back() const { return held_back_; }
 
   const Guard& guard() const { return guard_; }
+  /// [m] from the axle's middle: so far lethal cells may explain a touch.
+  double whisker_reach() const { return rods_.reach(); }
 
  private:
   struct Wish {
@@ -202,11 +206,13 @@ class MovementControl {
   Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
   void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);
   double slowed(double cut, double before, const Inputs& inputs) const;
+  bool turns_beside_what_is_known(const geometry::Twist2& ramped, const Inputs& inputs) const;
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 
   Parameters parameters_;
   Guard guard_;
+  kinematics::WhiskerRods rods_;
   drive::ResponseWatch watch_;
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower

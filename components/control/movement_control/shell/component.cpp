@@ -9,6 +9,7 @@
 #include "wire/frames.hpp"
 #include "wire/manifest.hpp"
 #include "wire/stopping.hpp"
+#include "wire/whiskers.hpp"
 
 namespace usher::movement_control {
 
@@ -116,6 +117,7 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
                                 "Greatest speed backwards, where nothing sees.");
   p.touched = parameters.number("touched_v", "m/s", {0, 0.3}, p.touched,
                                 "Greatest speed past what a whisker touches.");
+  p.whiskers = wire::read_whiskers(host);
   p.largest_drop = parameters.number("largest_drop", "m/s", {0.1, 5}, p.largest_drop,
                                      "So much slower than it drives guard and reflex tell the "
                                      "base to be at most; a balancing one holds its speed when "
@@ -245,10 +247,10 @@ std::span<const geometry::Point2> MovementControlComponent::cells(double reach) 
                         reach);
 }
 
-/// What counts for a robot that shall be, or is, so fast.
-Guard::View MovementControlComponent::view(double speed) {
+/// What counts for a robot that shall be, or is, so fast, and no nearer than `least` [m].
+Guard::View MovementControlComponent::view(double speed, double least) {
   return {surroundings_.points(), sees(), surroundings_.guessed(),
-          cells(core_.guard().reach(speed))};
+          cells(std::max(core_.guard().reach(speed), least))};
 }
 
 Inputs MovementControlComponent::gather() {
@@ -278,7 +280,11 @@ Inputs MovementControlComponent::gather() {
   double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot
   for (const auto& twist : {inputs.manual, inputs.interaction, inputs.navigation, inputs.measured})
     fastest = std::max(fastest, twist ? std::abs(twist->v) : 0.0);
-  inputs.view = view(std::min(fastest, parameters_.open.linear));
+  const Whiskers touches = inputs.whiskers.value_or(Whiskers{});
+  const bool touched =
+      touches.front_left || touches.front_right || touches.back_left || touches.back_right;
+  inputs.view =
+      view(std::min(fastest, parameters_.open.linear), touched ? core_.whisker_reach() : 0.0);
   return inputs;
 }
 

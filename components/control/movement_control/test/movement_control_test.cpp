@@ -487,6 +487,94 @@ TEST_F(Guarded, ATouchKeepsARollingRobotOnItsArcWhereStraightOnIsAWall) {
   EXPECT_EQ(turn_of(0.6, 0.8, beside), 0.0) << "the arc meets something sooner";
 }
 
+/// Turned by 1.05 rad, its nose to the left, in a corridor of 1.4 m, where MARVIN's front left and
+/// back right whiskers touch the walls.
+class InACorridor : public Guarded {
+ protected:
+  InACorridor() {
+    left = wall(0.7);
+    right = wall(-0.7);
+    both = left;
+    both.insert(both.end(), right.begin(), right.end());
+    inputs.view.points = both;
+    inputs.whiskers = Whiskers{.front_left = true, .back_right = true};
+    inputs.navigation = Twist2{0.0, 0.8};
+  }
+  static std::vector<geometry::Point2> wall(double y) {
+    std::vector<geometry::Point2> points;
+    for (int i = -40; i <= 40; ++i)
+      points.push_back(inverse(geometry::Pose2{0.0, 0.0, 1.05}) * geometry::Point2(0.05 * i, y));
+    return points;
+  }
+  double turn() const { return settled(inputs, parameters).twist.w; }
+
+  std::vector<geometry::Point2> left, right, both;
+  const double creeping = 0.05 / std::hypot(0.305, 0.33);  ///< [rad/s] of the corners' 0.05 m/s
+};
+
+TEST_F(InACorridor, TurnsOnCreepingWhereItSeesOrKnowsWhatItTouches) {
+  EXPECT_NEAR(turn(), creeping, 1e-9);
+  EXPECT_EQ(settled(inputs, parameters).limit, Limit::kWhisker);
+  inputs.view.points = {};
+  inputs.view.cells = both;
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "the costs know";
+  inputs.view.points = left;
+  inputs.view.cells = right;
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "the one sees, the other knows";
+  inputs.view.sees = false;
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "the laser is too near to measure what was seen";
+  inputs.view.sees = true;
+  inputs.navigation.reset();
+  inputs.manual = Twist2{0.0, 0.8};
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "an operator";
+  inputs.manual = Twist2{0.0, 0.05};
+  EXPECT_NEAR(turn(), 0.05, 1e-9) << "slower, if that is meant";
+}
+
+TEST_F(InACorridor, TurnsIntoNothingThatOnlyAWhiskerFeels) {
+  inputs.view.points = left;
+  EXPECT_EQ(turn(), 0.0) << "what is at the back right corner?";
+  inputs.view.points = right;
+  EXPECT_EQ(turn(), 0.0) << "and here?";
+  inputs.view.points = both;
+  inputs.view.guessed = right.size();
+  EXPECT_EQ(turn(), 0.0) << "nobody has seen the wall on the right";
+  inputs.view.guessed = 0;
+  inputs.view = {};
+  EXPECT_EQ(turn(), 0.0) << "a scan that has ended, and no costs";
+  inputs.view.points = both;
+  parameters.guarded = false;
+  EXPECT_EQ(turn(), 0.0) << "nothing looks at the outline";
+}
+
+TEST_F(InACorridor, ATouchOfWhatIsKnownBarsTheWayThereAsAnyOther) {
+  for (const double v : {0.5, -0.5}) {
+    for (const double w : {0.0, 0.5}) {
+      inputs.navigation = Twist2{v, w};
+      EXPECT_EQ(settled(inputs, parameters).twist, Twist2{}) << v << " " << w;
+    }
+  }
+}
+
+TEST_F(InACorridor, ARollingBaseTurnsIntoNoTouch) {
+  inputs.measured = Twist2{0.2, 0.0};
+  EXPECT_EQ(turn(), 0.0);
+}
+
+TEST_F(InACorridor, TheGuardEndsATurnBeforeACornerMeetsWhatIsSeen) {
+  // A post just outside of the front left corner's way, and one in it.
+  const auto turns_beside = [&](double radius) {
+    const double angle = std::atan2(0.33, 0.305) + 0.05;
+    both.resize(left.size() + right.size());
+    for (int i = 0; i < 2; ++i)
+      both.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    inputs.view.points = both;
+    return turn();
+  };
+  EXPECT_GT(turns_beside(0.46), 0.0);
+  EXPECT_EQ(turns_beside(0.44), 0.0);
+}
+
 TEST_F(Guarded, ALostPlannerMayTurn) {
   inputs.navigation = Twist2{0.8, 0.3};
   inputs.localization = Localization::kLost;
@@ -778,6 +866,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
     Parameters parameters = run % 2 == 0 ? Parameters{} : with_jerk();
     parameters.guarded = run % 4 >= 2;
     MovementControl control(parameters);
+    const kinematics::WhiskerRods rods(parameters.guard.outline, parameters.whiskers);
     std::vector<geometry::Point2> things;
     Time now{};
     double last = 0.0;
@@ -810,7 +899,10 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
         ASSERT_EQ(out, Twist2{});
       }
       if (inputs.whiskers) {
-        ASSERT_EQ(kinematics::whisker_reflex(out, *inputs.whiskers, Parameters{}.touched), out);
+        // But a turn in place that creeps beside what is seen or known.
+        const Whiskers unseen = kinematics::without(*inputs.whiskers, rods.at(inputs.view.points));
+        const Whiskers& against = out.v == 0.0 ? unseen : *inputs.whiskers;
+        ASSERT_EQ(kinematics::whisker_reflex(out, against, Parameters{}.touched), out);
       }
       last = out.v;
     }

@@ -12,6 +12,7 @@
 #include "foundation/kinematics/roll_out.hpp"
 #include "foundation/kinematics/stopping_distance.hpp"
 #include "foundation/kinematics/whisker_reflex.hpp"
+#include "foundation/kinematics/whisker_rods.hpp"
 #include "foundation/random/random.hpp"
 
 namespace usher::kinematics {
@@ -316,6 +317,44 @@ TEST(WhiskerReflex, BendsAwayFromWhatStandsBeside) {
   EXPECT_GT(whisker_reflex({-0.1, 0.5}, left, 0.1).w, 0.0);
   const Whiskers all{true, true, true, true};
   EXPECT_EQ(whisker_reflex({0.1, -0.5}, all, 0.1), geometry::Twist2{});
+}
+
+TEST(WhiskerReflex, BarsATurnThatSwingsATouchedCornerOutward) {
+  for (const double w : {0.5, 0.0, -0.5}) {
+    EXPECT_EQ(bars_turn({.front_left = true}, w), w > 0.0);
+    EXPECT_EQ(bars_turn({.back_right = true}, w), w > 0.0);
+    EXPECT_EQ(bars_turn({.front_right = true}, w), w < 0.0);
+    EXPECT_EQ(bars_turn({.back_left = true}, w), w < 0.0);
+    EXPECT_FALSE(bars_turn({}, w));
+  }
+}
+
+TEST(WhiskerRods, LieAtWhatCrossesThemTwice) {
+  const WhiskerRods rods(geometry::Footprint::rectangle(0.61, 0.66), {});
+  using geometry::Point2;
+  const Point2 middle(0.305 + 0.2 * std::cos(geometry::radians(20.0)),
+                      0.33 + 0.2 * std::sin(geometry::radians(20.0)));
+  const auto at = [&](const std::vector<Point2>& points) {
+    const Whiskers is = rods.at(points);
+    return std::vector<bool>{is.front_left, is.front_right, is.back_left, is.back_right};
+  };
+  const std::vector<bool> none(4, false);
+  EXPECT_EQ(at({}), none);
+  EXPECT_EQ(at({middle}), none) << "may be noise, or the touch's own mark";
+  for (int corner = 0; corner < 4; ++corner) {
+    const Point2 there(corner / 2 == 0 ? middle.x() : -middle.x(),
+                       corner % 2 == 0 ? middle.y() : -middle.y());
+    std::vector<bool> one(4, false);
+    one[static_cast<std::size_t>(corner)] = true;
+    EXPECT_EQ(at({there, there}), one);
+    EXPECT_EQ(at({there, 0.95 * there}), one);
+    EXPECT_EQ(at({there, {there.x(), 1.4 * there.y()}}), none) << "one beside it";
+  }
+  EXPECT_EQ(at({{0.6, 0.3}, {0.6, 0.31}}), none) << "ahead of the robot, beside the whisker";
+  EXPECT_EQ(at({{0.0, 0.34}, {0.01, 0.34}}), none) << "beside the robot";
+  EXPECT_EQ(at({{kNaN, 0.4}, {0.4, kNaN}, {kInfinity, 0.4}}), none);
+  EXPECT_GT(rods.reach(), middle.norm() + 0.2);
+  EXPECT_LT(rods.reach(), 1.0);
 }
 
 }  // namespace

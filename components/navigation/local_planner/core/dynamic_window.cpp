@@ -78,7 +78,8 @@ DynamicWindow::DynamicWindow(const DynamicWindowConfig& config, cpu::Simd simd)
       wavefront_(simd),
       path_distance_(simd),
       lane_(config.footprint.inscribed_radius(), config.clearance + kLaneGap,
-            config.keep_left ? -1.0 : 1.0) {}
+            config.keep_left ? -1.0 : 1.0),
+      rods_(config.footprint, config.whiskers) {}
 
 Status DynamicWindow::set_path(std::span<const Pose2> path) {
   const bool had_goal = !path_.empty();
@@ -153,6 +154,7 @@ void DynamicWindow::load(const Input& input) {
   bits_.assign(input.costs, config_.unknown_is_lethal,
                roomy_.reach_cells(input.costs.resolution()));
   stand_in_the_way(input);
+  explain_touches(input);
 }
 
 namespace {
@@ -185,6 +187,19 @@ void DynamicWindow::stand_in_the_way(const Input& input) {
         bits_.set(cell.x + bits_.rim(), cell.y + bits_.rim());
     });
   }
+}
+
+/// What the whiskers touch beside what is lethal where they are.
+void DynamicWindow::explain_touches(const Input& input) {
+  unexplained_ = touches_;
+  const kinematics::Whiskers& t = touches_;
+  if (!t.front_left && !t.front_right && !t.back_left && !t.back_right) return;
+  at_whiskers_.clear();
+  visit_cells(input.costs.geometry(), input.pose.position(), rods_.reach(), [&](grid::Cell cell) {
+    if (input.costs.at(cell) == grid::kLethalCost)
+      at_whiskers_.push_back(inverse(input.pose) * input.costs.geometry().center(cell));
+  });
+  unexplained_ = kinematics::without(touches_, rods_.at(at_whiskers_));
 }
 
 /// Frees the cells of everybody; false: there is nobody.
@@ -360,19 +375,25 @@ double DynamicWindow::creeping_turn(const Input& input) const {
 }
 
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
+/// Touching what the costs know, corners creep as movement_control lets them, and only with half of
+/// the clearance; farther on that may be a touch's own mark.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
-  const kinematics::Whiskers& t = touches_;
-  if (angle > 0.0 ? t.front_left || t.back_right : t.front_right || t.back_left) return 0.0;
+  if (kinematics::bars_turn(unexplained_, angle)) return 0.0;
+  const bool touching = kinematics::bars_turn(touches_, angle);
   // Cells that it overlaps in part already cannot be asked to stay untouched.
   const ContactTest& least = touches(input, whole_, input.pose) ? center_ : whole_;
   double rate = config_.spot_turn;
+  if (touching)
+    rate = std::min(rate, 0.5 * config_.tight_speed / config_.footprint.circumscribed_radius());
   const int steps = static_cast<int>(std::ceil(std::abs(angle) / kSweep));
   for (int i = 0; i <= steps; ++i) {
     const Pose2 turned{input.pose.x, input.pose.y, input.pose.yaw + angle * i / std::max(steps, 1)};
     if (!touches(input, roomy_, turned)) continue;
-    if (i * kSweep < kSoon)
-      rate = std::min(
-          rate, touches(input, narrow_, turned) ? creeping_turn(input) : 1.5 * config_.tight_turn);
+    if (i * kSweep < kSoon) {
+      const bool narrow = touches(input, narrow_, turned);
+      if (touching && narrow) return 0.0;
+      rate = std::min(rate, narrow ? creeping_turn(input) : 1.5 * config_.tight_turn);
+    }
     if (i > 0 && touches(input, least, turned)) return 0.0;
   }
   return rate;
@@ -444,9 +465,9 @@ Decision DynamicWindow::turn_to(const Input& input, double yaw, Reason reason) {
   // A turn that has begun keeps its sense, the long way round too, until it is nearly there.
   if (turning_ != 0 && std::abs(angle) > 0.5 && angle * turning_ < 0.0)
     angle += turning_ * 2.0 * geometry::kPi;
-  if (auto decision = free_corner(input, angle)) return *decision;
   double fastest = turn_rate(input, angle);
   if (fastest == 0.0) {
+    if (auto decision = free_corner(input, angle)) return *decision;
     if (is_given_up(input.pose.position(), angle > 0.0 ? 1 : -1))
       return halt(input, Reason::kBlocked, config_.braking);
     angle += angle > 0.0 ? -2.0 * geometry::kPi : 2.0 * geometry::kPi;

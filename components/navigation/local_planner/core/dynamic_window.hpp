@@ -12,6 +12,7 @@
 #include "foundation/grid/wavefront.hpp"
 #include "foundation/kinematics/acceleration_limiter.hpp"
 #include "foundation/kinematics/stopping_distance.hpp"
+#include "foundation/kinematics/whisker_rods.hpp"
 #include "foundation/result/result.hpp"
 #include "navigation/local_planner/core/contact.hpp"
 #include "navigation/local_planner/core/lane.hpp"
@@ -46,6 +47,7 @@ enum class Sampling : std::uint8_t {
 
 struct DynamicWindowConfig {
   Footprint footprint = Footprint::rectangle(0.61, 0.61);
+  kinematics::WhiskerMount whiskers;
   kinematics::StoppingDistance stopping;  ///< what "can be stopped" means
   kinematics::AccelerationLimits limits;  ///< of the command
   BaseResponse response;
@@ -105,7 +107,8 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   void clear_path() override;
   double remaining() const override { return path_.remaining(); }
   /// What the corners touch from now on. A turn in place that a touch bars waits until the corner
-  /// has been taken away: forward from a touch behind, backward from one in front.
+  /// has been taken away: forward from a touch behind, backward from one in front. A touch of what
+  /// the costs know anyway bars none that keeps half of the clearance for now.
   void set_touches(const kinematics::Whiskers& touches) override { touches_ = touches; }
   /// The speed to keep from now on [m/s]; at least `slowest`, not finite is refused.
   Status set_pace(double pace) override;
@@ -155,6 +158,7 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   void find_neighbours(const Input& input);
   void keep_speed(double v);
   void load(const Input& input);
+  void explain_touches(const Input& input);
 
   // What to do (dynamic_window.cpp).
   Decision at_goal(const Input& input);
@@ -234,7 +238,9 @@ class DynamicWindow final  // NOLINT(clang-analyzer-optin.performance.Padding): 
   double oscillation_sign_ = 0.0, oscillation_forbidden_ = 0.0;
   geometry::Pose2 oscillation_pose_;
   Trail trail_;
-  kinematics::Whiskers touches_;
+  kinematics::WhiskerRods rods_;
+  kinematics::Whiskers touches_, unexplained_;
+  std::vector<geometry::Point2> at_whiskers_;  // lethal cells, in base_footprint
   std::optional<geometry::Pose2> touched_at_;  // in front, where it waits
   double careful_turn_ = 0.0;                  // [rad/s] the fastest without the whole clearance
   bool tight_ = false;  // only its own outline fits: the path's line counts for more

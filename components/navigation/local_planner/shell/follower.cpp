@@ -9,6 +9,7 @@
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 #include "wire/stopping.hpp"
+#include "wire/whiskers.hpp"
 
 namespace usher::local_planner {
 
@@ -39,6 +40,7 @@ DynamicWindowConfig read_motion(runtime::Host& host) {
   auto& p = host.parameters();
   DynamicWindowConfig c;
   c.footprint = wire::read_footprint(host);
+  c.whiskers = wire::read_whiskers(host);
   c.stopping = wire::read_stopping(host);
   c.pace = p.number("pace", "m/s", {0.1, 1.4}, c.pace, "Speed to keep where it can be stopped.");
   c.careful_speed = p.number(

@@ -596,6 +596,40 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
   }
 }
 
+/// Turned by 1.05 rad between walls so far to its left and right, the path behind it, the corners
+/// that these touch touched.
+Decision turns_between_walls(double left, double right, double mark = 0.0) {
+  DynamicWindowConfig config;
+  config.footprint = marvin();
+  config.tight_speed = 0.1;
+  DynamicWindow planner = DynamicWindow::make(config).value();
+  EXPECT_TRUE(planner.set_path(std::vector<Pose2>{{0, 0, 3.1}, {-2, 0, 3.1}}).ok());
+  planner.set_touches({.front_left = true, .back_right = true});
+  World world(-3, -3, 3, 3);
+  world.add(Box{-3, left, 3, left + 0.1});
+  world.add(Box{-3, -right - 0.1, 3, -right});
+  world.finish(0.305);
+  Costs costs = world.costs();
+  const Pose2 pose{0, 0, 1.05};
+  if (mark > 0.0) {  // what a touch leaves in the costs
+    const Point2 ahead = pose * Point2(0.305 + mark, 0.33);
+    costs.at(costs.geometry().cell_at(ahead)) = grid::kLethalCost;
+  }
+  return planner.decide(costs, pose, {}, {}, 0.05);
+}
+
+TEST(Turning, GoesOnCreepingBesideWallsThatItKnowsAndTouches) {
+  const double creeping = 0.05 / marvin().circumscribed_radius();
+  const Decision turns = turns_between_walls(0.7, 0.7);
+  EXPECT_EQ(turns.reason, Reason::kTurning);
+  EXPECT_EQ(turns.target.v, 0.0);
+  EXPECT_NEAR(turns.target.w, creeping, 1e-9);
+  EXPECT_LE(turns_between_walls(2.0, 0.7).target.w, 0.0) << "what is at the front left corner?";
+  EXPECT_LE(turns_between_walls(2.0, 0.7, 0.1).target.w, 0.0) << "its own mark explains no touch";
+  EXPECT_LE(turns_between_walls(0.7, 2.0).target.w, 0.0) << "and at the back right one?";
+  EXPECT_LE(turns_between_walls(0.47, 0.7).target.w, 0.0) << "half of the clearance is kept";
+}
+
 TEST(Turning, GivesUpToAndFroBetweenTwoTouchedCorners) {
   const std::vector<geometry::Pose2> path = {{0.0, 0.0, 1.57}, {0.0, 2.0, 1.57}};
   DynamicWindow planner = DynamicWindow::make({}).value();

@@ -8,6 +8,7 @@
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 #include "wire/torso.hpp"
+#include "wire/whiskers.hpp"
 
 namespace usher::world {
 
@@ -78,6 +79,9 @@ WorldConfig WorldComponent::read_robot(runtime::Host& host) {
     robot.whiskers.x = std::max(robot.whiskers.x, corner.x());
     robot.whiskers.y = std::max(robot.whiskers.y, corner.y());
   }
+  const auto mount = wire::read_whiskers(host);
+  robot.whiskers.length = mount.length;
+  robot.whiskers.outward = mount.outward;
   robot.axle_height = p.number("robot.wheel_radius", "m", {0.05, 0.5}, 0.2355,
                                "Of the driven wheels; also the axle's height.");
   robot.lasers.front().mount.x =

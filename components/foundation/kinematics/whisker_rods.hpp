@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+
+#include "foundation/geometry/angle.hpp"
+#include "foundation/geometry/footprint.hpp"
+#include "foundation/geometry/pose2.hpp"
+#include "foundation/kinematics/whisker_reflex.hpp"
+
+namespace usher::kinematics {
+
+/// How a whisker stands out from its corner (the thesis, 3.2.1).
+struct WhiskerMount {
+  double length = 0.4;                       ///< [m] {> 0}
+  double outward = geometry::radians(20.0);  ///< [rad] from straight ahead, or straight back
+};
+
+/// The four whiskers as they are while nothing bends them: straight rods from the corners of the
+/// outline. Tells whether a touch may be that of something that is known anyway.
+class WhiskerRods {
+ public:
+  WhiskerRods(const geometry::Footprint& outline, const WhiskerMount& mount);
+
+  /// [m] from the axle's middle: what is farther away is at no whisker.
+  double reach() const { return reach_; }
+
+  /// Which whiskers lie at two or more of these points in base_footprint, within 8 cm: a cell, and
+  /// the error of pose and laser. One alone may be noise, or what the touch itself has left in the
+  /// local costs.
+  Whiskers at(std::span<const geometry::Point2> points) const;
+
+ private:
+  double front_ = 0.0, back_ = 0.0, side_ = 0.0;  // [m] of the corners
+  geometry::Point2 rod_;                          // [m] from a corner to the tip, ahead and outward
+  double reach_ = 0.0;
+};
+
+/// What of the touches is not among the known ones.
+inline Whiskers without(const Whiskers& touches, const Whiskers& known) {
+  return {touches.front_left && !known.front_left, touches.front_right && !known.front_right,
+          touches.back_left && !known.back_left, touches.back_right && !known.back_right};
+}
+
+}  // namespace usher::kinematics
