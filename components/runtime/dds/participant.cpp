@@ -180,7 +180,8 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
-  discovery.leaseDuration = milliseconds(1000);
+  // Who was killed keeps its right to write until then: its next start has to be heard within 1 s.
+  discovery.leaseDuration = milliseconds(800);
   discovery.leaseDuration_announcementperiod = milliseconds(200);
   // Announcements are lost while the other side is still opening its sockets: several soon after
   // the start.
@@ -273,7 +274,7 @@ class Participant::Greeted : public dds::DataReaderListener, private PayloadSink
     while (reader->take_next_sample(static_cast<PayloadSink*>(this), &info) ==
            eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
-      const Guid writer = to_guid(info.publication_handle);
+      const Guid writer = to_guid(rtps::iHandle2GUID(info.publication_handle));
       SignedPresence::Prefix prefix{};
       std::copy_n(writer.begin(), prefix.size(), prefix.begin());
       presence_.met(prefix, MonotonicClock::read(CLOCK_MONOTONIC));

@@ -25,7 +25,7 @@ struct Link {
 struct NetworkOptions {
   std::uint64_t seed = 1;
   Duration discovery = std::chrono::milliseconds(30);  ///< until two participants know each other
-  Duration lease = std::chrono::seconds(1);            ///< of a participant that fell silent
+  Duration lease = std::chrono::milliseconds(800);     ///< of a participant that fell silent
   Link inside_host{std::chrono::microseconds(100)};
   Link between_hosts{std::chrono::microseconds(500)};
 };

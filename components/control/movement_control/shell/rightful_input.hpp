@@ -11,10 +11,9 @@
 
 namespace usher::movement_control {
 
-/// A topic that moves the robot, heard from those who may write it by the manifest. A second writer
-/// of such a name is heard after 250 ms only: if the first one lives, the supervisor mostly knows
-/// by then that there are two, and has stopped the robot (it took 254 ms once on a busy machine).
-/// Whoever else writes is counted. Without a manifest (tests) everybody may.
+/// A topic that moves the robot, heard from those only who hold the right to write it by the
+/// manifest: of a name the first one, until discovery sees that it has left. Whoever else writes is
+/// counted. Without a manifest (tests) everybody may.
 template <class Message>
 class RightfulInput {
  public:
@@ -36,7 +35,8 @@ class RightfulInput {
         })) {
     host.watch_writers(std::string(topic.name), [this](const runtime::WriterInfo& writer) {
       if (writer.alive) {
-        right_.appeared({writer.guid, writer.participant, writer.host}, now());
+        right_.appeared({writer.guid, writer.participant, writer.host},
+                        host_.now().time_since_epoch());
       } else {
         right_.gone(writer.guid);
       }
@@ -52,12 +52,7 @@ class RightfulInput {
   }
 
  private:
-  static constexpr auto kProbation = std::chrono::milliseconds(250);
-
-  drive::Time now() const { return host_.now().time_since_epoch(); }
-  bool may_write(const runtime::Guid& writer) const {
-    return anybody_ || right_.may_be_heard(writer, now(), kProbation);
-  }
+  bool may_write(const runtime::Guid& writer) const { return anybody_ || right_.holds(writer); }
 
   runtime::Host& host_;
   const bool anybody_;

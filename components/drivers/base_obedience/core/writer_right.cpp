@@ -95,14 +95,6 @@ bool WriterRight::holds(const WriterId& writer) const {
   });
 }
 
-bool WriterRight::may_be_heard(const WriterId& writer, Time now, Time patience) const {
-  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) {
-    return known.sighting.writer == writer &&
-           (known.role == Role::kHolder ||
-            (known.role == Role::kWaiting && now - known.since >= patience));
-  });
-}
-
 bool WriterRight::trusted(const WriterId& writer) const {
   const auto at = std::find_if(known_.begin(), known_.end(),
                                [&](const Known& known) { return known.sighting.writer == writer; });

@@ -63,9 +63,6 @@ class WriterRight {
   /// for it, and nobody there was unmasked who claims that name too. Of two who live, which is the
   /// liar cannot be told from the order in which they were met.
   bool trusted(const WriterId& writer) const;
-  /// Whether it holds the right of its name, or has waited for it for so long that of a holder who
-  /// lives something would have been heard.
-  bool may_be_heard(const WriterId& writer, Time now, Time patience) const;
   /// Of the first allowed name that has a holder, in the order of appearance; who may write where
   /// one name is allowed.
   std::optional<WriterId> holder() const;
