@@ -6,6 +6,7 @@
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/installation.hpp"
+#include "operations/command_line/judging.hpp"
 #include "operations/command_line/robot.hpp"
 #include "operations/command_line/usage.hpp"
 
@@ -17,12 +18,14 @@ int check(const std::vector<std::string>& manifests) {
   const auto installation = Installation::of_this_program();
   int bad = 0;
   for (const auto& path : manifests) {
-    const auto deployment = load_deployment(path, installation, {}, keys_folder());
+    auto deployment = load_deployment(path, installation, {}, keys_folder());
     if (!deployment) {
       ++bad;
       std::cout << to_string(finding_of(Verdict::kUnreadable, deployment.error(), path)) << "\n";
       continue;
     }
+    if (deployment->findings.empty())
+      deployment->findings = judge_by_components(*deployment, installation);
     for (const auto& finding : deployment->findings) {
       std::cout << to_string(finding) << "\n";
     }

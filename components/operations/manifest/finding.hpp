@@ -10,7 +10,7 @@ enum class Verdict {
   kUnknownType,         ///< no contract for a component's type
   kUnknownHost,         ///< a component on a host that the manifest does not have
   kUnknownKey,          ///< a key that nobody declares
-  kWrongValue,          ///< wrong type, unit or range
+  kWrongValue,          ///< wrong type, unit or range, or refused by the component
   kMissingValue,        ///< something required that nobody sets
   kMissingFile,         ///< a parameter names a file that is not there
   kMisplaced,           ///< a robot.*, site.* or manifest.* value set where it does not belong

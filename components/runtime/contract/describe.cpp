@@ -3,6 +3,7 @@
 #include <deque>
 #include <iomanip>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "idl/topics.hpp"
@@ -60,14 +61,15 @@ class DescribeHost final : public Host {
       : name_(type), parameters_({}, type, ParameterSet::Missing::kIsFine) {
     contract_.component = type;
   }
+  explicit DescribeHost(const ParameterFile& file)
+      : name_(file.name),
+        host_name_(file.host),
+        robot_name_(file.robot),
+        parameters_(file.values, file.name) {}
 
   Result<Contract> describe(const ComponentFactory& factory) {
-    try {
-      factory.make(*this);
-    } catch (const ConstructorEnded&) {
-    } catch (const std::exception& error) {
-      return Error{name_ + " cannot be constructed with its defaults: " + error.what()};
-    }
+    if (auto error = construct(factory))
+      return Error{name_ + " cannot be constructed with its defaults: " + *error};
     output(topics::kHeartbeat);
     const Status status = parameters_.finish();
     if (!status.ok()) return Error{name_ + ": " + status.error()};
@@ -78,6 +80,15 @@ class DescribeHost final : public Host {
     digest << std::hex << std::setw(16) << std::setfill('0') << USHER_IDL_DIGEST;
     contract_.idl_digest = digest.str();
     return std::move(contract_);
+  }
+
+  Status judge(const ComponentFactory& factory) {
+    auto refusal = construct(factory);
+    if (!refusal) refusal = fault_;
+    // A value that cannot be read comes first: the constructor got another one in its place.
+    if (Status status = parameters_.finish(!refusal); !status) return status;
+    if (refusal) return Error{*refusal};
+    return {};
   }
 
   Time now() const override { return {}; }
@@ -92,7 +103,10 @@ class DescribeHost final : public Host {
   Status keep(const std::string&, std::span<const std::uint8_t>) override { return {}; }
   Result<std::optional<Bytes>> kept(const std::string&) override { return std::optional<Bytes>(); }
   void watch_writers(const std::string&, std::function<void(const WriterInfo&)>) override {}
-  [[noreturn]] void fault(const std::string&) override { throw ConstructorEnded{}; }
+  [[noreturn]] void fault(const std::string& reason) override {
+    fault_ = reason;
+    throw ConstructorEnded{};
+  }
 
  protected:
   InputPort& declare(InputDeclaration declaration) override {
@@ -116,7 +130,19 @@ class DescribeHost final : public Host {
   }
 
  private:
+  /// What else than a fault ended the constructor.
+  std::optional<std::string> construct(const ComponentFactory& factory) {
+    try {
+      factory.make(*this);
+    } catch (const ConstructorEnded&) {
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return std::nullopt;
+  }
+
   std::string name_, host_name_ = "localhost", robot_name_, wrong_;
+  std::optional<std::string> fault_;
   ParameterSet parameters_;
   NoHealth health_;
   NoStream stream_;
@@ -130,6 +156,10 @@ class DescribeHost final : public Host {
 
 Result<Contract> describe(const ComponentFactory& factory) {
   return DescribeHost(factory.type).describe(factory);
+}
+
+Status judge(const ComponentFactory& factory, const ParameterFile& file) {
+  return DescribeHost(file).judge(factory);
 }
 
 }  // namespace usher::runtime

@@ -3,6 +3,7 @@
 #include "foundation/result/result.hpp"
 #include "runtime/api/contract.hpp"
 #include "runtime/api/host.hpp"
+#include "runtime/parameters/parameter_file.hpp"
 
 namespace usher::runtime {
 
@@ -15,5 +16,10 @@ namespace usher::runtime {
 /// declares first and loads after. Any other exception, or a wrong declaration (default out of
 /// range, unit that is not SI, an input with an age and nothing said about its loss), is an error.
 Result<Contract> describe(const ComponentFactory& factory);
+
+/// Whether a component of this type can be constructed with these values, on such a host: an error
+/// says what it refuses, values that contradict one another too. It may read the files that its
+/// parameters name.
+Status judge(const ComponentFactory& factory, const ParameterFile& file);
 
 }  // namespace usher::runtime

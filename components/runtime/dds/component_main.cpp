@@ -80,11 +80,13 @@ int print_contract(const ComponentFactory& factory, bool for_people) {
 int component_main(const ComponentFactory& factory, int argc, char** argv) {
   CLI::App app{"usher component " + factory.type, "usher-" + factory.type};
   std::string path;
+  bool judges = false;
   bool contract = false;
   bool help = false;
   bool version = false;
   app.set_help_flag();
   app.add_option("--parameters", path, "File that the launcher wrote for this component");
+  app.add_flag("--judge", judges, "Tell what this component refuses of the file, and end");
   app.add_flag("--contract", contract, "Print ports, timers and parameters as YAML");
   app.add_flag("-h,--help", help, "Print options, ports and parameters");
   app.add_flag("--version", version, "Print the version");
@@ -109,6 +111,10 @@ int component_main(const ComponentFactory& factory, int argc, char** argv) {
       return report(kWrong, "usher-" + factory.type,
                     path + ": is for component '" + file.component + "'");
     }
+  }
+  if (judges) {
+    const Status status = judge(factory, file);
+    return status ? kDone : report(kWrong, file.name, status.error());
   }
   stop_on_signals();
   return run_component(factory, std::move(file));

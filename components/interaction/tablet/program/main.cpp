@@ -6,12 +6,12 @@
 
 namespace {
 
-/// What only prints needs no window.
-bool only_prints(int argc, char** argv) {
+/// What only tells something needs no window.
+bool only_tells(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
-    if (argument == "--contract" || argument == "--help" || argument == "-h" ||
-        argument == "--version")
+    if (argument == "--contract" || argument == "--judge" || argument == "--help" ||
+        argument == "-h" || argument == "--version")
       return true;
   }
   return false;
@@ -21,7 +21,7 @@ bool only_prints(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace usher;
-  if (only_prints(argc, argv)) {
+  if (only_tells(argc, argv)) {
     return runtime::component_main(runtime::component_factory<tablet::TabletComponent>("tablet"),
                                    argc, argv);
   }

@@ -74,6 +74,34 @@ TEST(Describe, RecordsEverythingThatAComponentDeclares) {
   EXPECT_EQ(contract->timers[0].period, 0.02);
 }
 
+/// Refuses two values that it would take each by itself.
+class Particular final : public Component {
+ public:
+  explicit Particular(Host& host) {
+    auto& parameters = host.parameters();
+    const double near = parameters.number("near", "m", {0, 9}, 1.0, "How near.");
+    const double far = parameters.number("far", "m", {0, 9}, "How far.");
+    if (near >= far) host.fault(host.name() + " on " + host.host_name() + ": near before far");
+  }
+};
+
+Status judged(std::vector<ParameterValue> values) {
+  ParameterFile file;
+  file.name = "particular";
+  file.host = "nuc";
+  file.values = std::move(values);
+  return judge(component_factory<Particular>("particular"), file);
+}
+
+TEST(Judge, TellsWhatAComponentRefusesOfItsValues) {
+  EXPECT_TRUE(judged({{"far", "2 m", "m.yaml:1"}}).ok());
+  EXPECT_EQ(judged({{"far", "0.5 m", "m.yaml:1"}}).error(), "particular on nuc: near before far");
+  EXPECT_THAT(judged({}).error(), HasSubstr("far"));
+  EXPECT_THAT(judged({{"far", "2 m", "m.yaml:1"}, {"fra", "2 m", "m.yaml:2"}}).error(),
+              HasSubstr("m.yaml:2"));
+  EXPECT_THAT(judged({{"far", "2 kg", "m.yaml:1"}}).error(), HasSubstr("m.yaml:1"));
+}
+
 TEST(Contract, ComesBackFromItsYaml) {
   const auto contract = describe(component_factory<Sample>("sample"));
   ASSERT_TRUE(contract.ok());

@@ -1,0 +1,95 @@
+#include "operations/command_line/judging.hpp"
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "foundation/result/result.hpp"
+#include "operations/launcher/launcher.hpp"
+
+namespace usher::operations {
+
+namespace {
+
+std::string quoted(const std::string& word) {
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// A file in memory that programs started from here can open, as long as this lives.
+class PassedFile {
+ public:
+  explicit PassedFile(const std::string& content) : descriptor_(::memfd_create("parameters", 0)) {
+    whole_ = ::write(descriptor_, content.data(), content.size()) ==
+             static_cast<ssize_t>(content.size());
+  }
+  ~PassedFile() { ::close(descriptor_); }
+  PassedFile(const PassedFile&) = delete;
+  PassedFile& operator=(const PassedFile&) = delete;
+
+  bool whole() const { return whole_; }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+  bool whole_ = false;
+};
+
+/// The program's refusal is an error; its last line, without its name before it.
+Status ask(const std::string& program, const runtime::ParameterFile& parameters) {
+  const PassedFile file(to_yaml(parameters));
+  const std::string line = quoted(program) + " --judge --parameters " + file.path() + " 2>&1";
+  std::FILE* said = file.whole() ? ::popen(line.c_str(), "r") : nullptr;
+  if (said == nullptr) return Error{"its program could not be asked"};
+  std::string words;
+  for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said))
+    words.push_back(static_cast<char>(c));
+  const int status = ::pclose(said);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  while (words.ends_with('\n')) words.pop_back();
+  words.erase(0, words.rfind('\n') + 1);
+  const std::string name = parameters.name + ": ";
+  return Error{words.starts_with(name) ? words.substr(name.size()) : words};
+}
+
+/// Where the value that the refusal names was set; where the component is declared if it names
+/// none.
+const std::string& origin_of(const std::string& refusal, const runtime::ParameterFile& file,
+                             const ManifestComponent& component) {
+  const runtime::ParameterValue* named = nullptr;
+  for (const auto& value : file.values) {
+    const bool longer = named == nullptr || value.name.size() > named->name.size();
+    if (longer && refusal.find(value.name) != std::string::npos) named = &value;
+  }
+  return named == nullptr || named->origin.empty() ? component.origin : named->origin;
+}
+
+}  // namespace
+
+std::vector<Finding> judge_by_components(const Deployment& deployment,
+                                         const Installation& installation) {
+  std::vector<Finding> findings;
+  for (std::size_t i = 0; i < deployment.files.size(); ++i) {
+    const ManifestComponent& component = deployment.manifest.components[i];
+    const std::string program = installation.programs + "/usher-" + component.type;
+    if (::access(program.c_str(), X_OK) != 0) {
+      std::cerr << "usher: " << component.name << " was not asked: no program " << program << "\n";
+      continue;
+    }
+    const runtime::ParameterFile& file = deployment.files[i];
+    if (const Status status = ask(program, file); !status) {
+      findings.push_back(finding_of(Verdict::kWrongValue,
+                                    "'" + component.name + "' refuses: " + status.error(),
+                                    origin_of(status.error(), file, component)));
+    }
+  }
+  return findings;
+}
+
+}  // namespace usher::operations
