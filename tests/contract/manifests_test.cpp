@@ -28,6 +28,10 @@ class Installation {
   Installation() {
     const fs::path root = folder_.path();
     fs::create_directories(root / "bin");
+    for (const auto& program : fs::directory_iterator(kPrograms)) {
+      if (program.path().filename() != "usher")
+        fs::create_symlink(program.path(), root / "bin" / program.path().filename());
+    }
     fs::copy_file(kPrograms + "/usher", root / "bin" / "usher");
     const fs::path share = root / "share" / "usher";
     fs::create_directories(share / "contracts");
@@ -177,6 +181,16 @@ TEST_F(UsherCheck, JudgesEachOfSeveral) {
   EXPECT_EQ(check.wait(), 1);
   EXPECT_NE(check.output().find("deploy/marvin.yaml: good, "), std::string::npos);
   EXPECT_NE(check.output().find(": two writers: "), std::string::npos);
+}
+
+TEST_F(UsherCheck, SaysWhomItCouldNotAsk) {
+  const Installation installation;
+  fs::remove(fs::path(installation.program()).parent_path() / "usher-amcl");
+  test::Process check({installation.program(), "check", "deploy/marvin-sim.yaml"});
+  EXPECT_EQ(check.wait(), 0) << check.output();
+  EXPECT_EQ(check.errors(), "usher: not asked what they refuse, since their programs are not in " +
+                                fs::path(installation.program()).parent_path().string() +
+                                ": amcl\n");
 }
 
 TEST_F(UsherCheck, WithoutManifestIsAWrongCall) {

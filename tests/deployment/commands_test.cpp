@@ -383,6 +383,21 @@ TEST_F(Commands, AGoalThatNobodyWaitsForIsGivenUpByHand) {
   EXPECT_TRUE(well()) << robot_->complaints();
 }
 
+TEST_F(Commands, StatusSaysWhyAGoalFailedThatNobodyWaitedFor) {
+  ASSERT_TRUE(well()) << robot_->complaints();
+  robot_->command({"goto", "--pose", "-50", "-50", "0", "--no-wait"})->wait();
+  std::string told;
+  EXPECT_TRUE(robot_->wait_for(
+      [&] {
+        const auto status = robot_->command({"status"});
+        status->wait();
+        told = status->output();
+        return contains(told, "\ngoal -50.0 -50.0 of operator failed: ");
+      },
+      Seconds(20)))
+      << told;
+}
+
 TEST_F(Commands, GotoEndsWhenTheLaunchDoes) {
   ASSERT_TRUE(well()) << robot_->complaints();
   const auto command = robot_->command({"goto", "kitchen"});

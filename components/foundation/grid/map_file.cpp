@@ -35,7 +35,7 @@ class DescriptionReader {
         {"mode", [this](const YAML::Node& node) { return read_mode(node); }},
         {"resolution",
          [this](const YAML::Node& node) {
-           return read_number(node, 1e-4, 100.0, map_.resolution);
+           return read_number(node, 1e-4, 1.0, map_.resolution);
          }},
         {"origin", [this](const YAML::Node& node) { return read_origin(node); }},
         {"negate", [this](const YAML::Node& node) { return read_negate(node); }},

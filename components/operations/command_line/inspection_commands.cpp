@@ -49,19 +49,26 @@ void show_refusals(const std::vector<runtime::Refusal>& refusals) {
   for (const auto& refusal : refusals) std::cout << to_string(refusal) << "\n";
 }
 
-/// "goal printer of operator: 34 %, 12.3 m left, 25 s, 1 recovery; an obstacle 0.4 m ahead"; empty
-/// when there is none.
+/// "goal printer of operator: 34 %, 12.3 m left, 25 s, 1 recovery; an obstacle 0.4 m ahead", or
+/// "goal printer of operator failed with 12.3 m left: no progress for 6 s"; empty when there is
+/// none of either.
 std::string goal_line(const usher_msgs::msg::NavigateStatus& status) {
   namespace goal_state = usher_msgs::msg::GoalStatus_Constants;
-  if (status.state() != goal_state::STATE_ACTIVE && status.state() != goal_state::STATE_WAITING)
+  const bool failed = status.state() == goal_state::STATE_FAILED;
+  if (!failed && status.state() != goal_state::STATE_ACTIVE &&
+      status.state() != goal_state::STATE_WAITING)
     return {};
   const auto& goal = status.goal().pose().position();
+  const std::string left = format("%.1f m left", status.remaining());
   std::string line =
       "goal " +
       (status.location().empty() ? format("%.1f", goal.x()) + " " + format("%.1f", goal.y())
                                  : status.location()) +
-      " of " + status.client() + ": " + format("%.0f %%", 100.0 * status.progress()) + ", " +
-      format("%.1f m left", status.remaining());
+      " of " + status.client();
+  if (failed)
+    return line + " failed" + (status.remaining() > 0 ? " with " + left : "") + ": " +
+           status.reason();
+  line += ": " + format("%.0f %%", 100.0 * status.progress()) + ", " + left;
   if (std::isfinite(status.eta())) line += ", " + format("%.0f s", status.eta());
   if (const auto n = status.recoveries(); n > 0)
     line += ", " + std::to_string(n) + (n == 1 ? " recovery" : " recoveries");

@@ -75,11 +75,12 @@ const std::string& origin_of(const std::string& refusal, const runtime::Paramete
 std::vector<Finding> judge_by_components(const Deployment& deployment,
                                          const Installation& installation) {
   std::vector<Finding> findings;
+  std::string not_asked;
   for (std::size_t i = 0; i < deployment.files.size(); ++i) {
     const ManifestComponent& component = deployment.manifest.components[i];
     const std::string program = installation.programs + "/usher-" + component.type;
     if (::access(program.c_str(), X_OK) != 0) {
-      std::cerr << "usher: " << component.name << " was not asked: no program " << program << "\n";
+      not_asked += (not_asked.empty() ? "" : ", ") + component.name;
       continue;
     }
     const runtime::ParameterFile& file = deployment.files[i];
@@ -89,6 +90,9 @@ std::vector<Finding> judge_by_components(const Deployment& deployment,
                                     origin_of(status.error(), file, component)));
     }
   }
+  if (!not_asked.empty())
+    std::cerr << "usher: not asked what they refuse, since their programs are not in "
+              << installation.programs << ": " << not_asked << "\n";
   return findings;
 }
 

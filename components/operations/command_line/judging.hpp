@@ -10,8 +10,7 @@ namespace usher::operations {
 
 /// What the components themselves refuse of a deployment whose wiring and values are good, each
 /// asked by its own program (`usher-amcl --judge`): values that contradict one another, a file that
-/// cannot be used. A component whose program is not here is not judged, and is named on standard
-/// error.
+/// cannot be used. Those whose programs are not here are named on standard error.
 std::vector<Finding> judge_by_components(const Deployment& deployment,
                                          const Installation& installation);
 

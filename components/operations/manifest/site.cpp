@@ -1,7 +1,10 @@
 #include "operations/manifest/site.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "foundation/geometry/angle.hpp"
+#include "foundation/geometry/footprint.hpp"
 #include "foundation/grid/map_file.hpp"
 #include "operations/manifest/setting.hpp"
 #include "operations/manifest/tree.hpp"
@@ -35,6 +40,12 @@ std::string word(const Tree& record, const std::string& field) {
 std::string point(double x, double y) {
   char text[64];
   std::snprintf(text, sizeof text, "(%.2f, %.2f) m", x, y);
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
   return text;
 }
 
@@ -66,7 +77,7 @@ class SiteJudge {
   /// it.
   std::optional<Setting> fact(const std::string& name) const {
     for (std::size_t i = 0; i < deployment_.files.size(); ++i) {
-      auto given = setting(contracts_, deployment_, i, "site." + name);
+      auto given = setting(contracts_, deployment_, i, name);
       if (given && !given->origin.empty()) return given;
     }
     return std::nullopt;
@@ -90,7 +101,7 @@ class SiteJudge {
   }
 
   void judge_map() {
-    const auto file = fact("map");
+    const auto file = fact("site.map");
     std::error_code ignored;
     if (!file || !std::filesystem::is_regular_file(file->value.text, ignored))
       return;  // found before
@@ -99,30 +110,75 @@ class SiteJudge {
       found(Verdict::kUnreadable, "the map: " + map.error(), file->origin);
       return;
     }
-    const auto judge = [&](const std::string& what, double x, double y, const std::string& origin) {
-      const grid::GridGeometry& area = map->geometry();
-      if (area.contains(area.cell_at(x, y))) return;
-      found(Verdict::kWrongValue,
-            what + " at " + point(x, y) + " is outside the map, which reaches from " +
-                point(area.origin_x, area.origin_y) + " to " +
-                point(area.origin_x + area.width * area.resolution,
-                      area.origin_y + area.height * area.resolution),
-            origin);
-    };
-    if (const auto start = fact("initial_pose"); start && start->value.numbers.size() == 3)
-      judge("the start", start->value.numbers[0], start->value.numbers[1], start->origin);
-    const auto locations = fact("locations");
+    if (const auto start = fact("site.initial_pose"); start && start->value.numbers.size() == 3) {
+      const auto& pose = start->value.numbers;
+      judge_pose("the start", {pose[0], pose[1], pose[2]}, *map, start->origin);
+    }
+    const auto locations = fact("site.locations");
     const Tree* written = site_.find("locations");
     if (!locations || written == nullptr) return;
     for (std::size_t i = 0; i < locations->value.records.size(); ++i) {
       const auto& place = locations->value.records[i];
-      judge("'" + place.text("name") + "'", place.number("x"), place.number("y"),
-            written->items.at(i).origin);
+      judge_pose("'" + place.text("name") + "'",
+                 {place.number("x"), place.number("y"), place.number("yaw")}, *map,
+                 written->items.at(i).origin);
     }
   }
 
+  /// Where the robot shall stand: on the map, away from its walls, turned by radians.
+  void judge_pose(const std::string& what, const geometry::Pose2& pose,
+                  const grid::OccupancyGrid& map, const std::string& origin) {
+    const std::string there = what + " at " + point(pose.x, pose.y);
+    if (std::abs(pose.yaw) > 2.0 * geometry::kPi)
+      found(Verdict::kWrongValue,
+            there + " is turned by " + number(pose.yaw) + " rad, more than a full turn: degrees?",
+            origin);
+    const grid::GridGeometry& area = map.geometry();
+    if (!area.contains(area.cell_at(pose.x, pose.y))) {
+      found(Verdict::kWrongValue,
+            there + " is outside the map, which reaches from " +
+                point(area.origin_x, area.origin_y) + " to " +
+                point(area.origin_x + area.width * area.resolution,
+                      area.origin_y + area.height * area.resolution),
+            origin);
+      return;
+    }
+    // The map is as coarse as its cells, and so are the walls.
+    const double needs = inscribed_radius() - area.resolution;
+    double nearest = std::numeric_limits<double>::infinity();
+    const int reach = static_cast<int>(std::ceil(std::max(needs, 0.0) / area.resolution));
+    const grid::Cell middle = area.cell_at(pose.x, pose.y);
+    for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+      for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
+        const grid::Cell cell{x, y};
+        if (!area.contains(cell) || map.at(cell) != grid::kOccupied) continue;
+        const double away = (area.center(cell) - pose.position()).norm();
+        nearest = std::min(nearest, cell == middle ? 0.0 : away);
+      }
+    }
+    if (nearest == 0.0) {
+      found(Verdict::kWrongValue, there + " is in a wall of the map", origin);
+    } else if (nearest < needs) {
+      found(Verdict::kWrongValue,
+            there + " is " + number(nearest) + " m from a wall of the map, nearer than the robot " +
+                "can stand to one (" + number(inscribed_radius()) + " m)",
+            origin);
+    }
+  }
+
+  /// [m] of the robot's outline; zero where nobody asks for it, or it is none.
+  double inscribed_radius() const {
+    const auto corners = fact("robot.footprint");
+    if (!corners || corners->value.numbers.size() % 2 != 0) return 0.0;
+    std::vector<geometry::Point2> points;
+    for (std::size_t i = 0; i < corners->value.numbers.size(); i += 2)
+      points.emplace_back(corners->value.numbers[i], corners->value.numbers[i + 1]);
+    const auto outline = geometry::Footprint::make(points);
+    return outline ? outline->inscribed_radius() : 0.0;
+  }
+
   void judge_rooms() {
-    const auto rooms = fact("meeting_rooms");
+    const auto rooms = fact("site.meeting_rooms");
     const Tree* written = site_.find("meeting_rooms");
     if (!rooms || written == nullptr) return;
     for (std::size_t i = 0; i < rooms->value.records.size(); ++i) {

@@ -115,6 +115,7 @@ TEST(MapDescription, NamesFileAndLineOfWhatIsWrong) {
               HasSubstr("m.yaml:4: negate must be"));
   EXPECT_THAT(yaml_error(with("0.050000", "0")),
               HasSubstr("m.yaml:2: resolution must be a number in"));
+  EXPECT_THAT(yaml_error(with("0.050000", "5")), HasSubstr("in [0.0001, 1]"));
   EXPECT_THAT(yaml_error(with("0.050000", ".nan")), HasSubstr("m.yaml:2: resolution"));
   EXPECT_THAT(yaml_error(with("0.050000", "5 cm")), HasSubstr("got '5 cm'"));
   EXPECT_THAT(yaml_error(with("-7.80, 0.0", "-7.80")),
