@@ -11,7 +11,6 @@ namespace usher::kinematics {
 namespace {
 
 constexpr double kNear = 0.08;  // [m]
-constexpr int kEnough = 2;
 
 }  // namespace
 
@@ -26,7 +25,7 @@ WhiskerRods::WhiskerRods(const geometry::Footprint& outline, const WhiskerMount&
   reach_ = std::hypot(std::max(front_, back_), side_) + mount.length + kNear;
 }
 
-Whiskers WhiskerRods::at(std::span<const geometry::Point2> points) const {
+Whiskers WhiskerRods::at(std::span<const geometry::Point2> points, int least) const {
   std::array<int, 4> near{};  // front left, front right, back left, back right
   for (const geometry::Point2& point : points) {
     const bool behind = point.x() < 0.0, right = point.y() < 0.0;
@@ -36,7 +35,7 @@ Whiskers WhiskerRods::at(std::span<const geometry::Point2> points) const {
     if ((from_corner - along * rod_).norm() <= kNear)
       ++near[2 * static_cast<std::size_t>(behind) + static_cast<std::size_t>(right)];
   }
-  return {near[0] >= kEnough, near[1] >= kEnough, near[2] >= kEnough, near[3] >= kEnough};
+  return {near[0] >= least, near[1] >= least, near[2] >= least, near[3] >= least};
 }
 
 }  // namespace usher::kinematics

@@ -16,7 +16,8 @@ struct WhiskerMount {
 };
 
 /// The four whiskers as they are while nothing bends them: straight rods from the corners of the
-/// outline. Tells whether a touch may be that of something that is known anyway.
+/// rectangle around the outline. Tells whether a touch may be that of something that is known
+/// anyway.
 class WhiskerRods {
  public:
   WhiskerRods(const geometry::Footprint& outline, const WhiskerMount& mount);
@@ -24,16 +25,19 @@ class WhiskerRods {
   /// [m] from the axle's middle: what is farther away is at no whisker.
   double reach() const { return reach_; }
 
-  /// Which whiskers lie at two or more of these points in base_footprint, within 8 cm: a cell, and
-  /// the error of pose and laser. One alone may be noise, or what the touch itself has left in the
-  /// local costs.
-  Whiskers at(std::span<const geometry::Point2> points) const;
+  /// Which whiskers lie at `least` or more of these points in base_footprint, within 8 cm: a cell,
+  /// and the error of pose and laser. Less may be noise.
+  Whiskers at(std::span<const geometry::Point2> points, int least) const;
 
  private:
   double front_ = 0.0, back_ = 0.0, side_ = 0.0;  // [m] of the corners
   geometry::Point2 rod_;                          // [m] from a corner to the tip, ahead and outward
   double reach_ = 0.0;
 };
+
+inline bool any(const Whiskers& t) {
+  return t.front_left || t.front_right || t.back_left || t.back_right;
+}
 
 /// What of the touches is not among the known ones.
 inline Whiskers without(const Whiskers& touches, const Whiskers& known) {

@@ -66,8 +66,8 @@ std::string goal_line(const usher_msgs::msg::NavigateStatus& status) {
                                  : status.location()) +
       " of " + status.client();
   if (failed)
-    return line + " failed" + (status.remaining() > 0 ? " with " + left : "") + ": " +
-           status.reason();
+    return line + " failed" + (status.remaining() > 0 ? " with " + left : "") +
+           (status.reason().empty() ? "" : ": " + status.reason());
   line += ": " + format("%.0f %%", 100.0 * status.progress()) + ", " + left;
   if (std::isfinite(status.eta())) line += ", " + format("%.0f s", status.eta());
   if (const auto n = status.recoveries(); n > 0)

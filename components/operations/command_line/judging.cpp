@@ -4,8 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <string>
 
@@ -41,21 +41,45 @@ class PassedFile {
   bool whole_ = false;
 };
 
-/// The program's refusal is an error; its last line, without its name before it.
+/// What the program refuses is an error: its last line, without its name before it.
 Status ask(const std::string& program, const runtime::ParameterFile& parameters) {
+  constexpr int kRefuses = 2, kTooSlow = 124;
+  constexpr std::size_t kMostWords = 1U << 16U;
   const PassedFile file(to_yaml(parameters));
-  const std::string line = quoted(program) + " --judge --parameters " + file.path() + " 2>&1";
+  const std::string line =
+      "timeout 20 " + quoted(program) + " --judge --parameters " + file.path() + " 2>&1";
   std::FILE* said = file.whole() ? ::popen(line.c_str(), "r") : nullptr;
-  if (said == nullptr) return Error{"its program could not be asked"};
+  if (said == nullptr) return Error{"its program could not be started"};
   std::string words;
-  for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said))
-    words.push_back(static_cast<char>(c));
+  for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said)) {
+    if (words.size() < kMostWords) words.push_back(static_cast<char>(c));
+  }
   const int status = ::pclose(said);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   while (words.ends_with('\n')) words.pop_back();
   words.erase(0, words.rfind('\n') + 1);
   const std::string name = parameters.name + ": ";
-  return Error{words.starts_with(name) ? words.substr(name.size()) : words};
+  if (words.starts_with(name)) words.erase(0, name.size());
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == kRefuses) return Error{words};
+  if (code == kTooSlow) return Error{"its program gave no answer within 20 s"};
+  return Error{"its program ended with " + std::to_string(code) +
+               " instead of an answer: " + words};
+}
+
+bool is_part_of_a_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Whether a text has this name, and not as a part of a longer one.
+bool names(const std::string& text, const std::string& name) {
+  for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const auto end = at + name.size();
+    if ((at == 0 || !is_part_of_a_name(text[at - 1])) &&
+        (end == text.size() || !is_part_of_a_name(text[end])))
+      return true;
+  }
+  return false;
 }
 
 /// Where the value that the refusal names was set; where the component is declared if it names
@@ -65,7 +89,7 @@ const std::string& origin_of(const std::string& refusal, const runtime::Paramete
   const runtime::ParameterValue* named = nullptr;
   for (const auto& value : file.values) {
     const bool longer = named == nullptr || value.name.size() > named->name.size();
-    if (longer && refusal.find(value.name) != std::string::npos) named = &value;
+    if (longer && names(refusal, value.name)) named = &value;
   }
   return named == nullptr || named->origin.empty() ? component.origin : named->origin;
 }

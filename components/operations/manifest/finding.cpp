@@ -1,5 +1,8 @@
 #include "operations/manifest/finding.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 namespace usher::operations {
 
 std::string to_string(Verdict verdict) {
@@ -54,7 +57,11 @@ Finding finding_of(Verdict verdict, const std::string& error, const std::string&
     depth += error[open] == ')' ? 1 : error[open] == '(' ? -1 : 0;
   }
   if (open == 0 || error[open - 1] != ' ') return {verdict, error, origin};
-  return {verdict, error.substr(0, open - 1), error.substr(open + 1, error.size() - open - 2)};
+  const std::string place = error.substr(open + 1, error.size() - open - 2);
+  const bool has_name = std::ranges::any_of(
+      place, [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; });
+  if (!has_name) return {verdict, error, origin};  // "(0.3, 0.1)" belongs to the error
+  return {verdict, error.substr(0, open - 1), place};
 }
 
 std::string to_string(const Finding& finding) {

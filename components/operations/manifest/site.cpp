@@ -143,11 +143,17 @@ class SiteJudge {
             origin);
       return;
     }
+    const grid::Cell middle = area.cell_at(pose.x, pose.y);
+    if (map.at(middle) == grid::kUnknown) {
+      found(Verdict::kWrongValue, there + " is where the map knows nothing", origin);
+      return;
+    }
     // The map is as coarse as its cells, and so are the walls.
     const double needs = inscribed_radius() - area.resolution;
     double nearest = std::numeric_limits<double>::infinity();
-    const int reach = static_cast<int>(std::ceil(std::max(needs, 0.0) / area.resolution));
-    const grid::Cell middle = area.cell_at(pose.x, pose.y);
+    constexpr double kMostCells = 500.0;
+    const int reach =
+        static_cast<int>(std::min(kMostCells, std::ceil(std::max(needs, 0.0) / area.resolution)));
     for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
       for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
         const grid::Cell cell{x, y};

@@ -1,5 +1,7 @@
 #include "runtime/dds/signed_presence.hpp"
 
+#include <algorithm>
+
 namespace usher::runtime {
 
 bool SignedPresence::hears(const Prefix& from, Duration now) {
@@ -8,18 +10,21 @@ bool SignedPresence::hears(const Prefix& from, Duration now) {
   if (found == peers_.end()) {
     if (peers_.size() >= kMostPeers) {
       std::erase_if(peers_, [&](const auto& peer) {
-        return now - peer.second.last > kMeeting + kForgetting;
+        return now - peer.second.last > kLongestMeeting + kForgetting;
       });
       if (peers_.size() >= kMostPeers) return true;
     }
     found = peers_.emplace(from, Peer{.since = now}).first;
   }
   Peer& peer = found->second;
+  // Fast DDS has forgotten who was silent for so long.
+  if (now - peer.last > kForgetting && !peer.ignored) peer = {.since = now};
   peer.last = now;
   if (peer.ignored) {
     if (now - peer.since < kForgetting) return false;
-    peer = {.since = now, .last = now};
-  } else if (now - peer.since > (peer.met ? kSilence : kMeeting)) {
+    peer = {.since = now, .last = now, .meeting = peer.meeting};
+  } else if (now - peer.since > (peer.met ? kSilence : peer.meeting)) {
+    if (!peer.met) peer.meeting = std::min(2 * peer.meeting, kLongestMeeting);
     peer.since = now;
     peer.ignored = true;
     return false;

@@ -217,25 +217,36 @@ double MovementControl::slowed(double cut, double before, const Inputs& inputs) 
   return measured * before > 0.0 && slowest > std::abs(cut) ? std::copysign(slowest, before) : cut;
 }
 
-/// A standing base turns in place, and every touch that bars the turn is where something was seen
-/// or is known anyway: the guard has looked at that, with the outline's own corners. No scan has to
-/// tell what is ahead: a laser before a wall across a corridor is too near to measure it.
-bool MovementControl::turns_beside_what_is_known(const geometry::Twist2& ramped,
+/// A standing base turns in place, and every touch that bars the turn is where the laser has seen
+/// something: the guard has looked at that, with the outline's own corners. The costs explain no
+/// touch: its own mark is in them. No scan has to tell what is ahead: a laser before a wall across
+/// a corridor is too near to measure it.
+bool MovementControl::turns_beside_what_was_seen(const geometry::Twist2& ramped,
                                                  const Inputs& inputs) const {
   const bool stands =
       inputs.measured && std::abs(inputs.measured->v) < kinematics::RollOut::kStanding;
   if (!parameters_.guarded || !inputs.whiskers || !stands || ramped.v != 0.0) return false;
-  if (!kinematics::bars_turn(*inputs.whiskers, ramped.w)) return false;
-  const Whiskers unseen =
-      kinematics::without(*inputs.whiskers, rods_.at(Guard::seen(inputs.view).points));
-  const Whiskers unknown = kinematics::without(unseen, rods_.at(inputs.view.cells));
-  return !kinematics::bars_turn(unknown, ramped.w);
+  constexpr int kPoints = 2;
+  const Whiskers seen = rods_.at(Guard::seen(inputs.view).points, kPoints);
+  return !kinematics::bars_turn(kinematics::without(*inputs.whiskers, seen), ramped.w);
+}
+
+/// A base that turns by less than half of what it was told, for a second, presses a corner against
+/// something that was not seen.
+bool MovementControl::presses(const geometry::Twist2& measured, Time now) {
+  constexpr auto kPatience = std::chrono::seconds(1);
+  if (!turned_at_ || std::abs(measured.w) >= 0.5 * std::abs(last_.w)) turned_at_ = now;
+  pressed_ = pressed_ || now - *turned_at_ >= kPatience;
+  return pressed_;
 }
 
 /// While it rolls it keeps its arc where straight on it would meet something before it stands.
-geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped,
-                                         const Inputs& inputs) const {
-  if (turns_beside_what_is_known(ramped, inputs)) {
+geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped, const Inputs& inputs,
+                                         Time now) {
+  if (!kinematics::bars_turn(inputs.whiskers.value_or(Whiskers{}), ramped.w)) {
+    turned_at_.reset();
+    pressed_ = false;
+  } else if (turns_beside_what_was_seen(ramped, inputs) && !presses(*inputs.measured, now)) {
     const double most =
         0.5 * parameters_.touched / parameters_.guard.outline.circumscribed_radius();
     return {0.0, std::clamp(ramped.w, -most, most)};
@@ -359,7 +370,7 @@ void MovementControl::drive(const Wish& wish, const Inputs& inputs, Time now, Bo
   guard(ramped);
   if (guards(wish.source)) ramped.w = turn_while_rolling(ramped, inputs, now);
   if (!guards(wish.source) && !rolls_out) kept_arc_.drive(ramped, now);
-  decision.twist = reflex(ramped, inputs);
+  decision.twist = reflex(ramped, inputs, now);
   if (decision.twist != ramped) decision.limit = Limit::kWhisker;
   // What was cut short speeds up anew.
   if (decision.twist.v != uncut.v) acceleration_.v = 0.0;
@@ -377,7 +388,7 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
   } else {
     acceleration_ = {};
     const geometry::Twist2 rolls = roll_out_.stop(inputs.measured, now);
-    decision.twist = reflex(inputs.motors_off ? geometry::Twist2{} : rolls, inputs);
+    decision.twist = reflex(inputs.motors_off ? geometry::Twist2{} : rolls, inputs, now);
   }
 
   last_ = decision.twist;

@@ -171,8 +171,6 @@ class MovementControl {
   std::uint64_t held_back() const { return held_back_; }
 
   const Guard& guard() const { return guard_; }
-  /// [m] from the axle's middle: so far lethal cells may explain a touch.
-  double whisker_reach() const { return rods_.reach(); }
 
  private:
   struct Wish {
@@ -206,13 +204,16 @@ class MovementControl {
   Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
   void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);
   double slowed(double cut, double before, const Inputs& inputs) const;
-  bool turns_beside_what_is_known(const geometry::Twist2& ramped, const Inputs& inputs) const;
-  geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs) const;
+  bool turns_beside_what_was_seen(const geometry::Twist2& ramped, const Inputs& inputs) const;
+  bool presses(const geometry::Twist2& measured, Time now);
+  geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 
   Parameters parameters_;
   Guard guard_;
   kinematics::WhiskerRods rods_;
+  std::optional<Time> turned_at_;  ///< last, as it was told, beside what it touches
+  bool pressed_ = false;           ///< until the touch ends
   drive::ResponseWatch watch_;
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower

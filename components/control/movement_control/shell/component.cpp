@@ -247,10 +247,10 @@ std::span<const geometry::Point2> MovementControlComponent::cells(double reach) 
                         reach);
 }
 
-/// What counts for a robot that shall be, or is, so fast, and no nearer than `least` [m].
-Guard::View MovementControlComponent::view(double speed, double least) {
+/// What counts for a robot that shall be, or is, so fast.
+Guard::View MovementControlComponent::view(double speed) {
   return {surroundings_.points(), sees(), surroundings_.guessed(),
-          cells(std::max(core_.guard().reach(speed), least))};
+          cells(core_.guard().reach(speed))};
 }
 
 Inputs MovementControlComponent::gather() {
@@ -280,11 +280,7 @@ Inputs MovementControlComponent::gather() {
   double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot
   for (const auto& twist : {inputs.manual, inputs.interaction, inputs.navigation, inputs.measured})
     fastest = std::max(fastest, twist ? std::abs(twist->v) : 0.0);
-  const Whiskers touches = inputs.whiskers.value_or(Whiskers{});
-  const bool touched =
-      touches.front_left || touches.front_right || touches.back_left || touches.back_right;
-  inputs.view =
-      view(std::min(fastest, parameters_.open.linear), touched ? core_.whisker_reach() : 0.0);
+  inputs.view = view(std::min(fastest, parameters_.open.linear));
   return inputs;
 }
 

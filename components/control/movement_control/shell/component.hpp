@@ -26,7 +26,7 @@ class MovementControlComponent final : public runtime::Component {
       const RightfulInput<geometry_msgs::msg::TwistStamped>& source);
   std::optional<geometry::Twist2> measured() const;
   bool sees() const;
-  Guard::View view(double speed, double least = 0.0);
+  Guard::View view(double speed);
   std::span<const geometry::Point2> cells(double reach);
   Inputs gather();
   std::optional<bool> person_ahead() const;

@@ -12,8 +12,9 @@
 namespace usher::movement_control {
 
 /// A topic that moves the robot, heard from those only who hold the right to write it by the
-/// manifest: of a name the first one, until discovery sees that it has left. Whoever else writes is
-/// counted. Without a manifest (tests) everybody may.
+/// manifest: of a name the first one, until discovery sees that it has left, and then nobody who
+/// claimed the name beside it. Whoever else writes is counted. Without a manifest (tests) everybody
+/// may.
 template <class Message>
 class RightfulInput {
  public:
@@ -27,6 +28,7 @@ class RightfulInput {
         foreign_(host.health().counter(std::string(topic.name) + ": foreign writer")),
         on_sample_(std::move(on_sample)),
         input_(host.input(topic, options, [this](const auto&, const auto& info) {
+          right_.alive(info.writer, host_.now().time_since_epoch());
           if (!may_write(info.writer)) {
             ++foreign_;
           } else if (on_sample_) {

@@ -188,6 +188,26 @@ TEST_F(Component, HearsASecondOneOfANameOnlyWhenTheFirstHasLeft) {
   EXPECT_GT(commanded(), 0.1);
 }
 
+TEST_F(Component, NeverHearsWhoClaimedANameBesideItsHolder) {
+  silent = {"cmd_vel/navigation"};
+  wanted_by_hand = {0.0, 0.0};
+  run(400);
+  const auto liar = [&](int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      geometry_msgs::msg::TwistStamped wanted;
+      wanted.header(wire::header(host.now(), "base_footprint"));
+      wanted.twist().linear().x(0.4);
+      host.world().publish(topics::kCmdVelManual, wanted, "manual_control", "elsewhere");
+      run(20);
+    }
+  };
+  liar(400);
+  wanted_by_hand.reset();
+  host.world().leave("manual_control");
+  liar(2000);
+  EXPECT_EQ(commanded(), 0.0);
+}
+
 TEST_F(Component, DrivesWhatIsWantedUnderTheEpochOfTheEnable) {
   run(3000);
   EXPECT_NEAR(commanded(), 1.0, 1e-6);

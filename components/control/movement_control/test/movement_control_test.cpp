@@ -506,21 +506,28 @@ class InACorridor : public Guarded {
       points.push_back(inverse(geometry::Pose2{0.0, 0.0, 1.05}) * geometry::Point2(0.05 * i, y));
     return points;
   }
-  double turn() const { return settled(inputs, parameters).twist.w; }
+  /// What a base that follows is told in the end, or one that is held.
+  double turn(bool is_held = false) {
+    MovementControl control(parameters);
+    const Twist2 rolls = inputs.measured.value_or(Twist2{});
+    Decision decision;
+    for (int i = 0; i < 250; ++i) {
+      decision = control.decide(inputs, milliseconds(20 * i));
+      inputs.measured = Twist2{rolls.v, is_held ? 0.0 : decision.twist.w};
+    }
+    inputs.measured = rolls;
+    limit = decision.limit;
+    return decision.twist.w;
+  }
 
   std::vector<geometry::Point2> left, right, both;
+  Limit limit{};
   const double creeping = 0.05 / std::hypot(0.305, 0.33);  ///< [rad/s] of the corners' 0.05 m/s
 };
 
-TEST_F(InACorridor, TurnsOnCreepingWhereItSeesOrKnowsWhatItTouches) {
+TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheLaserSaw) {
   EXPECT_NEAR(turn(), creeping, 1e-9);
-  EXPECT_EQ(settled(inputs, parameters).limit, Limit::kWhisker);
-  inputs.view.points = {};
-  inputs.view.cells = both;
-  EXPECT_NEAR(turn(), creeping, 1e-9) << "the costs know";
-  inputs.view.points = left;
-  inputs.view.cells = right;
-  EXPECT_NEAR(turn(), creeping, 1e-9) << "the one sees, the other knows";
+  EXPECT_EQ(limit, Limit::kWhisker);
   inputs.view.sees = false;
   EXPECT_NEAR(turn(), creeping, 1e-9) << "the laser is too near to measure what was seen";
   inputs.view.sees = true;
@@ -531,20 +538,43 @@ TEST_F(InACorridor, TurnsOnCreepingWhereItSeesOrKnowsWhatItTouches) {
   EXPECT_NEAR(turn(), 0.05, 1e-9) << "slower, if that is meant";
 }
 
-TEST_F(InACorridor, TurnsIntoNothingThatOnlyAWhiskerFeels) {
+TEST_F(InACorridor, TurnsIntoNothingThatTheLaserHasNotSeen) {
   inputs.view.points = left;
   EXPECT_EQ(turn(), 0.0) << "what is at the back right corner?";
+  inputs.view.cells = both;
+  EXPECT_EQ(turn(), 0.0) << "the costs have the touch's own mark";
   inputs.view.points = right;
-  EXPECT_EQ(turn(), 0.0) << "and here?";
+  EXPECT_EQ(turn(), 0.0) << "and at the front left one?";
   inputs.view.points = both;
   inputs.view.guessed = right.size();
   EXPECT_EQ(turn(), 0.0) << "nobody has seen the wall on the right";
   inputs.view.guessed = 0;
-  inputs.view = {};
-  EXPECT_EQ(turn(), 0.0) << "a scan that has ended, and no costs";
+  inputs.view.points = {};
+  EXPECT_EQ(turn(), 0.0) << "no scan any more";
   inputs.view.points = both;
   parameters.guarded = false;
   EXPECT_EQ(turn(), 0.0) << "nothing looks at the outline";
+}
+
+TEST_F(InACorridor, ATurnThatIsHeldEndsUntilTheTouchDoes) {
+  EXPECT_EQ(turn(true), 0.0) << "something unseen before the wall";
+  MovementControl control(parameters);
+  Time now{};
+  const auto told = [&](double measured, int turns) {
+    Decision decision;
+    for (int i = 0; i < turns; ++i) {
+      inputs.measured = Twist2{0.0, measured};
+      decision = control.decide(inputs, now += milliseconds(20));
+    }
+    return decision.twist.w;
+  };
+  EXPECT_GT(told(0.0, 40), 0.0) << "it may take a while to begin";
+  EXPECT_EQ(told(0.0, 60), 0.0);
+  EXPECT_EQ(told(0.1, 100), 0.0) << "whatever it does then";
+  const auto touches = std::exchange(inputs.whiskers, Whiskers{});
+  told(0.1, 1);
+  inputs.whiskers = touches;
+  EXPECT_GT(told(0.1, 10), 0.0);
 }
 
 TEST_F(InACorridor, ATouchOfWhatIsKnownBarsTheWayThereAsAnyOther) {
@@ -853,20 +883,26 @@ TEST(MovementControl, CountsNonsense) {
 }
 
 // Whatever comes in: what goes out is finite, within the limit in force plus what slowing down
-// still needs, never against a whisker, and zero without an enabled source.
+// still needs, never against a whisker (but creeping in place beside what the laser saw), and zero
+// without an enabled source.
 TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
   Random random(3);
   const auto chance = [&random](std::uint64_t n) { return random.below(n) == 0; };
+  bool in_place = false;
   const auto twist = [&]() -> std::optional<Twist2> {
     if (chance(3)) return std::nullopt;
     if (chance(30)) return Twist2{kNan, 1.0};
-    return Twist2{random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
+    return Twist2{in_place ? 0.0 : random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
   };
+  int beside_what_was_seen = 0;
   for (int run = 0; run < 200; ++run) {
+    in_place = run % 8 == 7;
     Parameters parameters = run % 2 == 0 ? Parameters{} : with_jerk();
     parameters.guarded = run % 4 >= 2;
     MovementControl control(parameters);
     const kinematics::WhiskerRods rods(parameters.guard.outline, parameters.whiskers);
+    const double slowest =
+        0.5 * parameters.touched / parameters.guard.outline.circumscribed_radius();
     std::vector<geometry::Point2> things;
     Time now{};
     double last = 0.0;
@@ -884,6 +920,9 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
       things.clear();
       for (auto n = random.below(4); n > 0; --n)
         things.emplace_back(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+      if (chance(2)) {  // a wall along the whiskers of the left side
+        for (int k = -10; k <= 10; ++k) things.emplace_back(0.07 * k, 0.4);
+      }
       inputs.view = {.points = things, .sees = !chance(5), .guessed = 0, .cells = things};
       now += milliseconds(random.below(50));
       const Decision decision = control.decide(inputs, now);
@@ -899,14 +938,23 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
         ASSERT_EQ(out, Twist2{});
       }
       if (inputs.whiskers) {
-        // But a turn in place that creeps beside what is seen or known.
-        const Whiskers unseen = kinematics::without(*inputs.whiskers, rods.at(inputs.view.points));
-        const Whiskers& against = out.v == 0.0 ? unseen : *inputs.whiskers;
-        ASSERT_EQ(kinematics::whisker_reflex(out, against, Parameters{}.touched), out);
+        const bool against =
+            kinematics::whisker_reflex(out, *inputs.whiskers, Parameters{}.touched) != out;
+        if (against) {
+          ++beside_what_was_seen;
+          const Whiskers unseen =
+              kinematics::without(*inputs.whiskers, rods.at(inputs.view.points, 2));
+          ASSERT_EQ(kinematics::whisker_reflex(out, unseen, Parameters{}.touched), out);
+          ASSERT_TRUE(parameters.guarded && inputs.measured);
+          ASSERT_LT(std::abs(inputs.measured->v), kinematics::RollOut::kStanding);
+          ASSERT_EQ(out.v, 0.0);
+          ASSERT_LE(std::abs(out.w), slowest + 1e-12);
+        }
       }
       last = out.v;
     }
   }
+  EXPECT_GT(beside_what_was_seen, 50);
 }
 
 }  // namespace

@@ -106,10 +106,10 @@ void Supervisor::base(const BaseReport& report, Time now) {
   take_epoch(report);
 }
 
-bool Supervisor::speaks_for_base(const WriterId& writer) const {
-  return std::ranges::none_of(watched_, [&](const Watched& watched) {
-    return watched.topic == parameters_.base_topic && !watched.right.holds(writer);
-  });
+bool Supervisor::believes(const BaseReport& report) const {
+  const auto base = std::ranges::find(watched_, parameters_.base_topic, &Watched::topic);
+  return base != watched_.end() ? report.epoch < kHighestEpoch && base->right.holds(report.writer)
+                                : report.epoch - epoch_ <= drive::kLongestLeap;
 }
 
 /// Another supervisor's epochs, or ours of before the memory was lost: continue above them. Not
@@ -117,7 +117,7 @@ bool Supervisor::speaks_for_base(const WriterId& writer) const {
 /// no grant, and would be deaf for ever.
 void Supervisor::take_epoch(const BaseReport& report) {
   if (report.epoch <= epoch_) return;
-  if (report.epoch >= kHighestEpoch || !speaks_for_base(report.writer)) {
+  if (!believes(report)) {
     ++rejected_reports_;
     return;
   }

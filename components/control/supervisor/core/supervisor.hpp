@@ -44,7 +44,8 @@ struct Parameters {
   /// The first one is drive/command, whose writer gets the right to drive.
   std::vector<WatchedTopic> topics{{"drive/command", {"movement_control"}}};
   /// Of `topics`, on which the base tells of itself. Its epoch is believed of nobody who does not
-  /// hold the right to write that; where it is not watched (tests), of everybody.
+  /// hold the right to write that; where that is not watched, since no component of the manifest
+  /// writes it, of everybody, as far as a base would follow.
   std::string base_topic;
   std::uint64_t idl_digest = 0;  ///< of the supervisor's own build
   Names names;
@@ -246,8 +247,8 @@ class Supervisor {
   void movement_on(const std::string& client);
   bool is_operator(const std::string& client) const;
   Watched* watched(std::string_view topic);
-  /// Whether the base's own driver writes so, and nobody else.
-  bool speaks_for_base(const WriterId& writer) const;
+  /// Whether the base can have heard an epoch that is higher than ours.
+  bool believes(const BaseReport& report) const;
   void take_epoch(const BaseReport& report);
   /// Who may drive, if anybody.
   std::optional<WriterId> holder() const { return watched_.front().right.holder(); }

@@ -215,6 +215,18 @@ bool hears(const Robot& robot) {
   return base.highest_epoch() == robot.supervisor.decision().grant.epoch;
 }
 
+TEST(Supervisor, WhereNobodyWatchesTheBasesEpochIsBelievedAsFarAsABaseFollows) {
+  Robot robot(parameters());
+  robot.appear();
+  robot.run(400);
+  robot.base.epoch = drive::kLongestLeap + 2;
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, 1U);
+  robot.base.epoch = drive::kLongestLeap + 1;
+  robot.run(400);
+  EXPECT_EQ(robot.supervisor.decision().grant.epoch, drive::kLongestLeap + 2);
+}
+
 TEST(Supervisor, BelievesAnEpochOfNobodyButTheBase) {
   constexpr WriterId kBase{3};
   constexpr const char* kStatus = "base/status";

@@ -335,7 +335,7 @@ TEST(WhiskerRods, LieAtWhatCrossesThemTwice) {
   const Point2 middle(0.305 + 0.2 * std::cos(geometry::radians(20.0)),
                       0.33 + 0.2 * std::sin(geometry::radians(20.0)));
   const auto at = [&](const std::vector<Point2>& points) {
-    const Whiskers is = rods.at(points);
+    const Whiskers is = rods.at(points, 2);
     return std::vector<bool>{is.front_left, is.front_right, is.back_left, is.back_right};
   };
   const std::vector<bool> none(4, false);

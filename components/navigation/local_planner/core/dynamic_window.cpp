@@ -189,17 +189,19 @@ void DynamicWindow::stand_in_the_way(const Input& input) {
   }
 }
 
-/// What the whiskers touch beside what is lethal where they are.
+/// What the whiskers touch beside what is lethal where they are: more than the marks of touches,
+/// which are 0.2 m apart, two to a whisker.
 void DynamicWindow::explain_touches(const Input& input) {
+  constexpr int kCells = 3;
   unexplained_ = touches_;
-  const kinematics::Whiskers& t = touches_;
-  if (!t.front_left && !t.front_right && !t.back_left && !t.back_right) return;
+  if (!any(touches_)) return;
   at_whiskers_.clear();
+  const Pose2 base_T_costs = inverse(input.pose);
   visit_cells(input.costs.geometry(), input.pose.position(), rods_.reach(), [&](grid::Cell cell) {
     if (input.costs.at(cell) == grid::kLethalCost)
-      at_whiskers_.push_back(inverse(input.pose) * input.costs.geometry().center(cell));
+      at_whiskers_.push_back(base_T_costs * input.costs.geometry().center(cell));
   });
-  unexplained_ = kinematics::without(touches_, rods_.at(at_whiskers_));
+  unexplained_ = kinematics::without(touches_, rods_.at(at_whiskers_, kCells));
 }
 
 /// Frees the cells of everybody; false: there is nobody.
@@ -375,8 +377,8 @@ double DynamicWindow::creeping_turn(const Input& input) const {
 }
 
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
-/// Touching what the costs know, corners creep as movement_control lets them, and only with half of
-/// the clearance; farther on that may be a touch's own mark.
+/// Touching what the costs know, corners creep, and only with half of the clearance; farther on
+/// that may be a touch's own mark. movement_control, which the costs convince of nothing, decides.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
   if (kinematics::bars_turn(unexplained_, angle)) return 0.0;
   const bool touching = kinematics::bars_turn(touches_, angle);
@@ -404,13 +406,17 @@ double DynamicWindow::turn_rate(const Input& input, double angle) const {
 /// rest: it would wedge itself in.
 std::optional<Decision> DynamicWindow::turn_a_little(const Input& input, double angle) {
   const double sense = angle > 0.0 ? 1.0 : -1.0;
-  double free = 0.0;
-  while (free + kSweep < std::abs(angle) && turn_rate(input, sense * (free + kSweep)) > 0.0)
+  double free = 0.0, fastest = creeping_turn(input);
+  while (free + kSweep < std::abs(angle)) {
+    const double rate = turn_rate(input, sense * (free + kSweep));
+    if (rate == 0.0) break;
+    fastest = std::min(fastest, rate);
     free += kSweep;
+  }
   if (free < 2.0 * kSweep || std::abs(angle) - free > kAligned + kSweep) return std::nullopt;
   Decision decision;
   decision.reason = Reason::kTurning;
-  decision.target = {0.0, sense * creeping_turn(input)};
+  decision.target = {0.0, sense * fastest};
   decision.command = ramped(input, decision.target, config_.braking);
   return decision;
 }

@@ -597,8 +597,8 @@ TEST(Turning, TakesATouchedCornerOutOfTheWayFirst) {
 }
 
 /// Turned by 1.05 rad between walls so far to its left and right, the path behind it, the corners
-/// that these touch touched.
-Decision turns_between_walls(double left, double right, double mark = 0.0) {
+/// that these touch touched; `marks` of touches at the front left whisker.
+Decision turns_between_walls(double left, double right, int marks = 0) {
   DynamicWindowConfig config;
   config.footprint = marvin();
   config.tight_speed = 0.1;
@@ -611,9 +611,9 @@ Decision turns_between_walls(double left, double right, double mark = 0.0) {
   world.finish(0.305);
   Costs costs = world.costs();
   const Pose2 pose{0, 0, 1.05};
-  if (mark > 0.0) {  // what a touch leaves in the costs
-    const Point2 ahead = pose * Point2(0.305 + mark, 0.33);
-    costs.at(costs.geometry().cell_at(ahead)) = grid::kLethalCost;
+  for (int i = 0; i < marks; ++i) {
+    const Point2 mark = pose * Point2(0.305 + 0.1 + 0.2 * i, 0.33);
+    costs.at(costs.geometry().cell_at(mark)) = grid::kLethalCost;
   }
   return planner.decide(costs, pose, {}, {}, 0.05);
 }
@@ -625,7 +625,7 @@ TEST(Turning, GoesOnCreepingBesideWallsThatItKnowsAndTouches) {
   EXPECT_EQ(turns.target.v, 0.0);
   EXPECT_NEAR(turns.target.w, creeping, 1e-9);
   EXPECT_LE(turns_between_walls(2.0, 0.7).target.w, 0.0) << "what is at the front left corner?";
-  EXPECT_LE(turns_between_walls(2.0, 0.7, 0.1).target.w, 0.0) << "its own mark explains no touch";
+  EXPECT_LE(turns_between_walls(2.0, 0.7, 2).target.w, 0.0) << "its own marks explain no touch";
   EXPECT_LE(turns_between_walls(0.7, 2.0).target.w, 0.0) << "and at the back right one?";
   EXPECT_LE(turns_between_walls(0.47, 0.7).target.w, 0.0) << "half of the clearance is kept";
 }

@@ -36,7 +36,7 @@ class Site : public testing::Test {
     start.fallback = "[0, 0, 0]";
     auto anywhere = fact("start_globally", ParameterKind::kFlag);
     anywhere.fallback = "false";
-    const auto locations = fact("site.locations", ParameterKind::kRecords, {"x", "y"});
+    const auto locations = fact("site.locations", ParameterKind::kRecords, {"x", "y", "yaw"});
     const auto rooms =
         fact("site.meeting_rooms", ParameterKind::kRecords, {"west", "south", "east", "north"});
     add("map_server", {fact("site.map", ParameterKind::kFile)});
@@ -87,12 +87,13 @@ constexpr const char* kFacts = "map: map.yaml\ninitial_pose: [0, 1, 0]\n";
 
 TEST_F(Site, IsGoodWithWhatItsComponentsNeed) {
   EXPECT_THAT(
-      findings(std::string(kFacts) + "locations:\n  - {name: kitchen, x: 2.9, y: 1.9}\n", kGuide),
+      findings(std::string(kFacts) + "locations:\n  - {name: kitchen, x: 2.9, y: 1.9, yaw: 0}\n",
+               kGuide),
       IsEmpty());
 }
 
 TEST_F(Site, MissesWhatAComponentNeeds) {
-  EXPECT_THAT(findings("locations:\n  - {name: kitchen, x: 1, y: 1}\n", kGuide),
+  EXPECT_THAT(findings("locations:\n  - {name: kitchen, x: 1, y: 1, yaw: 0}\n", kGuide),
               ElementsAre("config/sites/s/site.yaml:1: missing value: 'map_server' needs 'map' of "
                           "the site",
                           "config/sites/s/site.yaml:1: missing value: 'amcl' needs 'initial_pose' "
@@ -127,9 +128,10 @@ TEST_F(Site, HasAMapThatCanBeRead) {
 
 TEST_F(Site, LiesOnItsMap) {
   EXPECT_THAT(
-      findings("map: map.yaml\ninitial_pose: [-1.5, 1, 0]\nlocations:\n"
-               "  - {name: kitchen, x: -0.9, y: 0.1}\n  - {name: lab, x: 1, y: 2.1}\n",
-               kGuide),
+      findings(
+          "map: map.yaml\ninitial_pose: [-1.5, 1, 0]\nlocations:\n"
+          "  - {name: kitchen, x: -0.9, y: 0.1, yaw: 0}\n  - {name: lab, x: 1, y: 2.1, yaw: 0}\n",
+          kGuide),
       ElementsAre(
           "config/sites/s/site.yaml:2: wrong value: the start at (-1.50, 1.00) m is outside "
           "the map, which reaches from (-1.00, 0.00) m to (3.00, 2.00) m",
@@ -137,8 +139,25 @@ TEST_F(Site, LiesOnItsMap) {
           "map, which reaches from (-1.00, 0.00) m to (3.00, 2.00) m"));
 }
 
+TEST_F(Site, HasRoomForTheRobotWhereItShallStand) {
+  auto outline = fact("robot.footprint", ParameterKind::kNumbers);
+  outline.fallback = "[1.2, 1.2, -1.2, 1.2, -1.2, -1.2, 1.2, -1.2]";
+  outline.count_min = outline.count_max = 8;
+  add("amcl", {fact("site.initial_pose", ParameterKind::kNumbers), outline});
+  folder_.file("config/sites/s/map.pgm", "P2\n4 2\n255\n0 255 255 205\n255 255 255 255\n");
+  EXPECT_THAT(
+      findings("map: map.yaml\ninitial_pose: [-0.5, 1.5, 90]\nlocations:\n"
+               "  - {name: free, x: 0.5, y: 0.5, yaw: 0}\n"
+               "  - {name: unknown, x: 2.5, y: 1.5, yaw: 0}\n",
+               kGuide),
+      ElementsAre(HasSubstr("site.yaml:2: wrong value: the start at (-0.50, 1.50) m is turned by "
+                            "90.00 rad, more than a full turn: degrees?"),
+                  HasSubstr("site.yaml:2: wrong value: the start at (-0.50, 1.50) m is in a wall"),
+                  HasSubstr("'unknown' at (2.50, 1.50) m is where the map knows nothing")));
+}
+
 TEST_F(Site, HasRoomsWithAnInsideAndALocation) {
-  const std::string site = "map: map.yaml\nlocations:\n  - {name: blue, x: 1, y: 1}\n";
+  const std::string site = "map: map.yaml\nlocations:\n  - {name: blue, x: 1, y: 1, yaw: 0}\n";
   EXPECT_THAT(
       findings(site + "meeting_rooms:\n"
                       "  - {name: blue, west: 0, south: 0, east: 1, north: 1}\n"
