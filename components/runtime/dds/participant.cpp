@@ -335,22 +335,32 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   return self;
 }
 
-Status Participant::greet_regularly() {
-  const ForeignQuality best_effort{.best_effort = true};
-  const auto writer = create_writer(kAliveTopic, kAliveTopic, {}, nullptr, best_effort);
+Status Participant::make_greeting() {
+  if (greeting_ != nullptr) delete_writer(greeting_);
+  if (heard_greetings_ != nullptr) delete_reader(heard_greetings_);
+  greeting_ = nullptr;
+  heard_greetings_ = nullptr;
+  greeted_at_ = made_ + 2;
+  const auto writer = create_writer(kAliveTopic, kAliveTopic, {}, nullptr, {.best_effort = true});
   if (!writer) return Error{writer.error()};
-  const Qos unreliable{.reliable = false};
-  if (const auto reader = create_reader(kAliveTopic, kAliveTopic, unreliable, greeted_.get());
-      !reader)
-    return Error{reader.error()};
-  alive_ = std::jthread([writer = *writer](const std::stop_token& stop) {
+  greeting_ = *writer;
+  const auto reader = create_reader(kAliveTopic, kAliveTopic, {.reliable = false}, greeted_.get());
+  if (!reader) return Error{reader.error()};
+  heard_greetings_ = *reader;
+  return {};
+}
+
+Status Participant::greet_regularly() {
+  if (auto status = make_greeting(); !status) return status;
+  alive_ = std::jthread([this](const std::stop_token& stop) {
     constexpr std::array<std::uint8_t, 4> kNothing{0, 1, 0, 0};
     std::mutex mutex;
     std::condition_variable_any stopped;
     std::unique_lock lock(mutex);
     while (!stop.stop_requested()) {
+      if (made_ != greeted_at_) static_cast<void>(make_greeting());
       std::span<const std::uint8_t> payload(kNothing);
-      writer->write(&payload);
+      if (greeting_ != nullptr) greeting_->write(&payload);
       stopped.wait_for(lock, stop, SignedPresence::kAliveEvery, [] { return false; });
     }
   });
@@ -411,6 +421,7 @@ Result<dds::DataWriter*> Participant::create_writer(const std::string& topic_nam
   writer.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
   dds::DataWriter* created = publisher_->create_datawriter(*made, writer, listener);
   if (created == nullptr) return refusal("write", topic_name);
+  ++made_;
   return created;
 }
 
@@ -432,6 +443,7 @@ Result<dds::DataReader*> Participant::create_reader(const std::string& topic_nam
   reader.reliable_reader_qos().times.initialAcknackDelay = milliseconds(10);
   dds::DataReader* created = subscriber_->create_datareader(*made, reader, listener);
   if (created == nullptr) return refusal("read", topic_name);
+  ++made_;
   return created;
 }
 

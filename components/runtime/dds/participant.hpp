@@ -2,6 +2,8 @@
 
 // Private to this folder: includes Fast DDS.
 
+#include <atomic>
+#include <cstddef>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
@@ -67,9 +69,11 @@ class Participant {
   class Greeted;
   Participant(const ParticipantOptions& options, const MonotonicClock& clock);
   Result<eprosima::fastdds::dds::Topic*> topic(const std::string& name, const std::string& type);
-  /// Tells every participant that this one has met that it lives, in a thread of its own
-  /// (SignedPresence).
+  /// With keys: tells every participant that this one has met that it lives, in a thread of its own
+  /// (SignedPresence). The endpoints for that are made anew when others were made after them:
+  /// discovery keeps the order, so who hears of them has heard of all others.
   Status greet_regularly();
+  Status make_greeting();
   Error refusal(const std::string& what, const std::string& topic_name) const;
 
   DiscoveryBook book_;
@@ -83,6 +87,10 @@ class Participant {
   Guid guid_{};
   std::mutex mutex_;
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+  std::atomic<std::size_t> made_{0};  ///< endpoints
+  std::size_t greeted_at_ = 0;        ///< `made_` then
+  eprosima::fastdds::dds::DataWriter* greeting_ = nullptr;
+  eprosima::fastdds::dds::DataReader* heard_greetings_ = nullptr;
   std::jthread alive_;
 };
 

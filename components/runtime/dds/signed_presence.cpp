@@ -1,7 +1,5 @@
 #include "runtime/dds/signed_presence.hpp"
 
-#include <algorithm>
-
 namespace usher::runtime {
 
 bool SignedPresence::hears(const Prefix& from, Duration now) {
@@ -10,7 +8,7 @@ bool SignedPresence::hears(const Prefix& from, Duration now) {
   if (found == peers_.end()) {
     if (peers_.size() >= kMostPeers) {
       std::erase_if(peers_, [&](const auto& peer) {
-        return now - peer.second.last > kLongestMeeting + kForgetting;
+        return now - peer.second.last > kMeeting + kForgetting;
       });
       if (peers_.size() >= kMostPeers) return true;
     }
@@ -22,9 +20,8 @@ bool SignedPresence::hears(const Prefix& from, Duration now) {
   peer.last = now;
   if (peer.ignored) {
     if (now - peer.since < kForgetting) return false;
-    peer = {.since = now, .last = now, .meeting = peer.meeting};
-  } else if (now - peer.since > (peer.met ? kSilence : peer.meeting)) {
-    if (!peer.met) peer.meeting = std::min(2 * peer.meeting, kLongestMeeting);
+    peer = {.since = now, .last = now};
+  } else if (now - peer.since > (peer.met ? kSilence : kMeeting)) {
     peer.since = now;
     peer.ignored = true;
     return false;

@@ -14,23 +14,21 @@ namespace usher::runtime {
 inline constexpr const char* kAliveTopic = "usher/alive";
 
 /// Whom a participant with keys goes on hearing. Announcements are in the clear and tell no more
-/// than that somebody may be there; whom we have met, authenticated and with the first endpoints
-/// that discovery exchanges, writes us a sample of `kAliveTopic` every `kAliveEvery`. Whoever
-/// announces itself without such samples is ignored until Fast DDS has forgotten it, then heard
-/// anew. Without that, two participants that lost one another in one direction only (a cut line, a
-/// machine that stood still for a second) would wait forever for an authentication that one of them
-/// takes for done; and two whose exchange of endpoints got stuck repeat its heartbeats forever,
-/// signed and all. Any thread.
+/// than that somebody may be there; whom we have met, authenticated and with all the endpoints that
+/// discovery exchanges before those of `kAliveTopic`, writes us a sample of `kAliveTopic` every
+/// `kAliveEvery`. Whoever announces itself without such samples is ignored until Fast DDS has
+/// forgotten it, then heard anew. Without that, two participants that lost one another in one
+/// direction only (a cut line, a machine that stood still for a second) would wait forever for an
+/// authentication that one of them takes for done; and two whose exchange of endpoints got stuck
+/// repeat its heartbeats forever, signed and all. Any thread.
 class SignedPresence {
  public:
   using Prefix = std::array<std::uint8_t, 12>;  ///< of a participant's GUID
 
   /// How often a participant writes a sample to everybody whom it has met.
   static constexpr Duration kAliveEvery = std::chrono::milliseconds(500);
-  /// Without a sample after the first announcement: an authentication or a discovery is stuck. Each
-  /// further time twice as long, up to `kLongestMeeting`: a machine may be that slow.
+  /// Without a sample after the first announcement: an authentication or a discovery is stuck.
   static constexpr Duration kMeeting = std::chrono::seconds(15);
-  static constexpr Duration kLongestMeeting = std::chrono::seconds(60);
   /// Without a sample after the last: it has forgotten us.
   static constexpr Duration kSilence = std::chrono::seconds(4);
   /// Longer than the lease of a participant.
@@ -45,7 +43,6 @@ class SignedPresence {
   struct Peer {
     Duration since;   ///< of the last sample, or of the first message
     Duration last{};  ///< of any message
-    Duration meeting = kMeeting;
     bool met = false;
     bool ignored = false;
   };
