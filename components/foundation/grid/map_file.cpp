@@ -34,9 +34,7 @@ class DescriptionReader {
         {"image", [this](const YAML::Node& node) { return read_image(node); }},
         {"mode", [this](const YAML::Node& node) { return read_mode(node); }},
         {"resolution",
-         [this](const YAML::Node& node) {
-           return read_number(node, 1e-4, 1.0, map_.resolution);
-         }},
+         [this](const YAML::Node& node) { return read_number(node, 1e-4, 1.0, map_.resolution); }},
         {"origin", [this](const YAML::Node& node) { return read_origin(node); }},
         {"negate", [this](const YAML::Node& node) { return read_negate(node); }},
         {"occupied_thresh",
