@@ -120,7 +120,7 @@ class DescriptionReader {
     if (!node.IsSequence() || node.size() != 3) return expected(node, "three numbers [x, y, yaw]");
     const std::array<double*, 3> values = {&map_.origin.x, &map_.origin.y, &map_.origin.yaw};
     for (std::size_t i = 0; i < 3; ++i) {
-      const Status status = read_number(node[i], -kMaxCoordinate, kMaxCoordinate, *values[i]);
+      auto status = read_number(node[i], -kMaxCoordinate, kMaxCoordinate, *values[i]);
       if (!status) return status;
     }
     return {};
@@ -202,7 +202,7 @@ Status save_map(const OccupancyGrid& map, const std::string& yaml_path) {
   image.reserve(image.size() + map.size());
   for (int y = map.height() - 1; y >= 0; --y) {
     for (int x = 0; x < map.width(); ++x) {
-      const int value = map.row(y)[x];
+      const std::int8_t value = map.row(y)[x];
       const std::uint8_t pixel = value < 0                ? kUnknownPixel
                                  : value <= kFreeUpTo     ? kFreePixel
                                  : value >= kOccupiedFrom ? kOccupiedPixel
@@ -217,8 +217,7 @@ Status save_map(const OccupancyGrid& map, const std::string& yaml_path) {
                 "mode: trinary\nresolution: %.6f\norigin: [%.6f, %.6f, 0.000000]\nnegate: 0\n"
                 "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
                 map.resolution(), map.geometry().origin_x, map.geometry().origin_y);
-  const Status status = write_file(image_path.string(), image);
-  if (!status) return status;
+  if (auto status = write_file(image_path.string(), image); !status) return status;
   return write_file(yaml_path, std::string("image: ") + image_name.c_str() + "\n" + rest.data());
 }
 
