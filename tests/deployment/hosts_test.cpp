@@ -397,14 +397,13 @@ TEST(Hosts, MeetAcrossARouterWithSecurity) {
   const auto networks = two_networks(TwoNetworks::Kind::kRouted);
   if (!networks) GTEST_SKIP() << kNoNamespaces;
   std::string story;
-  // The library's authentication of two participants gets stuck now and then (docs/security.md),
-  // once for four minutes.
-  for (int attempt = 0; attempt < 2; ++attempt) {
+  // Two participants do not meet now and then, for minutes (docs/security.md): in 3 of 8 launches.
+  for (int attempt = 0; attempt < 3; ++attempt) {
     GuideElsewhere robot(*networks,
                          "hosts:\n  nuc: {peers: [" + networks->address_of_b() +
                              "]}\n  tablet: {peers: [" + networks->address_of_a() + "]}\n",
                          true);
-    if (robot->wait_for([&] { return robot->all_is_well(); }, Seconds(130))) return;
+    if (robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) return;
     story = robot->story();
     std::printf("AUTHENTICATION STUCK: %s\n", story.c_str());
   }
