@@ -61,6 +61,17 @@ class Component : public testing::Test {
   std::uint8_t localization = usher_msgs::msg::LocalizationStatus_Constants::STATE_GOOD;
   bool floor = false;  ///< every beam ends on it
 
+  /// Another manual_control wants to drive for so long.
+  void second_of_the_name(int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      geometry_msgs::msg::TwistStamped wanted;
+      wanted.header(wire::header(host.now(), "base_footprint"));
+      wanted.twist().linear().x(0.4);
+      host.world().publish(topics::kCmdVelManual, wanted, "manual_control", "elsewhere");
+      run(20);
+    }
+  }
+
  private:
   void speak() {
     const auto speaks = [this](const char* topic) { return !silent.contains(topic); };
@@ -172,19 +183,10 @@ TEST_F(Component, HearsASecondOneOfANameOnlyWhenTheFirstHasLeft) {
   run(400);
   wanted_by_hand.reset();
   run(400);
-  const auto second = [&](int ms) {
-    for (int at = 0; at < ms; at += 20) {
-      geometry_msgs::msg::TwistStamped wanted;
-      wanted.header(wire::header(host.now(), "base_footprint"));
-      wanted.twist().linear().x(0.4);
-      host.world().publish(topics::kCmdVelManual, wanted, "manual_control", "elsewhere");
-      run(20);
-    }
-  };
-  second(2000);
+  second_of_the_name(2000);
   EXPECT_EQ(commanded(), 0.0);
   host.world().leave("manual_control");
-  second(600);
+  second_of_the_name(600);
   EXPECT_GT(commanded(), 0.1);
 }
 
@@ -192,19 +194,10 @@ TEST_F(Component, NeverHearsWhoClaimedANameBesideItsHolder) {
   silent = {"cmd_vel/navigation"};
   wanted_by_hand = {0.0, 0.0};
   run(400);
-  const auto liar = [&](int ms) {
-    for (int at = 0; at < ms; at += 20) {
-      geometry_msgs::msg::TwistStamped wanted;
-      wanted.header(wire::header(host.now(), "base_footprint"));
-      wanted.twist().linear().x(0.4);
-      host.world().publish(topics::kCmdVelManual, wanted, "manual_control", "elsewhere");
-      run(20);
-    }
-  };
-  liar(400);
+  second_of_the_name(400);
   wanted_by_hand.reset();
   host.world().leave("manual_control");
-  liar(2000);
+  second_of_the_name(2000);
   EXPECT_EQ(commanded(), 0.0);
 }
 
