@@ -109,13 +109,15 @@ TEST(ContractParameters, TheRuleFindsWhatItForbids) {
 }
 
 TEST(ShippedConfigs, Resolve) {
-  std::vector<std::string> words{std::string(USHER_BINARY_DIR) + "/bin/usher", "check"};
+  int manifests = 0;
   for (const auto& entry : fs::directory_iterator(std::string(USHER_SOURCE_DIR) + "/deploy")) {
-    if (entry.path().extension() == ".yaml") words.push_back(entry.path().string());
+    if (entry.path().extension() != ".yaml") continue;
+    // One process for each: it asks every component's program, and a slow machine has 30 s for one.
+    test::Process check({std::string(USHER_BINARY_DIR) + "/bin/usher", "check", entry.path()});
+    EXPECT_EQ(check.wait(), 0) << entry.path() << check.output() << check.errors();
+    ++manifests;
   }
-  ASSERT_GT(words.size(), 4U);
-  test::Process check(words);
-  EXPECT_EQ(check.wait(), 0) << check.output() << check.errors();
+  EXPECT_GT(manifests, 3);
 }
 
 }  // namespace
