@@ -98,9 +98,11 @@ class DiscoveryBook {
   /// `own` has too.
   bool same_host(const Guid& writer, const Guid& own) const;
 
- private:
+  /// What all endpoints of a participant share.
   using Prefix = std::array<std::uint8_t, 12>;
   static Prefix prefix_of(const Guid& guid);
+
+ private:
   void notify(const EndpointInfo& endpoint, bool alive) const;
   Refusal& refusal(const std::string& name, const std::string& address);
 

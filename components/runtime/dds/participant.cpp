@@ -19,7 +19,6 @@
 #include <sstream>
 
 #include "runtime/dds/bytes_type.hpp"
-#include "runtime/dds/lease_check.hpp"
 #include "runtime/dds/security.hpp"
 #include "runtime/dds/signed_presence.hpp"
 #include "runtime/dds/socket_buffers.hpp"
@@ -41,8 +40,10 @@ using eprosima::fastrtps::Duration_t;
 namespace {
 
 constexpr std::uint32_t kSocketBuffer = 4U << 20;
-/// Participants per host that an initial peer is asked for; Fast DDS asks 4.
-constexpr std::uint32_t kPeerRange = 64;
+/// Participants per host that an initial peer is asked for; Fast DDS asks 4. One side has to ask
+/// for the other, five times a second for each: more than the programs of a robot's largest host,
+/// no more, since twice as many keep a small machine busy.
+constexpr std::uint32_t kPeerRange = 32;
 /// A received sample stays in the history only until the listener has taken it, but reliable ones
 /// wait there for an earlier one that was lost; the depth that a component asked for is kept by its
 /// mailbox.
@@ -170,7 +171,10 @@ Result<dds::DomainParticipantQos> participant_qos(const ParticipantOptions& opti
   // Clients hear of one another through the server, whose messages are its own.
   if (!options.discovery_server.empty()) guard.presence = nullptr;
   // Peers are asked where multicast does not go, perhaps on this very host.
-  guard.announces_by_multicast = options.discovery_server.empty() && options.peers.empty();
+  guard.announces_by_multicast =
+      options.discovery_server.empty() && std::ranges::none_of(options.peers, [](const auto& peer) {
+        return peer.starts_with("127.");
+      });
   if (guard.only_signed) {
     if (auto status = apply_identity(options.identity, qos); !status) return Error{status.error()};
   }
@@ -224,13 +228,14 @@ Guid to_guid(const rtps::GUID_t& guid) {
 /// Runs on the library's threads.
 class Participant::Listener : public dds::DomainParticipantListener {
  public:
-  explicit Listener(DiscoveryBook& book) : book_(book) {}
+  Listener(DiscoveryBook& book, SignedPresence& presence) : book_(book), presence_(presence) {}
 
   void on_participant_discovery(dds::DomainParticipant*,
                                 rtps::ParticipantDiscoveryInfo&& event) override {
     using Event = rtps::ParticipantDiscoveryInfo;
     const Guid guid = to_guid(event.info.m_guid);
     if (event.status == Event::REMOVED_PARTICIPANT || event.status == Event::DROPPED_PARTICIPANT) {
+      presence_.gone(DiscoveryBook::prefix_of(guid));
       book_.participant_gone(guid);
     } else if (event.status == Event::DISCOVERED_PARTICIPANT) {
       const auto& data = event.info.m_userData;
@@ -262,6 +267,7 @@ class Participant::Listener : public dds::DomainParticipantListener {
 
  private:
   DiscoveryBook& book_;
+  SignedPresence& presence_;
 };
 
 /// Hears that somebody has met us; on a thread of the library.
@@ -275,9 +281,7 @@ class Participant::Greeted : public dds::DataReaderListener, private PayloadSink
            eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       const Guid writer = to_guid(rtps::iHandle2GUID(info.publication_handle));
-      SignedPresence::Prefix prefix{};
-      std::copy_n(writer.begin(), prefix.size(), prefix.begin());
-      presence_.met(prefix, MonotonicClock::read(CLOCK_MONOTONIC));
+      presence_.met(DiscoveryBook::prefix_of(writer), MonotonicClock::read(CLOCK_MONOTONIC));
     }
   }
 
@@ -289,8 +293,8 @@ class Participant::Greeted : public dds::DataReaderListener, private PayloadSink
 
 Participant::Participant(const ParticipantOptions& options, const MonotonicClock& clock)
     : book_(options.host, [clock] { return clock.now(); }),
-      listener_(std::make_unique<Listener>(book_)),
       presence_(std::make_shared<SignedPresence>()),
+      listener_(std::make_unique<Listener>(book_, *presence_)),
       greeted_(std::make_unique<Greeted>(*presence_)),
       identity_(options.identity) {}
 
@@ -300,7 +304,6 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
   if (options.domain > 232)
     return Error{"a DDS domain is 0..232, found " + std::to_string(options.domain)};
   isolate_library();
-  use_lease_check();
   std::unique_ptr<Participant> self(new Participant(options, clock));
   const auto open = std::make_shared<std::atomic<bool>>(false);
   GuardOptions guard;
@@ -323,8 +326,11 @@ Result<std::unique_ptr<Participant>> Participant::create(const ParticipantOption
                             " (it needs a network interface, free UDP ports, and keys that are "
                             "valid in this domain)")};
   }
-  open->store(true);
   self->guid_ = to_guid(self->participant_->guid());
+  const auto prefix = DiscoveryBook::prefix_of(self->guid_);
+  self->presence_->call_us(prefix);
+  self->lease_check_.emplace(prefix, self->presence_);
+  open->store(true);
   self->book_.participant_seen(self->guid_, Identity{options.name, options.host, USHER_IDL_DIGEST});
   self->publisher_ = self->participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   self->subscriber_ = self->participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "foundation/result/result.hpp"
 #include "runtime/dds/discovery.hpp"
 #include "runtime/dds/host_clock.hpp"
+#include "runtime/dds/lease_check.hpp"
 #include "runtime/dds/signed_presence.hpp"
 
 namespace usher::runtime {
@@ -77,14 +79,15 @@ class Participant {
   Error refusal(const std::string& what, const std::string& topic_name) const;
 
   DiscoveryBook book_;
-  std::unique_ptr<Listener> listener_;
   std::shared_ptr<SignedPresence> presence_;
+  std::unique_ptr<Listener> listener_;
   std::unique_ptr<Greeted> greeted_;
   std::string identity_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   Guid guid_{};
+  std::optional<LeaseCheck> lease_check_;
   std::mutex mutex_;
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
   std::atomic<std::size_t> made_{0};  ///< endpoints

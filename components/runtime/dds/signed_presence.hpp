@@ -19,37 +19,53 @@ inline constexpr const char* kAliveTopic = "usher/alive";
 /// `kAliveEvery`. Whoever announces itself without such samples is ignored until Fast DDS has
 /// forgotten it, then heard anew. Without that, two participants that lost one another in one
 /// direction only (a cut line, a machine that stood still for a second) would wait forever for an
-/// authentication that one of them takes for done; and two whose exchange of endpoints got stuck
-/// repeat its heartbeats forever, signed and all. Any thread.
+/// authentication that one of them takes for done: Fast DDS 2.9.1 repeats its old answer to a new
+/// request. And two whose exchange of endpoints got stuck repeat its heartbeats forever, signed and
+/// all. Any thread.
 class SignedPresence {
  public:
   using Prefix = std::array<std::uint8_t, 12>;  ///< of a participant's GUID
 
   /// How often a participant writes a sample to everybody whom it has met.
   static constexpr Duration kAliveEvery = std::chrono::milliseconds(500);
-  /// Without a sample after the first announcement: an authentication or a discovery is stuck.
-  static constexpr Duration kMeeting = std::chrono::seconds(15);
+  /// Without a sample after the first announcement: an authentication or a discovery is stuck. Who
+  /// answers an authentication gives up first and more often, as its answer to an older request is
+  /// what the other cannot use; were both to do so with one period, each could spoil the other's
+  /// next try forever.
+  static constexpr Duration kMeeting = std::chrono::seconds(30);
+  static constexpr Duration kAsking = std::chrono::seconds(75);
   /// Without a sample after the last: it has forgotten us.
   static constexpr Duration kSilence = std::chrono::seconds(4);
-  /// Longer than the lease of a participant.
-  static constexpr Duration kForgetting = std::chrono::milliseconds(1500);
+  /// Who is ignored and was not known to Fast DDS, which would tell when it forgets it.
+  static constexpr Duration kForgetting = std::chrono::milliseconds(2500);
+  /// Silence of somebody who is not met yet, before it counts as gone.
+  static constexpr Duration kShyness = std::chrono::seconds(5);
 
+  /// Before anybody is heard: who we are.
+  void call_us(const Prefix& own);
   /// Whether a message of a participant shall be heard.
   bool hears(const Prefix& from, Duration now);
   /// A sample of `kAliveTopic` arrived.
   void met(const Prefix& who, Duration now);
+  /// Fast DDS has forgotten it.
+  void gone(const Prefix& who);
+  /// Whether it is heard and not met yet.
+  bool is_meeting(const Prefix& who) const;
 
  private:
   struct Peer {
-    Duration since;   ///< of the last sample, or of the first message
+    Duration since;   ///< of the last sample, or of the first message, or it is ignored
     Duration last{};  ///< of any message
     bool met = false;
     bool ignored = false;
   };
+  Duration patience(const Prefix& with, const Peer& peer) const;
+
   /// More than a robot has; beyond them everybody is heard.
   static constexpr std::size_t kMostPeers = 256;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  Prefix own_{};
   std::map<Prefix, Peer> peers_;
 };
 

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
+#include "runtime/dds/lease_check.hpp"
+
 namespace usher::runtime {
 namespace {
 
@@ -20,6 +24,7 @@ bool hears_all(SignedPresence& presence, milliseconds from, milliseconds to,
 
 constexpr milliseconds kStep(100);
 constexpr milliseconds kMeeting(SignedPresence::kMeeting.count() / 1'000'000);
+constexpr milliseconds kAsking(SignedPresence::kAsking.count() / 1'000'000);
 constexpr milliseconds kSilence(SignedPresence::kSilence.count() / 1'000'000);
 constexpr milliseconds kForgetting(SignedPresence::kForgetting.count() / 1'000'000);
 
@@ -33,21 +38,44 @@ TEST(SignedPresence, HearsForeverWhoIsMetNowAndThen) {
 
 TEST(SignedPresence, IgnoresWhoIsNeverMetUntilItIsForgottenAndThenHearsItAnew) {
   SignedPresence presence;
+  presence.call_us(kTwo);
   EXPECT_TRUE(hears_all(presence, milliseconds(0), kMeeting + kStep));
   const auto ignored = kMeeting + kStep;
-  for (auto now = ignored; now < ignored + kForgetting; now += kStep) {
-    EXPECT_FALSE(presence.hears(kOne, now)) << now.count();
-    presence.met(kOne, now);  // was under way; Fast DDS forgets it all the same
-  }
-  const auto anew = ignored + kForgetting;
+  EXPECT_FALSE(presence.hears(kOne, ignored));
+  presence.met(kOne, ignored);  // was under way; Fast DDS forgets it all the same
+  EXPECT_FALSE(presence.hears(kOne, ignored + kStep));
+  presence.gone(kOne);
+  const auto anew = ignored + 2 * kStep;
   EXPECT_TRUE(hears_all(presence, anew, anew + kMeeting));
   EXPECT_FALSE(hears_all(presence, anew + kMeeting, anew + kMeeting + 5 * kStep));
 }
 
-TEST(SignedPresence, BeginsAnewWithWhoWasSilentForSoLongThatItIsForgotten) {
+TEST(SignedPresence, HearsAnewWhomNobodyKnewToForget) {
   SignedPresence presence;
+  presence.call_us(kTwo);
+  EXPECT_TRUE(hears_all(presence, milliseconds(0), kMeeting + kStep));
+  const auto ignored = kMeeting + kStep;
+  for (auto now = ignored; now < ignored + kForgetting; now += kStep)
+    EXPECT_FALSE(presence.hears(kOne, now)) << now.count();
+  const auto anew = ignored + kForgetting;
+  EXPECT_TRUE(hears_all(presence, anew, anew + kMeeting));
+}
+
+TEST(SignedPresence, WhoAsksIsPatientUntilTheOtherHasBegunAnewTwice) {
+  SignedPresence presence;
+  presence.call_us(kOne);
+  EXPECT_TRUE(hears_all(presence, milliseconds(0), kAsking, kTwo));
+  EXPECT_FALSE(presence.hears(kTwo, kAsking + kStep));
+  EXPECT_GT(kAsking, 2 * (kMeeting + kForgetting));
+  EXPECT_NE(kAsking.count() % (kMeeting + kForgetting).count(), 0) << "out of step";
+}
+
+TEST(SignedPresence, BeginsAnewWithWhomIsForgotten) {
+  SignedPresence presence;
+  presence.call_us(kTwo);
   EXPECT_TRUE(presence.hears(kOne, milliseconds(0)));
   presence.met(kOne, milliseconds(0));
+  presence.gone(kOne);
   EXPECT_TRUE(hears_all(presence, 2 * kSilence, 2 * kSilence + kMeeting)) << "after a cut";
 }
 
@@ -63,6 +91,45 @@ TEST(SignedPresence, IgnoresWhoIsNoLongerMet) {
   EXPECT_TRUE(presence.hears(kOne, anew + kSilence));
 }
 
+TEST(SignedPresence, IsMeetingWhomItHearsAndHasNotMetYet) {
+  SignedPresence presence;
+  presence.call_us(kTwo);
+  EXPECT_FALSE(presence.is_meeting(kOne));
+  EXPECT_TRUE(presence.hears(kOne, milliseconds(0)));
+  EXPECT_TRUE(presence.is_meeting(kOne));
+  presence.met(kOne, kStep);
+  EXPECT_FALSE(presence.is_meeting(kOne));
+  presence.gone(kOne);
+  EXPECT_FALSE(presence.is_meeting(kOne));
+  EXPECT_TRUE(presence.hears(kOne, 2 * kStep));
+  EXPECT_TRUE(presence.is_meeting(kOne));
+  EXPECT_FALSE(presence.hears(kOne, 3 * kStep + kMeeting));
+  EXPECT_FALSE(presence.is_meeting(kOne)) << "it is ignored";
+}
+
+TEST(LeaseCheck, GivesTimeToWhomWeMeet) {
+  constexpr milliseconds kLease(800);
+  constexpr SignedPresence::Prefix kUs{7};
+  const auto presence = std::make_shared<SignedPresence>();
+  const auto allowed = [&] { return LeaseCheck::allowed_silence(kUs, kOne, kLease); };
+  EXPECT_EQ(allowed(), kLease) << "without keys";
+  {
+    const LeaseCheck check(kUs, presence);
+    EXPECT_EQ(allowed(), kLease);
+    EXPECT_TRUE(presence->hears(kOne, milliseconds(0)));
+    EXPECT_EQ(allowed(), SignedPresence::kShyness);
+    EXPECT_EQ(LeaseCheck::allowed_silence(kUs, kOne, 2 * SignedPresence::kShyness),
+              2 * SignedPresence::kShyness);
+    EXPECT_EQ(LeaseCheck::allowed_silence(kUs, kTwo, kLease), kLease);
+    presence->met(kOne, kStep);
+    EXPECT_EQ(allowed(), kLease);
+    presence->gone(kOne);
+    EXPECT_TRUE(presence->hears(kOne, milliseconds(0)));
+    EXPECT_EQ(allowed(), SignedPresence::kShyness);
+  }
+  EXPECT_EQ(allowed(), kLease) << "our participant has gone";
+}
+
 TEST(SignedPresence, IsNotMetBeforeItIsHeard) {
   SignedPresence presence;
   presence.met(kOne, milliseconds(0));
@@ -71,6 +138,7 @@ TEST(SignedPresence, IsNotMetBeforeItIsHeard) {
 
 TEST(SignedPresence, TellsParticipantsApart) {
   SignedPresence presence;
+  presence.call_us({0xff});
   EXPECT_TRUE(hears_all(presence, milliseconds(0), kMeeting + kStep));
   EXPECT_FALSE(presence.hears(kOne, kMeeting + kStep));
   EXPECT_TRUE(presence.hears(kTwo, kMeeting + kStep));
