@@ -67,7 +67,8 @@ class GuardedTransport final : public ChainingTransport {
       return;
     }
     if (options_.only_signed && options_.presence &&
-        !options_.presence->hears(source_of({bytes, size}), MonotonicClock::read(CLOCK_MONOTONIC)))
+        !options_.presence->hears(source_of({bytes, size}), kind == MessageKind::kSigned,
+                                  MonotonicClock::read(CLOCK_MONOTONIC)))
       return;
     // Fast DDS 2.9.1 forgets how far the authentication of a participant got when its announcement
     // and its handshake arrive on two sockets at once; the two then never authenticate.

@@ -28,12 +28,16 @@ class SignedPresence {
 
   /// How often a participant writes a sample to everybody whom it has met.
   static constexpr Duration kAliveEvery = std::chrono::milliseconds(500);
-  /// Without a sample after the first announcement: an authentication or a discovery is stuck. Who
-  /// answers an authentication gives up first and more often, as its answer to an older request is
-  /// what the other cannot use; were both to do so with one period, each could spoil the other's
-  /// next try forever.
-  static constexpr Duration kMeeting = std::chrono::seconds(30);
+  /// Without anything signed after the first announcement: the authentication is stuck. Who answers
+  /// one gives up first and more often, as its answer to an older request is what the other cannot
+  /// use; were both to do so with one period, each could spoil the other's next try forever.
+  static constexpr Duration kAnswering = std::chrono::seconds(30);
   static constexpr Duration kAsking = std::chrono::seconds(75);
+  /// Without a sample after the first signed message: the exchange of endpoints is stuck.
+  static constexpr Duration kMeeting = std::chrono::seconds(60);
+  /// Without anything signed after something was: it has begun anew, and we take it for known. On a
+  /// starting robot messages wait in a socket for ten seconds and more.
+  static constexpr Duration kMute = std::chrono::seconds(15);
   /// Without a sample after the last: it has forgotten us.
   static constexpr Duration kSilence = std::chrono::seconds(4);
   /// Who is ignored and was not known to Fast DDS, which would tell when it forgets it.
@@ -44,7 +48,7 @@ class SignedPresence {
   /// Before anybody is heard: who we are.
   void call_us(const Prefix& own);
   /// Whether a message of a participant shall be heard.
-  bool hears(const Prefix& from, Duration now);
+  bool hears(const Prefix& from, bool is_signed, Duration now);
   /// A sample of `kAliveTopic` arrived.
   void met(const Prefix& who, Duration now);
   /// Fast DDS has forgotten it.
@@ -54,12 +58,12 @@ class SignedPresence {
 
  private:
   struct Peer {
-    Duration since;   ///< of the last sample, or of the first message, or it is ignored
-    Duration last{};  ///< of any message
-    bool met = false;
-    bool ignored = false;
+    enum class State { kAnnounced, kAuthenticated, kMet, kIgnored } state = State::kAnnounced;
+    Duration since;         ///< in this state; kMet: since the last sample
+    Duration heard{};       ///< when it was, last
+    Duration has_signed{};  ///< the last message that was signed
   };
-  Duration patience(const Prefix& with, const Peer& peer) const;
+  bool is_stuck(const Prefix& prefix, const Peer& peer, Duration now) const;
 
   /// More than a robot has; beyond them everybody is heard.
   static constexpr std::size_t kMostPeers = 256;
