@@ -29,6 +29,8 @@ constexpr auto kBudgetWindow = seconds(60);
 constexpr auto kShortestPause = milliseconds(100);
 constexpr auto kLongestPause = seconds(5);
 constexpr auto kGrace = seconds(2);
+/// Authentications of all with all take half a minute on two cores, and begin anew with who does.
+constexpr double kPatienceWithKeys = 2.0;
 /// The next one's turn comes after this though the one before is not gone.
 constexpr auto kTurn = milliseconds(250);
 constexpr std::uintmax_t kLargestLog = 4'000'000;  // bytes; and one generation before
@@ -241,9 +243,10 @@ Status Launcher::prepare(const Deployment& deployment) {
       std::filesystem::rename(process->log, process->log + ".1", ignored);
     }
     process->criticality = std::min(process->criticality, component.criticality);
-    process->start_patience = std::max(
-        process->start_patience, std::chrono::duration_cast<Clock::duration>(
-                                     std::chrono::duration<double>(component.start_patience)));
+    const std::chrono::duration<double> patience(
+        component.start_patience * (deployment.manifest.keys.empty() ? 1.0 : kPatienceWithKeys));
+    process->start_patience =
+        std::max(process->start_patience, std::chrono::duration_cast<Clock::duration>(patience));
     if (const auto found = deployment.movement.find(component.name);
         found != deployment.movement.end())
       process->movement = std::max(process->movement, found->second);

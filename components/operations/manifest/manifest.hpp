@@ -26,8 +26,8 @@ struct ManifestComponent {
   RestartPolicy restart = RestartPolicy::kAlways;
   int restart_budget = 10;          ///< starts within a minute before the launcher gives up
   double heartbeat_timeout = 0.12;  ///< [s] six heartbeats of a critical component
-  double start_patience = 30.0;     ///< [s] from its start to its first sign of life
-  std::string group;                ///< components of one group share a process; empty = its own
+  double start_patience = 30.0;  ///< [s] from its start to its first sign of life; with keys twice
+  std::string group;             ///< components of one group share a process; empty = its own
   std::vector<runtime::ParameterValue> parameters;
   std::string origin;
   std::map<std::string, std::string> origins;  ///< of the keys that are given

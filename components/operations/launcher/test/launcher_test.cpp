@@ -529,6 +529,19 @@ TEST_F(Launching, KillsWhatDoesNotComeAlive) {
   EXPECT_THAT(events_, Contains("legs: has not come alive within 6 s of its start, killed"));
 }
 
+TEST_F(Launching, IsTwiceAsPatientWithKeys) {
+  deployment_.manifest.keys = "keys";
+  component("legs", "sleeper").start_patience = 3.0;
+  auto launcher = this->launcher();
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(wait_for(launcher, [&] {
+    launcher.heard("arms", std::chrono::steady_clock::now());
+    return launcher.find("legs")->starts == 2;
+  }));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_THAT(events_, Contains("legs: has not come alive within 6 s of its start, killed"));
+}
+
 TEST_F(Launching, KillsNobodyWhenItHearsNobody) {
   component("legs", "sleeper").start_patience = 1.0;
   auto launcher = this->launcher();
