@@ -1,9 +1,7 @@
 #include "runtime/dds/lease_check.hpp"
 
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
-#include <fastdds/rtps/builtin/discovery/endpoint/EDPSimple.h>
 #include <fastdds/rtps/builtin/discovery/participant/PDP.h>
-#include <fastdds/rtps/reader/StatefulReader.h>
 #include <fastdds/rtps/resources/TimedEvent.h>
 #include <fastrtps/config.h>
 
@@ -11,7 +9,6 @@
 #include <chrono>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 #include "runtime/dds/discovery.hpp"
@@ -59,29 +56,8 @@ Duration LeaseCheck::allowed_silence(const SignedPresence::Prefix& own,
 
 namespace eprosima::fastrtps::rtps {
 
-namespace {
-
-/// Whom it has found the library asks for its endpoints 70 ms later; there is no setting for that.
-/// So late is too late to name a foreign writer within 100 ms.
-void ask_soon(EDP* discovery) {
-  const Duration_t kSoon(0, 10'000'000);
-  auto* const simple = dynamic_cast<EDPSimple*>(discovery);
-  if (simple == nullptr) return;
-  for (const auto& endpoint :
-       {simple->publications_reader_, simple->subscriptions_reader_,
-        simple->publications_secure_reader_, simple->subscriptions_secure_reader_}) {
-    StatefulReader* const reader = endpoint.first;
-    if (reader == nullptr || reader->getTimes().initialAcknackDelay == kSoon) continue;
-    ReaderTimes times = reader->getTimes();
-    times.initialAcknackDelay = kSoon;
-    reader->updateTimes(times);
-  }
-}
-
-}  // namespace
-
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* participant) {
-  std::optional<GUID_t> silent;
+  GUID_t silent;
   {
     const std::lock_guard<std::recursive_mutex> lock(*mp_mutex);
     if (!participant->should_check_lease_duration || participant->m_guid == GUID_t::unknown())
@@ -99,12 +75,11 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* participant)
       const std::chrono::duration<double, std::milli> next = std::min(rest, lease);
       participant->lease_duration_event->update_interval_millisec(next.count());
       participant->lease_duration_event->restart_timer();
-    } else {
-      silent = participant->m_guid;
+      return;
     }
+    silent = participant->m_guid;
   }
-  ask_soon(getEDP());
-  if (silent) remove_remote_participant(*silent, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
+  remove_remote_participant(silent, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
 }
 
 }  // namespace eprosima::fastrtps::rtps

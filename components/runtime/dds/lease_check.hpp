@@ -14,9 +14,8 @@ namespace usher::runtime {
 /// still authenticating one another no longer than those who have met: of 20 participants with keys
 /// that start at once on two cores, the ones without priority read their announcements later than a
 /// lease, forget who has not forgotten them, and begin authentications that the other side takes
-/// for done. It is also where the library's own readers of endpoints can be told to ask sooner,
-/// from the first lease after the first participant was found. A definition in the program goes
-/// before the library's (ELF); making one of these brings it in.
+/// for done. A definition in the program goes before the library's (ELF); making one of these
+/// brings it in.
 class LeaseCheck {
  public:
   /// Whom `presence` is meeting may be silent for `SignedPresence::kShyness`, as long as this
