@@ -25,6 +25,7 @@ constexpr double kSeenLately = 0.5;    // [s] who was not seen for longer gets n
 constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
+constexpr double kFeet = 0.5;          // [m] so near to somebody a low thing is part of him
 constexpr auto kContactsKept = std::chrono::seconds(60);
 constexpr std::size_t kMostContacts = 64;
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
@@ -356,10 +357,12 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     return;
   }
   if (layer == &Map::ultrasonic) hear(scan, beams, odom_T_sensor);
+  if (layer == &Map::low) leave_out_people(scan, beams, odom_T_sensor);
   const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
                         const geometry::Pose2& window_T_sensor) {
     if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
     RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
+    if (layer == &Map::low) seen.ranges = lasting_ranges_;
     if (layer == &Map::ultrasonic) {
       seen.ranges = middle_ranges_;
       if (!observe(map, map.*layer, seen)) return;
@@ -376,6 +379,23 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       (layer == &Map::ultrasonic || beams.turn++ % kGlobalShare == 0))
     take(global_, *map_T_odom * *odom_T_base, *map_T_odom * odom_T_sensor);
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
+}
+
+/// Feet are low things that walk away, and low things are remembered for minutes; they bar the way
+/// in the layers that forget.
+void CostmapComponent::leave_out_people(const sensor_msgs::msg::LaserScan& low, const Beams& beams,
+                                        const geometry::Pose2& odom_T_sensor) {
+  lasting_ranges_ = low.ranges();
+  if (bodies_.empty()) return;
+  for (std::size_t i = 0; i < lasting_ranges_.size(); ++i) {
+    float& range = lasting_ranges_[i];
+    if (!std::isfinite(range) || range < 0.0F) continue;
+    const geometry::Point2 place =
+        odom_T_sensor * geometry::Point2(static_cast<double>(range) * beams.directions[i]);
+    if (std::ranges::any_of(bodies_,
+                            [&](const auto& body) { return (body - place).norm() < kFeet; }))
+      range = std::numeric_limits<float>::quiet_NaN();
+  }
 }
 
 /// What the ultrasonic sensors hear and the laser does not see, over their whole cones, and what

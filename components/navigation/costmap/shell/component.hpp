@@ -56,6 +56,8 @@ class CostmapComponent final : public runtime::Component {
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
+  void leave_out_people(const sensor_msgs::msg::LaserScan& low, const Beams& beams,
+                        const geometry::Pose2& odom_T_sensor);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
@@ -79,7 +81,7 @@ class CostmapComponent final : public runtime::Component {
   runtime::Duration local_period_;
 
   double echo_half_cone_, echo_tolerance_, ultrasonic_cone_, clearing_cone_;
-  std::vector<float> echoes_, cone_ranges_, middle_ranges_;
+  std::vector<float> echoes_, cone_ranges_, middle_ranges_, lasting_ranges_;
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
 

@@ -234,6 +234,26 @@ TEST_F(Component, ForgetsALowThingThatIsGoneBeforeAWall) {
   EXPECT_LT(local_cost(2.9, 0.17), kLethalCost) << "the wall is for other layers";
 }
 
+TEST_F(Component, RemembersNobodysFeet) {
+  give_map();
+  run(200);
+  const auto see = [&](double somebody_at) {
+    for (int i = 0; i < 10; ++i) {
+      usher_msgs::msg::People people;
+      people.header(wire::header(host.now(), frames::kOdom));
+      people.people().emplace_back().x(somebody_at);
+      host.publish(topics::kPeople, people);
+      run(20);
+      host.publish(topics::kKinectScanLow, scan("laser", 2.2F));
+      run(20);
+    }
+  };
+  see(2.4);
+  EXPECT_LT(local_cost(2.22, 0.17), kLethalCost);
+  see(3.4);
+  EXPECT_EQ(local_cost(2.22, 0.17), kLethalCost) << "nobody is there";
+}
+
 TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
   give_map();
   run(200);

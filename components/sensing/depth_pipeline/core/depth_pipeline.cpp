@@ -292,23 +292,28 @@ void DepthPipeline::add_low() {
 }
 
 /// Floor is missing only where the camera sees: a column that measured nearly nothing is not known,
-/// unless it saw floor up to where it ends.
+/// unless it saw floor up to where it ends; and where something stands before that end, it hides
+/// the floor: who is too near to be measured below the chest, for example.
 void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
   const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
+  const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
   std::uint16_t* fall = columns_.data() + kFall * column_stride_;
   for (int strip = 0; strip < floor.strips(); ++strip) {
     const std::uint16_t nearest = floor.rows(strip)[intrinsics_.height - 1].floor;
     const int end = std::min(floor.first_column(strip + 1), intrinsics_.width);
     for (int column = floor.first_column(strip); column < end; ++column) {
       const int enough = fall[column] > nearest ? kLeastFloor : kLeastValid;
-      if (valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
+      const bool hidden = kHalfMillimeter * high[column] < 1e-3 * fall[column];
+      if (hidden || valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
     }
   }
 }
 
 /// A piece of floor is missing where neighbouring columns say so over a width, where it is looked
-/// at flatly over the width that no mirroring patch has.
+/// at flatly over the width that no mirroring patch has. Where nothing is measured beyond its end
+/// it may be somebody too near to be measured as well: that is no low thing to be remembered.
 int DepthPipeline::mark_drops(const CameraPose& pose) {
+  const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
   const double grazing_from = kGrazing * pose.height;
   const double level = std::cos(pose.down), sunk = pose.height * std::sin(pose.down);
@@ -338,7 +343,8 @@ int DepthPipeline::mark_drops(const CameraPose& pose) {
       for (int column = begin; column < end; ++column) {
         const double forward = 1e-3 * fall[column];
         mark(scan_.ranges, column, forward, side_per_pixel(forward));
-        mark(low_.ranges, column, forward, side_per_pixel(forward));
+        if (valid[column] * kLeastValid >= intrinsics_.height)
+          mark(low_.ranges, column, forward, side_per_pixel(forward));
       }
       count += end - begin;
     }

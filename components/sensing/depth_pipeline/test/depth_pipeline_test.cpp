@@ -412,11 +412,38 @@ TEST(DepthPipeline, FloorThatIsMissingRightBeforeTheRobotIsAnObstacle) {
       const auto image = scene.draw(kPose);
       const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
       EXPECT_GT(view.drops, 450) << edge << " " << pit;
+      // Where nothing is measured beyond, either, it may be somebody too near to be measured.
+      const bool remembered = edge == 0.0 || pit == 1.0;
       for (const double bearing : {-0.3, 0.0, 0.3}) {
-        EXPECT_LT(at(pipeline, view.low->ranges, bearing), 1.7) << edge << " " << pit;
+        EXPECT_LT(at(pipeline, view.scan->ranges, bearing), 1.7) << edge << " " << pit;
+        EXPECT_EQ(at(pipeline, view.low->ranges, bearing) < 1.7, remembered) << edge << " " << pit;
       }
     }
   }
+}
+
+TEST(DepthPipeline, WhoIsTooNearToBeMeasuredStopsTheRobotAndIsNotRemembered) {
+  SyntheticScene scene;
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  for (std::size_t row = 0; row < 400; ++row)  // floor between the feet is left
+    std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(512 * row + 200), 112, 0);
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_GT(view.drops, 50);
+  EXPECT_LT(at(pipeline, view.scan->ranges, 0.0), 1.7);
+  EXPECT_FALSE(std::isfinite(at(pipeline, view.low->ranges, 0.0)));
+}
+
+TEST(DepthPipeline, WhoIsTooNearToBeMeasuredBelowTheChestIsNoDrop) {
+  SyntheticScene scene;
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  for (std::size_t row = 0; row < 400; ++row)
+    std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(512 * row + 200), 112,
+                row < 212 ? 550 : 0);
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_EQ(view.drops, 0);
+  EXPECT_LT(at(pipeline, view.scan->ranges, 0.0), 0.9);
 }
 
 TEST(DepthPipeline, RefusesOtherImagesAndImpossiblePoses) {
