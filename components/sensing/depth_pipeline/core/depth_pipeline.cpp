@@ -44,27 +44,26 @@ std::uint16_t millimeters(double meters) {
 }  // namespace
 
 Status check(const PipelineConfig& config) {
-  if (const auto status =
-          within({{"min_depth", config.min_depth, 0.05, 2.0},
-                  {"max_depth", config.max_depth, 1.0, 16.0},
-                  {"max_range", config.max_range, 0.5, 16.0},
-                  {"origin", config.origin, -1.0, 1.0},
-                  {"support", static_cast<double>(config.support), 1.0, 8.0},
-                  {"support_gap", config.support_gap, 0.0, 5.0},
-                  {"low_gap", config.low_gap, 0.0, 5.0},
-                  {"low_width", config.low_width, 0.0, 0.5},
-                  {"low_step", config.low_step, 0.0, 5.0},
-                  {"drop_length", config.drop_length, 0.05, 2.0},
-                  {"drop_width", config.drop_width, 0.0, 2.0},
-                  {"grazing_drop_width", config.grazing_drop_width, 0.0, 2.0},
-                  {"confidence_frames", static_cast<double>(config.confidence_frames), 1.0,
-                   Confidence::kMostFrames},
-                  {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
-                  {"least_confidence", config.least_confidence, 0.0, 1.0},
-                  {"least_measured", config.least_measured, 0.0, 1.0}});
+  if (auto status = within({{"min_depth", config.min_depth, 0.05, 2.0},
+                            {"max_depth", config.max_depth, 1.0, 16.0},
+                            {"max_range", config.max_range, 0.5, 16.0},
+                            {"origin", config.origin, -1.0, 1.0},
+                            {"support", static_cast<double>(config.support), 1.0, 8.0},
+                            {"support_gap", config.support_gap, 0.0, 5.0},
+                            {"low_gap", config.low_gap, 0.0, 5.0},
+                            {"low_width", config.low_width, 0.0, 0.5},
+                            {"low_step", config.low_step, 0.0, 5.0},
+                            {"drop_length", config.drop_length, 0.05, 2.0},
+                            {"drop_width", config.drop_width, 0.0, 2.0},
+                            {"grazing_drop_width", config.grazing_drop_width, 0.0, 2.0},
+                            {"confidence_frames", static_cast<double>(config.confidence_frames),
+                             1.0, Confidence::kMostFrames},
+                            {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
+                            {"least_confidence", config.least_confidence, 0.0, 1.0},
+                            {"least_measured", config.least_measured, 0.0, 1.0}});
       !status)
     return status;
-  if (const auto status = check(config.floor); !status) return status;
+  if (auto status = check(config.floor); !status) return status;
   if (const auto status = check(config.refitted); !status)
     return Error{"refitted " + status.error()};
   return {};
@@ -89,7 +88,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
                       config.max_range) {
   const auto width = static_cast<std::size_t>(intrinsics.width);
   column_stride_ = (width + 15) / 16 * 16;
-  buffer_stride_ = column_stride_ + 2 * kernels::kPad;
+  buffer_stride_ = column_stride_ + std::size_t{2} * kernels::kPad;
   processed_.resize(width * static_cast<std::size_t>(intrinsics.height));
   columns_.resize(kColumnArrays * column_stride_);
   buffers_.resize(kBuffers * buffer_stride_);

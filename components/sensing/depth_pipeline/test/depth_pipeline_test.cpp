@@ -19,6 +19,11 @@ using testing::HasSubstr;
 constexpr CameraPose kPose{.height = 0.9, .forward = 0.2, .down = 0.0872664626};
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kPixels = std::size_t{512} * 424;
+
+std::size_t pixel(int row, int column) {
+  return std::size_t{512} * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
+}
 
 PipelineConfig trusting() {
   PipelineConfig config;
@@ -50,7 +55,7 @@ TEST(DepthPipeline, FindsNoObstacleOnAnEmptyFloorHoweverItLeans) {
   const Mount mount;
   for (int degrees = -20; degrees <= 22; degrees += 3) {
     const CameraPose pose = camera_pose(mount, -0.0873, degrees * 0.0174533);
-    const auto image = scene.draw(pose, static_cast<std::uint64_t>(degrees + 100));
+    const auto image = scene.draw(pose, static_cast<std::uint64_t>(degrees) + 100);
     const auto view = pipeline.process(view_of(scene.camera, image), pose);
     ASSERT_TRUE(view.ok()) << view.error();
     EXPECT_EQ(finite(view->scan->ranges), 0U) << degrees;
@@ -131,8 +136,7 @@ TEST(DepthPipeline, AMirroringPatchAsideIsNoDrop) {
       if (!(forward > from && forward < from + 0.36)) continue;
       for (int column = 0; column < 512; ++column) {
         const double side = (scene.camera.cx - column) / scene.camera.fx;
-        if (std::abs(side - middle) < 0.085)
-          image[static_cast<std::size_t>(512 * row + column)] = 4000;
+        if (std::abs(side - middle) < 0.085) image[pixel(row, column)] = 4000;
       }
     }
     const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
@@ -196,8 +200,7 @@ TEST(DepthPipeline, AHoleIsAsWideAsItIsThoughTheCameraLooksDown) {
     const double depth = pose.height / sinks, forward = depth * (c - y * s);
     if (forward < kNear || forward > kFar) continue;
     half_width = kHalf * depth / scene.camera.fx;
-    for (int column = 256 - kHalf; column < 256 + kHalf; ++column)
-      image[static_cast<std::size_t>(row * 512 + column)] = 5000;
+    for (int column = 256 - kHalf; column < 256 + kHalf; ++column) image[pixel(row, column)] = 5000;
   }
   EXPECT_NEAR(half_width, 0.41, 0.01);
   const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
@@ -216,8 +219,7 @@ TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
   DepthPipeline pipeline = make(scene);
   auto image = scene.draw(kPose);
   for (int row = 330; row < 342; ++row) {
-    for (int column = 250; column < 270; ++column)
-      image[static_cast<std::size_t>(row * 512 + column)] = 4200;
+    for (int column = 250; column < 270; ++column) image[pixel(row, column)] = 4200;
   }
   const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
   EXPECT_EQ(view.drops, 0);
@@ -238,8 +240,7 @@ TEST(DepthPipeline, ReflectionsOfVinylFarAwayAreNoDropsButHolesAre) {
       const double distance = depth * (std::cos(kPose.down) - y * std::sin(kPose.down));
       if (distance < near || distance > far) continue;
       const auto half = static_cast<int>(0.5 * width / depth * scene.camera.fx);
-      for (int column = 256 - half; column < 256 + half; ++column)
-        image[static_cast<std::size_t>(row * 512 + column)] = 5000;
+      for (int column = 256 - half; column < 256 + half; ++column) image[pixel(row, column)] = 5000;
     }
     return pipeline.process(view_of(scene.camera, image), kPose).value().drops;
   };
@@ -281,7 +282,8 @@ TEST(DepthPipeline, ThinThingsAreFoundWhenTheFloorIsFitted) {
     const auto image = scene.draw(kPose, seed);
     const auto view = pipeline.process(view_of(scene.camera, image), wrong).value();
     ASSERT_TRUE(view.refitted);
-    for (double bearing = -0.5; bearing <= 0.5; bearing += 0.01, ++bearings) {
+    for (int step = -50; step <= 50; ++step, ++bearings) {
+      const double bearing = 0.01 * step;
       const float range = at(pipeline, view.low->ranges, bearing);
       found += std::abs(range - 1.93 / std::cos(bearing)) < 0.08;
     }
@@ -342,7 +344,7 @@ TEST(DepthPipeline, AnyImageGivesRangesOrNone) {
   SyntheticScene scene;
   DepthPipeline pipeline = make(scene, {});
   Random random(11);
-  std::vector<std::uint16_t> image(512 * 424);
+  std::vector<std::uint16_t> image(kPixels);
   for (int round = 0; round < 12; ++round) {
     for (auto& v : image) v = static_cast<std::uint16_t>(random.next() >> (round % 3));
     const CameraPose pose{random.uniform(0.05, 3.0), random.uniform(-1, 1),
@@ -370,7 +372,7 @@ TEST(DepthPipeline, NothingMeasuredIsNothingKnown) {
       CameraPose pose = kPose;
       pose.roll = roll;
       for (const int covered : {0, 300}) {  // black, or nearer than is measured
-        const std::vector<std::uint16_t> image(512 * 424, static_cast<std::uint16_t>(covered));
+        const std::vector<std::uint16_t> image(kPixels, static_cast<std::uint16_t>(covered));
         for (int frame = 0; frame < 4; ++frame) {
           const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
           EXPECT_EQ(view.drops, 0);
@@ -449,7 +451,7 @@ TEST(DepthPipeline, WhoIsTooNearToBeMeasuredBelowTheChestIsNoDrop) {
 TEST(DepthPipeline, RefusesOtherImagesAndImpossiblePoses) {
   SyntheticScene scene;
   DepthPipeline pipeline = make(scene);
-  const std::vector<std::uint16_t> image(512 * 424, 1000);
+  const std::vector<std::uint16_t> image(kPixels, 1000);
   EXPECT_THAT(pipeline.process({640, 480, image}, kPose).error(), HasSubstr("512 x 424"));
   EXPECT_THAT(pipeline.process({512, 424, std::span(image).first(100)}, kPose).error(),
               HasSubstr("with 100 values"));
