@@ -400,7 +400,8 @@ TEST(Hosts, MeetAcrossARouterWithSecurity) {
                        "hosts:\n  nuc: {peers: [" + networks->address_of_b() +
                            "]}\n  tablet: {peers: [" + networks->address_of_a() + "]}\n",
                        true);
-  EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(90))) << robot->story();
+  EXPECT_TRUE(robot->wait_for([&] { return robot->all_is_well(); }, Seconds(130)))
+      << robot->story();
 }
 
 }  // namespace
