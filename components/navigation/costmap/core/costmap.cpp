@@ -68,6 +68,8 @@ Status check(const CostmapConfig& config, const geometry::Footprint& footprint) 
   return check(config.social);
 }
 
+constexpr int kLeastCells = 2;  // of a thing: a single one may be left of what has gone
+
 void raise_to(const std::uint8_t* __restrict states, int count, std::uint8_t* __restrict combined) {
   for (int x = 0; x < count; ++x) combined[x] = combined[x] < states[x] ? states[x] : combined[x];
 }
@@ -197,6 +199,42 @@ void Costmap::forget(double blind) {
   for (ObstacleLayer& layer : layers_) {
     if (layer.config().min_raytrace_range <= 0.0) touch(layer.forget(kept));
   }
+}
+
+bool Costmap::unmapped_beside(LayerId layer, const geometry::Point2& point, double reach) const {
+  assert(layer < layers_.size());
+  if (!reachable(point.x(), point.y())) return false;
+  return unmapped_beside(layers_[layer], raster_.cell_at(point.x(), point.y()), reach);
+}
+
+bool Costmap::unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const {
+  const auto around = [&](grid::Cell middle, double distance, const CellRect& limits) {
+    const auto cells = static_cast<int>(std::lround(distance * raster_.cells_per_meter));
+    return CellRect{middle.x, middle.y, middle.x + 1, middle.y + 1}.grown(cells).within(limits);
+  };
+  const auto mapped = [&](grid::Cell place) {
+    const CellRect near = around(place, kMapped, raster_.all());
+    for (int y = near.y0; y < near.y1; ++y) {
+      const std::uint8_t* const row = static_states_.row(y);
+      if (std::find(row + near.x0, row + near.x1, kSeenOccupied) != row + near.x1) return true;
+    }
+    return false;
+  };
+  const CellRect near = around(cell, reach, layer.seen());
+  int found = 0;
+  for (int y = near.y0; y < near.y1; ++y) {
+    for (int x = near.x0; x < near.x1; ++x) {
+      if (layer.states().row(y)[x] == kSeenOccupied && !mapped({x, y})) ++found;
+      if (found == kLeastCells) return true;
+    }
+  }
+  return false;
+}
+
+void Costmap::keep_beside(LayerId layer, LayerId other, double reach) {
+  assert(layer < layers_.size() && other < layers_.size());
+  touch(layers_[layer].keep(
+      [&](grid::Cell cell) { return unmapped_beside(layers_[other], cell, reach); }));
 }
 
 void Costmap::invalidate() {

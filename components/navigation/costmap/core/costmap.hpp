@@ -52,6 +52,7 @@ struct CostmapConfig {
 class Costmap {
  public:
   using LayerId = std::size_t;
+  static constexpr double kMapped = 0.2;  ///< [m] so near to the map's obstacle a thing is that
 
   /// An error names the first value of the config that cannot be.
   static Result<Costmap> make(CostmapConfig config);
@@ -81,6 +82,13 @@ class Costmap {
   /// nearby (min_raytrace_range): their sensor looks over what lies there.
   void forget(double blind = 0.0);
 
+  /// Whether a layer has two obstacles within `reach` [m] of a point (in x and y) that are not of
+  /// the static map, which has none within kMapped of them: something that may walk away.
+  bool unmapped_beside(LayerId layer, const geometry::Point2& point, double reach) const;
+  /// Forgets the obstacles of a layer that have none such of another layer beside them: what they
+  /// belonged to has gone.
+  void keep_beside(LayerId layer, LayerId other, double reach);
+
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
   /// observations' stamps; only persistence depends on it. The reference stays valid as long as the
   /// costmap; its content until the next call.
@@ -102,6 +110,7 @@ class Costmap {
  private:
   Costmap(CostmapConfig config, geometry::Footprint footprint);
   void touch(const CellRect& cells) { dirty_ = dirty_.united(cells); }
+  bool unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const;
   void clear_footprint();
   void sample_entered(int dx, int dy);
   void combine_row(int y, int x0, int x1);

@@ -262,6 +262,7 @@ void ObstacleLayer::trace(grid::Cell from, grid::Cell to, int first, bool throug
 
 void ObstacleLayer::mark(std::size_t index, std::uint32_t time) {
   states_[index] = kSeenOccupied;
+  has_obstacles_ = true;
   if (marked_at_.empty()) return;
   marked_at_[index] = time;
   const std::uint32_t end = time + milliseconds(config_.persistence);

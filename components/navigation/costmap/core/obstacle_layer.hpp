@@ -85,6 +85,26 @@ class ObstacleLayer {
   CellRect expire(double now);
   /// Forgets everything but obstacles in `kept`. Returns the changed rectangle.
   CellRect forget(const CellRect& kept = {});
+  /// Forgets the obstacles whose cells are not `kept`. Returns the changed rectangle.
+  template <class Kept>
+  CellRect keep(const Kept& kept) {
+    CellRect touched;
+    if (!has_obstacles_) return touched;
+    has_obstacles_ = false;
+    for (int y = seen_.y0; y < seen_.y1; ++y) {
+      std::uint8_t* const row = states_.row(y);
+      for (int x = seen_.x0; x < seen_.x1; ++x) {
+        if (row[x] != kSeenOccupied) continue;
+        if (kept(grid::Cell{x, y})) {
+          has_obstacles_ = true;
+          continue;
+        }
+        row[x] = kUnseen;
+        touched = touched.united({x, y, x + 1, y + 1});
+      }
+    }
+    return touched;
+  }
   /// Marks cells of one row as seen free.
   void set_free(int y, int x0, int x1);
 
@@ -113,6 +133,7 @@ class ObstacleLayer {
   std::vector<std::uint32_t> marks_;  // cells of this scan's echoes
   std::vector<std::uint32_t> lost_;   // occupied cells that this scan's lines crossed
   CellRect seen_;
+  bool has_obstacles_ = false;  // it may have some
   bool has_deadline_ = false;
   std::uint32_t deadline_ = 0;  // [ms, wraps] no obstacle expires before
   std::uint64_t invalid_ranges_ = 0;

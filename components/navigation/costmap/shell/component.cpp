@@ -22,10 +22,11 @@ constexpr auto kDepthAge = milliseconds(500);
 constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kSeenLately = 0.5;    // [s] who was not seen for longer gets no room
+constexpr double kMaybeThere = 2.0;    // [s] who passes beside the cameras is not seen for so long
 constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;  // [m]
+constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
-constexpr double kFeet = 0.5;          // [m] so near to somebody a low thing is part of him
 constexpr auto kContactsKept = std::chrono::seconds(60);
 constexpr std::size_t kMostContacts = 64;
 constexpr std::uint8_t kPassingCost = 252;  // the highest that a planner crosses
@@ -277,6 +278,8 @@ void CostmapComponent::add_layers(Map& map) {
   depth.thickness = low_thickness_;
   depth.negative_clears = true;
   map.low = add(depth);
+  depth.name = "feet";
+  map.feet = add(depth);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
@@ -357,12 +360,20 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     return;
   }
   if (layer == &Map::ultrasonic) hear(scan, beams, odom_T_sensor);
-  if (layer == &Map::low) leave_out_people(scan, beams, odom_T_sensor);
+  if (layer == &Map::low) {
+    lasting_ranges_ = scan.ranges();
+    drop_what_people_hide(beams.directions, odom_T_sensor, maybe_there_, lasting_ranges_);
+  }
   const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
                         const geometry::Pose2& window_T_sensor) {
     if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
     RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
-    if (layer == &Map::low) seen.ranges = lasting_ranges_;
+    if (layer == &Map::low) {
+      split_feet(map, seen);
+      seen.ranges = feet_ranges_;
+      if (!observe(map, map.feet, seen)) return;
+      seen.ranges = alone_ranges_;
+    }
     if (layer == &Map::ultrasonic) {
       seen.ranges = middle_ranges_;
       if (!observe(map, map.*layer, seen)) return;
@@ -370,6 +381,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       seen.clears = false;
     }
     if (!observe(map, map.*layer, seen)) return;
+    if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
     // The local costs are as old as their laser scan, whatever else was seen since.
     if (&map == &global_ || layer == &Map::laser) map.newest = std::max(map.newest, stamp);
   };
@@ -381,20 +393,18 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
-/// Feet are low things that walk away, and low things are remembered for minutes; they bar the way
-/// in the layers that forget.
-void CostmapComponent::leave_out_people(const sensor_msgs::msg::LaserScan& low, const Beams& beams,
-                                        const geometry::Pose2& odom_T_sensor) {
-  lasting_ranges_ = low.ranges();
-  if (bodies_.empty()) return;
+/// Low things are remembered for minutes, since nobody sees them again near the robot. What is low
+/// beside something that the laser sees and the map has not may be a foot of it: that is remembered
+/// as long as the laser sees such a thing there.
+void CostmapComponent::split_feet(const Map& map, const RangeObservation& low) {
+  alone_ranges_ = feet_ranges_ = lasting_ranges_;
   for (std::size_t i = 0; i < lasting_ranges_.size(); ++i) {
-    float& range = lasting_ranges_[i];
-    if (!std::isfinite(range) || range < 0.0F) continue;
+    const float range = lasting_ranges_[i];
+    if (!std::isfinite(range) || range <= 0.0F) continue;
     const geometry::Point2 place =
-        odom_T_sensor * geometry::Point2(static_cast<double>(range) * beams.directions[i]);
-    if (std::ranges::any_of(bodies_,
-                            [&](const auto& body) { return (body - place).norm() < kFeet; }))
-      range = std::numeric_limits<float>::quiet_NaN();
+        low.sensor * geometry::Point2(static_cast<double>(range) * low.directions[i]);
+    const bool foot = map.costs->unmapped_beside(map.laser, place, kFoot);
+    (foot ? alone_ranges_ : feet_ranges_)[i] = -range;  // nothing of that kind up to there
   }
 }
 
@@ -515,8 +525,10 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
   near_.clear();
   standing_.clear();
   bodies_.clear();
+  maybe_there_.clear();
   for (const auto& person : message.people()) {
     const geometry::Point2 place(person.x(), person.y());
+    if (static_cast<double>(person.unseen()) <= kMaybeThere) maybe_there_.push_back(place);
     if (!(static_cast<double>(person.unseen()) <= kSeenLately)) continue;
     bodies_.push_back(place);
     if ((*base_T_odom * place).x() > 0.0) near_.push_back(place);
@@ -529,6 +541,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
 
 void CostmapComponent::forget_people() {
   bodies_.clear();
+  maybe_there_.clear();
   local_.costs->set_people({});
   if (global_.costs) global_.costs->set_people({});
 }

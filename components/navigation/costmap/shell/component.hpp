@@ -23,7 +23,8 @@ class CostmapComponent final : public runtime::Component {
   struct Map {
     const char* frame = "";
     std::optional<Costmap> costs;
-    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, low = 0, rear = 0;
+    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, low = 0, feet = 0,
+                     rear = 0;
     bool static_known = false;
     runtime::Time newest{};  ///< stamp of the newest data in it: an observation, or the map
   };
@@ -56,8 +57,7 @@ class CostmapComponent final : public runtime::Component {
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
-  void leave_out_people(const sensor_msgs::msg::LaserScan& low, const Beams& beams,
-                        const geometry::Pose2& odom_T_sensor);
+  void split_feet(const Map& map, const RangeObservation& low);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
@@ -82,8 +82,10 @@ class CostmapComponent final : public runtime::Component {
 
   double echo_half_cone_, echo_tolerance_, ultrasonic_cone_, clearing_cone_;
   std::vector<float> echoes_, cone_ranges_, middle_ranges_, lasting_ranges_;
+  std::vector<float> alone_ranges_, feet_ranges_;  ///< of what is low
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
+  std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before
 
   struct Contact {
     geometry::Point2 place;  ///< in map

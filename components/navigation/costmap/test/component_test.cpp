@@ -15,6 +15,7 @@ namespace usher::costmap {
 namespace {
 
 using std::chrono::milliseconds;
+constexpr int kPassing = 252;  // of what bars the way on the map's free ground
 constexpr const char* kFootprint = "robot.footprint: [0.3, 0.3, -0.3, 0.3, -0.3, -0.3, 0.3, -0.3]";
 
 /// A robot in the middle of a room of 8 m with a wall 2 m ahead that only the laser knows; each of
@@ -38,11 +39,11 @@ class Component : public testing::Test {
     sensor_msgs::msg::LaserScan message;
     message.header(wire::header(host.now(), frame));
     message.angle_min(-0.2F);
-    message.angle_increment(0.02F);
+    message.angle_increment(0.005F);
     message.angle_max(0.2F);
     message.range_min(0.1F);
     message.range_max(20.0F);
-    message.ranges().assign(21, range);
+    message.ranges().assign(81, range);
     return message;
   }
   void run(int ms, bool scans = true, bool localized = true) {
@@ -55,7 +56,7 @@ class Component : public testing::Test {
             wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
       host.publish(topics::kTf, moving);
       if (scans) {
-        host.publish(topics::kScanFiltered, scan());
+        host.publish(topics::kScanFiltered, scan("laser", laser_range));
         last_scan = host.now();
       }
       host.run_for(milliseconds(20));
@@ -91,6 +92,7 @@ class Component : public testing::Test {
   runtime::TestHost host{runtime::component_factory<CostmapComponent>("costmap"), kFootprint};
   runtime::Time map_stamp{}, last_scan{};
   geometry::Pose2 base;  // in odom and map
+  float laser_range = 2.0F;
 };
 
 TEST_F(Component, MarksWhatTheLaserSees) {
@@ -234,24 +236,57 @@ TEST_F(Component, ForgetsALowThingThatIsGoneBeforeAWall) {
   EXPECT_LT(local_cost(2.9, 0.17), kLethalCost) << "the wall is for other layers";
 }
 
-TEST_F(Component, RemembersNobodysFeet) {
+TEST_F(Component, RemembersTheFootOfAThingAsLongAsTheLaserSeesIt) {
+  const auto look = [&](float middle, int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      auto message = scan("laser", 3.5F);
+      std::fill_n(message.ranges().begin() + 20, 40, middle);
+      host.publish(topics::kScanFiltered, message);
+      run(20, false);
+    }
+  };
+  for (const bool mapped : {false, true}) {
+    if (mapped) {
+      for (int y = 0; y < map.height(); ++y) map.at({120, y}) = grid::kOccupied;  // x = 2 m
+    }
+    give_map();
+    look(2.03F, 300);
+    for (int i = 0; i < 5; ++i) {
+      host.publish(topics::kKinectScanLow, scan("laser", 1.7F));
+      look(2.03F, 40);
+    }
+    look(2.03F, 2000);
+    EXPECT_EQ(local_cost(1.72, 0.0), kLethalCost) << "the camera looks over it";
+    look(3.5F, 1500);  // who stood there has gone, or a door is open
+    EXPECT_EQ(local_cost(1.72, 0.0) == kLethalCost, mapped) << "what stands before a wall stays";
+    EXPECT_EQ(global_cost(1.72, 0.0) >= kPassing, mapped);
+  }
+}
+
+TEST_F(Component, RemembersNoFloorThatSomebodyHides) {
   give_map();
+  laser_range = 3.5F;
   run(200);
-  const auto see = [&](double somebody_at) {
-    for (int i = 0; i < 10; ++i) {
+  const auto see = [&](double aside, float unseen) {
+    for (int i = 0; i < 5; ++i) {
       usher_msgs::msg::People people;
       people.header(wire::header(host.now(), frames::kOdom));
-      people.people().emplace_back().x(somebody_at);
+      auto& somebody = people.people().emplace_back();
+      somebody.x(0.6);
+      somebody.y(aside);
+      somebody.unseen(unseen);
       host.publish(topics::kPeople, people);
       run(20);
       host.publish(topics::kKinectScanLow, scan("laser", 2.2F));
       run(20);
     }
   };
-  see(2.4);
-  EXPECT_LT(local_cost(2.22, 0.17), kLethalCost);
-  see(3.4);
-  EXPECT_EQ(local_cost(2.22, 0.17), kLethalCost) << "nobody is there";
+  see(0.2, 0.0F);
+  EXPECT_LT(local_cost(2.22, 0.0), kLethalCost);
+  see(0.2, 1.5F);
+  EXPECT_LT(local_cost(2.22, 0.0), kLethalCost) << "too near to be detected";
+  see(1.0, 0.0F);
+  EXPECT_EQ(local_cost(2.22, 0.0), kLethalCost) << "he is not in the line of sight";
 }
 
 TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {

@@ -284,6 +284,35 @@ TEST(Costmap, ForgetsNothingThatIsTooNearToBeSeenAgain) {
   EXPECT_NE(costmap.cost_at({1.02, 0.02}), kLethalCost) << "far enough away again";
 }
 
+TEST(Costmap, KeepsWhatIsBesideAThingThatTheMapHasNot) {
+  for (const double wall :
+       {1.02, 1.32, 4.02}) {  // what the laser sees is it, or is 0.3 m before it
+    Costmap costmap = Costmap::make(rolling_config()).value();
+    const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
+    ObstacleLayerConfig config = layer_config("feet");
+    config.persistence = wall > 4.0 ? 0.0 : 300.0;  // 0: for ever
+    const auto feet = costmap.add_obstacle_layer(config).value();
+    ASSERT_TRUE(costmap.set_static_map(map_with_wall_at(wall)).ok());
+    costmap.update(0.0);
+    see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
+    EXPECT_FALSE(costmap.unmapped_beside(laser, {0.62, 0.02}, 0.5)) << "one cell may be a rest";
+    see(costmap, laser, {0.02, 0.07, 0.0}, 1.0F);
+    const bool unmapped = wall != 1.02;
+    EXPECT_EQ(costmap.unmapped_beside(laser, {0.62, 0.02}, 0.5), unmapped) << wall;
+    EXPECT_FALSE(costmap.unmapped_beside(laser, {0.42, 0.02}, 0.5)) << "too far";
+    EXPECT_FALSE(costmap.unmapped_beside(laser, {1e9, 0.0}, 0.5));
+    see(costmap, feet, {0.02, 0.02, 0.0}, 0.6F);
+    costmap.keep_beside(feet, laser, 0.5);
+    costmap.update(0.1);
+    EXPECT_EQ(costmap.cost_at({0.62, 0.02}) == kLethalCost, unmapped) << wall;
+    see(costmap, feet, {0.02, 0.02, 0.0}, 0.6F);
+    see(costmap, laser, {0.02, 0.02, 0.0}, 2.0F);  // it has gone
+    costmap.keep_beside(feet, laser, 0.5);
+    costmap.update(0.2);
+    EXPECT_NE(costmap.cost_at({0.62, 0.02}), kLethalCost) << wall;
+  }
+}
+
 TEST(Costmap, KeepsMappedGlassForALayerThatMayNotOverruleTheMap) {
   Costmap costmap = Costmap::make(rolling_config()).value();
   ObstacleLayerConfig config = layer_config("laser");

@@ -20,6 +20,7 @@ constexpr double kWidest = 0.85;          // least forward distance per depth th
 constexpr int kColumnArrays = 11;
 constexpr int kBuffers = 8;
 constexpr int kLeastValid = 10;    // a column with fewer than one in so many pixels is unknown
+constexpr int kRowsAbove = 12;     // of pixels that tell whether anything was measured there
 constexpr int kLeastFloor = 50;    // one in so many is enough where the floor began and ends
 constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
 constexpr double kGrazing = 1.88;  // tan 62 deg: vinyl mirrors from 65 deg on, give or take a patch
@@ -35,6 +36,11 @@ ScanGeometry geometry_for(const Intrinsics& camera) {
   geometry.count = static_cast<std::size_t>(
       std::ceil((std::atan(left) + std::atan(right)) / geometry.increment));
   return geometry;
+}
+
+std::uint16_t pixel(const DepthImage& image, int column, int row) {
+  return image.millimeters[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(column)];
 }
 
 std::uint16_t millimeters(double meters) {
@@ -97,6 +103,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
     scan->intensities.resize(geometry_.count);
   }
   seen_low_.resize(geometry_.count);
+  tall_.resize(geometry_.count);
   looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
 }
@@ -131,12 +138,12 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   shift_ = view.pose.forward - config_.origin;
   clear_bearings();
   mark_seen(view.pose);
-  mark_obstacles(floor);
+  mark_obstacles(image, view.pose, floor);
   add_low();
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
   forget_blind_falls(floor);
-  view.drops = mark_drops(view.pose);
+  view.drops = mark_drops(image, view.pose);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
   tell_what_hides_low();
@@ -198,6 +205,7 @@ void DepthPipeline::clear_bearings() {
   std::fill(scan_.ranges.begin(), scan_.ranges.end(), kUnknown);
   std::fill(low_.ranges.begin(), low_.ranges.end(), kUnknown);
   std::fill(seen_low_.begin(), seen_low_.end(), kUnknown);
+  std::fill(tall_.begin(), tall_.end(), kUnknown);
   std::fill(looked_.begin(), looked_.end(), std::uint8_t{0});
 }
 
@@ -241,7 +249,39 @@ void DepthPipeline::mark(std::vector<float>& ranges, int column, double forward,
   }
 }
 
-void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
+/// Whether anything is measured right above a row, at the horizon or, in most rooms the ceiling, at
+/// the top of the image. Where nothing is, an arm that is too near to be measured may hang down to
+/// the row: over the foot of a wall, which looks like a low thing, or over floor, which looks like
+/// a hole.
+bool DepthPipeline::seen_above(const DepthImage& image, const CameraPose& pose, int column,
+                               double row) const {
+  const auto measured = [&](double below) {
+    const int end = static_cast<int>(std::clamp<double>(below, 0.0, image.height));
+    const int begin = std::max(0, end - kRowsAbove);
+    int seen = 0;
+    for (int y = begin; y < end; ++y)
+      seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
+    return 2 * seen >= end - begin;
+  };
+  return measured(row) || measured(intrinsics_.cy - intrinsics_.fy * std::tan(pose.down)) ||
+         measured(kRowsAbove);
+}
+
+/// The row where what is as far away as a pixel measured would be as high as something high.
+double DepthPipeline::row_of_high(const CameraPose& pose, double depth) const {
+  const double fall = (pose.height - config_.floor.low_height) / std::max(config_.min_depth, depth);
+  return intrinsics_.cy + intrinsics_.fy * (fall - std::sin(pose.down)) / std::cos(pose.down);
+}
+
+/// The row of the floor at a distance [m] from the camera's foot.
+double DepthPipeline::row_of_floor(const CameraPose& pose, double forward) const {
+  const double sine = std::sin(pose.down), cosine = std::cos(pose.down);
+  return intrinsics_.cy + intrinsics_.fy * (pose.height * cosine - forward * sine) /
+                              (forward * cosine + pose.height * sine);
+}
+
+void DepthPipeline::mark_obstacles(const DepthImage& image, const CameraPose& pose,
+                                   const FloorPrediction& floor) {
   const auto array = [&](int index) {
     return columns_.data() + static_cast<std::size_t>(index) * column_stride_;
   };
@@ -255,8 +295,18 @@ void DepthPipeline::mark_obstacles(const FloorPrediction& floor) {
       const double depth = forward * 32768.0 / std::max<int>(1, floor.scales()[row].forward);
       mark(ranges, column, forward, depth / intrinsics_.fx);
     };
-    if (high[column] != kernels::kNothing) place(scan_.ranges, high[column], high_row[column]);
-    if (low[column] != kernels::kNothing) place(seen_low_, low[column], low_row[column]);
+    if (high[column] != kernels::kNothing) {
+      place(scan_.ranges, high[column], high_row[column]);
+      place(tall_, high[column], high_row[column]);
+    }
+    if (low[column] == kernels::kNothing) continue;
+    place(seen_low_, low[column], low_row[column]);
+    const double behind = kHalfMillimeter * (high[column] - low[column]);
+    const bool foot = high[column] != kernels::kNothing && behind <= config_.low_gap;
+    const std::uint16_t row = low_row[column];
+    const double depth = 1e-3 * pixel(image, column, row);
+    if (foot || !seen_above(image, pose, column, std::min<double>(row, row_of_high(pose, depth))))
+      place(tall_, low[column], row);
   }
 }
 
@@ -277,7 +327,7 @@ void DepthPipeline::add_low() {
     for (; begin < end; ++begin) {
       const float range = seen_low_[begin];
       const float high = scan_.ranges[begin];
-      const bool alone = !(high <= range + static_cast<float>(config_.low_gap));
+      const bool alone = !(tall_[begin] <= range + static_cast<float>(config_.low_gap));
       if (width >= config_.low_width) {
         if (!(high <= range)) scan_.ranges[begin] = range;
         if (alone) low_.ranges[begin] = range;
@@ -309,10 +359,9 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
 }
 
 /// A piece of floor is missing where neighbouring columns say so over a width, where it is looked
-/// at flatly over the width that no mirroring patch has. Where nothing is measured beyond its end
-/// it may be somebody too near to be measured as well: that is no low thing to be remembered.
-int DepthPipeline::mark_drops(const CameraPose& pose) {
-  const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
+/// at flatly over the width that no mirroring patch has. What may be somebody too near to be
+/// measured as well is no low thing to be remembered.
+int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
   const double grazing_from = kGrazing * pose.height;
   const double level = std::cos(pose.down), sunk = pose.height * std::sin(pose.down);
@@ -342,8 +391,14 @@ int DepthPipeline::mark_drops(const CameraPose& pose) {
       for (int column = begin; column < end; ++column) {
         const double forward = 1e-3 * fall[column];
         mark(scan_.ranges, column, forward, side_per_pixel(forward));
-        if (valid[column] * kLeastValid >= intrinsics_.height)
+        if (seen_above(image, pose, column, row_of_floor(pose, forward))) {
           mark(low_.ranges, column, forward, side_per_pixel(forward));
+        } else {
+          const std::size_t bearing =
+              bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel(forward));
+          low_.ranges[bearing] = kUnknown;
+          looked_[bearing] = 0;
+        }
       }
       count += end - begin;
     }

@@ -105,9 +105,13 @@ class DepthPipeline {
   double measured_share() const;
   void clear_bearings();
   void forget_blind_falls(const FloorPrediction& floor);
-  int mark_drops(const CameraPose& pose);
+  int mark_drops(const DepthImage& image, const CameraPose& pose);
   void mark_seen(const CameraPose& pose);
-  void mark_obstacles(const FloorPrediction& floor);
+  void mark_obstacles(const DepthImage& image, const CameraPose& pose,
+                      const FloorPrediction& floor);
+  bool seen_above(const DepthImage& image, const CameraPose& pose, int column, double row) const;
+  double row_of_high(const CameraPose& pose, double depth) const;
+  double row_of_floor(const CameraPose& pose, double forward) const;
   void add_low();
   void tell_what_hides_low();
   void drop_unsupported(std::vector<float>& ranges) const;
@@ -125,7 +129,10 @@ class DepthPipeline {
   std::size_t buffer_stride_ = 0;
   double shift_ = 0.0;  // [m] from the scan's origin to the camera's foot
   DepthScan scan_, low_;
-  std::vector<float> seen_low_;       // [m] of each bearing, NaN: nothing low
+  std::vector<float> seen_low_;  // [m] of each bearing, NaN: nothing low
+  /// [m] of each bearing: what is high, its foot, and what may be one. Both are in one column and
+  /// not always at one bearing, where the camera looks down: at the image's edge the foot alone is.
+  std::vector<float> tall_;
   std::vector<std::uint8_t> looked_;  // of each bearing, whether its columns measured something
   mutable std::vector<float> spare_;
   Confidence confidence_, low_confidence_;

@@ -46,6 +46,11 @@ std::size_t finite(const std::vector<float>& ranges) {
       std::count_if(ranges.begin(), ranges.end(), [](float r) { return std::isfinite(r); }));
 }
 
+std::size_t positive(const std::vector<float>& ranges) {
+  return static_cast<std::size_t>(std::count_if(
+      ranges.begin(), ranges.end(), [](float r) { return std::isfinite(r) && r > 0.0F; }));
+}
+
 TEST(DepthPipeline, FindsNoObstacleOnAnEmptyFloorHoweverItLeans) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;
@@ -99,6 +104,42 @@ TEST(DepthPipeline, LowScanHasOnlyWhatIsLow) {
   // The far wall is in the scan, and hides from the low one what is low behind it.
   EXPECT_NEAR(at(pipeline, view.scan->ranges, 0.0), 5.0, 0.02);
   EXPECT_NEAR(at(pipeline, view.low->ranges, 0.0), -5.0, 0.02);
+}
+
+// A camera that looks down sees the foot of what is at the image's edge and not what stands on it.
+TEST(DepthPipeline, NothingLowIsTheFootOfWhatStandsHighAtTheImagesEdge) {
+  const Mount mount;
+  for (const double pitch : {-0.1, 0.0, 0.1, 0.2}) {
+    const CameraPose pose = camera_pose(mount, -0.0873, pitch);
+    for (const double aside : {0.5, 0.7, 1.0, 1.4}) {
+      SyntheticScene scene;
+      scene.half_width = aside;  // walls beside it
+      DepthPipeline pipeline = make(scene);
+      const auto walls = scene.draw(pose);
+      auto view = pipeline.process(view_of(scene.camera, walls), pose).value();
+      EXPECT_EQ(positive(view.low->ranges), 0U) << pitch << " " << aside;
+
+      scene.half_width = 5.0;  // or who stands there
+      scene.boxes = {{aside, aside + 0.3, 1.7, 1.6 * aside, 1.6 * aside + 0.3}};
+      const auto person = scene.draw(pose);
+      view = pipeline.process(view_of(scene.camera, person), pose).value();
+      EXPECT_EQ(positive(view.low->ranges), 0U) << pitch << " " << aside;
+    }
+  }
+}
+
+TEST(DepthPipeline, NothingLowIsTheFootOfAWallUnderAnArmThatIsTooNearToBeMeasured) {
+  SyntheticScene scene;
+  scene.half_width = 0.7;
+  const auto wall = scene.draw(kPose);
+  for (std::size_t end = 200; end <= 420; end += 10) {
+    DepthPipeline pipeline = make(scene);
+    auto image = wall;
+    for (std::size_t row = 0; row < end; ++row)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(512 * row + 40), 60, 0);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    EXPECT_EQ(positive(view.low->ranges), 0U) << end;
+  }
 }
 
 TEST(DepthPipeline, WhatIsLowAndNarrowAsPixelsAtAnEdgeIsNotKnown) {
@@ -170,6 +211,7 @@ TEST(DepthPipeline, MissingFloorIsAnObstacleWhereItEnds) {
     scene.noise = 0.0005;
     scene.edge = 2.4;
     scene.pit = pit;
+    scene.ceiling = 3.0;
     DepthPipeline pipeline = make(scene);
     const auto image = scene.draw(kPose);
     const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
@@ -434,6 +476,19 @@ TEST(DepthPipeline, WhoIsTooNearToBeMeasuredStopsTheRobotAndIsNotRemembered) {
   EXPECT_GT(view.drops, 50);
   EXPECT_LT(at(pipeline, view.scan->ranges, 0.0), 1.7);
   EXPECT_FALSE(std::isfinite(at(pipeline, view.low->ranges, 0.0)));
+}
+
+TEST(DepthPipeline, FloorUnderAnArmThatIsTooNearToBeMeasuredIsNothingLow) {
+  SyntheticScene scene;
+  for (const std::size_t end : {330, 360, 390}) {
+    DepthPipeline pipeline = make(scene);
+    auto image = scene.draw(kPose);
+    for (std::size_t row = 0; row < end; ++row)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(512 * row + 200), 90, 0);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    EXPECT_EQ(positive(view.low->ranges), 0U) << end;
+    EXPECT_TRUE(std::isnan(at(pipeline, view.low->ranges, 0.0))) << "nor is it known to be free";
+  }
 }
 
 TEST(DepthPipeline, WhoIsTooNearToBeMeasuredBelowTheChestIsNoDrop) {
