@@ -396,8 +396,11 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
         } else {
           const std::size_t bearing =
               bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel(forward));
-          low_.ranges[bearing] = kUnknown;
-          looked_[bearing] = 0;
+          const std::size_t last = std::min(bearing + 1, geometry_.count - 1);  // as mark_seen
+          for (std::size_t i = bearing; i <= last; ++i) {
+            low_.ranges[i] = kUnknown;
+            looked_[i] = 0;
+          }
         }
       }
       count += end - begin;
