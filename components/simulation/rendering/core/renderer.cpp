@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "simulation/rendering/core/limb_rays.hpp"
+
 namespace usher::rendering {
 
 namespace {
@@ -14,6 +16,7 @@ namespace {
 using geometry::Point2;
 
 constexpr int kPacket = 8;
+constexpr int kRun = static_cast<int>(LimbHits::kMost);
 constexpr double kBeside = 0.01;  // [m] where the neighbour of a pit's wall is looked for
 constexpr std::size_t kMaxCorners = 64;
 
@@ -98,6 +101,76 @@ Status check(const Model& model) {
   return {};
 }
 
+/// Everything of somebody is in this ball.
+struct Ball {
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0.0F;
+
+  bool misses(const Eigen::Vector3f& from, const Eigen::Vector3f& unit) const {
+    const Eigen::Vector3f to = center - from;
+    const float along = to.dot(unit);
+    const float beside = to.squaredNorm() - along * along;
+    return beside > radius * radius || along < -radius;
+  }
+};
+
+Ball ball_around(std::span<const Limb> limbs) {
+  Eigen::AlignedBox3f box;
+  for (const Limb& limb : limbs) {
+    const auto add = [&](const Eigen::Vector3f& middle, float radius) {
+      box.extend(middle - Eigen::Vector3f::Constant(radius));
+      box.extend(middle + Eigen::Vector3f::Constant(radius));
+    };
+    add(limb.from, limb.from_radius);
+    add(limb.to, limb.to_radius);
+  }
+  return box.isEmpty() ? Ball{} : Ball{box.center(), 0.5F * box.diagonal().norm()};
+}
+
+struct Somebody {
+  std::vector<Limb> limbs;
+  std::vector<Ball> around_limb;
+  Ball around;
+};
+
+/// Pixels of an image; right and bottom are past the last ones.
+struct Window {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// Where a limb can be seen: the hull of its balls' images.
+Window window_of(const Limb& limb, const Lens& lens, const Eigen::Matrix3f& turn,
+                 const Eigen::Vector3f& origin) {
+  constexpr float kFar = 1e6F;
+  Eigen::Vector2f least(kFar, kFar), most(-kFar, -kFar);  // right and down of the axis at 1 m
+  int behind = 0;
+  bool around = false;
+  const auto add = [&](const Eigen::Vector3f& middle, float radius) {
+    const Eigen::Vector3f p = turn.transpose() * (middle - origin);
+    const float ahead = p.x();
+    const Eigen::Array2f beside(-p.y(), -p.z());
+    const float square = ahead * ahead - radius * radius;
+    behind += ahead <= -radius ? 1 : 0;
+    around = around || ahead <= radius || square <= 0.0F;
+    if (around) return;
+    const Eigen::Array2f half = radius * (square + beside.square()).sqrt();
+    least = least.array().min((beside * ahead - half) / square);
+    most = most.array().max((beside * ahead + half) / square);
+  };
+  add(limb.from, limb.from_radius);
+  add(limb.to, limb.to_radius);
+  if (behind == 2) return {};
+  if (around) return {0, 0, lens.width, lens.height};
+  const auto pixel = [](double center, double focal, float at, int size, int past) {
+    const double found = center + focal * static_cast<double>(at);
+    return static_cast<int>(std::clamp(std::floor(found) + past, 0.0, static_cast<double>(size)));
+  };
+  return {pixel(lens.cx, lens.fx, least.x(), lens.width, 0),
+          pixel(lens.cy, lens.fy, least.y(), lens.height, 0),
+          pixel(lens.cx, lens.fx, most.x(), lens.width, 2),
+          pixel(lens.cy, lens.fy, most.y(), lens.height, 2)};
+}
+
 template <class T>
 void fill_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTCFormat format,
                  const std::vector<T>& values) {
@@ -109,26 +182,15 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTCFor
 
 struct Renderer::Scene {
   RTCDevice device = nullptr;
-  RTCScene still = nullptr;  // what stands still, instanced into `whole`
-  RTCScene whole = nullptr;
-  RTCGeometry people = nullptr;
-  unsigned people_id = RTC_INVALID_GEOMETRY_ID;
-  unsigned still_id = 0;
-  std::vector<Material> materials;  // of the geometries in `still`
+  RTCScene still = nullptr;         // what stands still
+  std::vector<Material> materials;  // of its geometries
   std::vector<Prism> pits;
   double ceiling = 2.7;
   Material floor = Material::kVinyl;
-  std::vector<Limb> limbs, limbs_of_one;
-  std::vector<std::int16_t> owner;  // of each limb
-  struct Ball {
-    float x, y, z, radius;
-  };
-  std::vector<Ball> balls;
-  std::vector<unsigned> indices;
+  std::vector<Somebody> people;
+  std::vector<float> columns;  // [m] to the right of the axis at 1 m, of an image
 
   ~Scene() {
-    if (people != nullptr) rtcReleaseGeometry(people);
-    if (whole != nullptr) rtcReleaseScene(whole);
     if (still != nullptr) rtcReleaseScene(still);
     if (device != nullptr) rtcReleaseDevice(device);
   }
@@ -185,48 +247,18 @@ Result<Renderer> Renderer::make(const Model& model) {
   }
   rtcSetSceneBuildQuality(scene->still, RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(scene->still);
-
-  scene->whole = rtcNewScene(scene->device);
-  rtcSetSceneFlags(scene->whole, RTC_SCENE_FLAG_DYNAMIC);
-  RTCGeometry instance = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(instance, scene->still);
-  rtcCommitGeometry(instance);
-  scene->still_id = rtcAttachGeometry(scene->whole, instance);
-  rtcReleaseGeometry(instance);
-  rtcCommitScene(scene->whole);
   return Renderer(std::move(scene));
 }
 
 void Renderer::place(std::span<const Body> bodies) {
-  Scene& s = *scene_;
-  if (s.people != nullptr) {
-    rtcDetachGeometry(s.whole, s.people_id);
-    rtcReleaseGeometry(s.people);
-    s.people = nullptr;
-  }
-  s.limbs.clear();
-  s.owner.clear();
+  scene_->people.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    make_limbs(bodies[i], s.limbs_of_one);
-    s.limbs.insert(s.limbs.end(), s.limbs_of_one.begin(), s.limbs_of_one.end());
-    s.owner.resize(s.limbs.size(), static_cast<std::int16_t>(i));
+    Somebody& somebody = scene_->people[i];
+    make_limbs(bodies[i], somebody.limbs);
+    somebody.around = ball_around(somebody.limbs);
+    somebody.around_limb.clear();
+    for (const Limb& limb : somebody.limbs) somebody.around_limb.push_back(ball_around({&limb, 1}));
   }
-  if (!s.limbs.empty()) {
-    s.balls.clear();
-    s.indices.clear();
-    for (const Limb& limb : s.limbs) {
-      s.indices.push_back(static_cast<unsigned>(s.balls.size()));
-      s.balls.push_back({limb.from.x(), limb.from.y(), limb.from.z(), limb.from_radius});
-      s.balls.push_back({limb.to.x(), limb.to.y(), limb.to.z(), limb.to_radius});
-    }
-    s.people = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-    fill_buffer(s.people, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, s.balls);
-    fill_buffer(s.people, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, s.indices);
-    rtcSetGeometryBuildQuality(s.people, RTC_BUILD_QUALITY_LOW);
-    rtcCommitGeometry(s.people);
-    s.people_id = rtcAttachGeometry(s.whole, s.people);
-  }
-  rtcCommitScene(s.whole);
 }
 
 /// What ray i of a packet met.
@@ -246,11 +278,7 @@ void Renderer::take(const Scene& s, const void* rays, int i, float reach, std::s
   hits.depth[pixel] = t;
   hits.cosine[pixel] = std::min(
       1.0F, std::abs(along.dot(normal)) / std::sqrt(along.squaredNorm() * normal.squaredNorm()));
-  if (packet.hit.instID[0][i] == s.still_id) {
-    hits.material[pixel] = static_cast<std::uint8_t>(s.materials[packet.hit.geomID[i]]);
-  } else {
-    hits.body[pixel] = s.owner[packet.hit.primID[i]];
-  }
+  hits.material[pixel] = static_cast<std::uint8_t>(s.materials[packet.hit.geomID[i]]);
 }
 
 void Renderer::render(const Lens& lens, const geometry::Pose3& world_T_camera, double reach,
@@ -299,37 +327,83 @@ void Renderer::render(const Lens& lens, const geometry::Pose3& world_T_camera, d
             static_cast<float>(reach),
             s.plane(origin, packet.ray.dir_x[i], packet.ray.dir_y[i], packet.ray.dir_z[i]));
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect8(valid, s.whole, &context, &packet);
+      rtcIntersect8(valid, s.still, &context, &packet);
       const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(lens.width) +
                          static_cast<std::size_t>(column);
       for (int i = 0; i < count; ++i)
         take(s, &packet, i, static_cast<float>(reach), first + static_cast<std::size_t>(i), hits);
     }
   }
+  show_people(lens, world_T_camera, static_cast<float>(reach), hits);
+}
+
+void Renderer::show_people(const Lens& lens, const geometry::Pose3& world_T_camera, float reach,
+                           Hits& hits) {
+  Scene& s = *scene_;
+  s.columns.resize(static_cast<std::size_t>(lens.width));
+  for (int column = 0; column < lens.width; ++column)
+    s.columns[static_cast<std::size_t>(column)] = static_cast<float>((column - lens.cx) / lens.fx);
+  const Eigen::Matrix3f turn = world_T_camera.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f origin = world_T_camera.translation.cast<float>();
+  LimbHits met;
+  for (std::size_t number = 0; number < s.people.size(); ++number) {
+    for (const Limb& limb : s.people[number].limbs) {
+      const Window window = window_of(limb, lens, turn, origin);
+      const LimbRays rays(limb, origin);
+      for (int row = window.top; row < window.bottom; ++row) {
+        const auto y = static_cast<float>((row - lens.cy) / lens.fy);
+        const RowOfRays line{turn.col(0) - y * turn.col(2), -turn.col(1)};
+        for (int left = window.left; left < window.right; left += kRun) {
+          const auto count = static_cast<std::size_t>(std::min(kRun, window.right - left));
+          rays.meet(line, std::span(s.columns).subspan(static_cast<std::size_t>(left), count), met);
+          const auto first = static_cast<std::size_t>(row * lens.width + left);
+          for (std::size_t i = 0; i < count; ++i) {
+            const float before = hits.depth[first + i] > 0.0F ? hits.depth[first + i] : reach;
+            if (!(met.distance[i] < before)) continue;
+            hits.depth[first + i] = met.distance[i];
+            hits.cosine[first + i] = std::min(1.0F, met.cosine[i]);
+            hits.material[first + i] = static_cast<std::uint8_t>(Material::kMatte);
+            hits.body[first + i] = static_cast<std::int16_t>(number);
+          }
+        }
+      }
+    }
+  }
 }
 
 double Renderer::distance(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                           double reach) {
+  const Scene& s = *scene_;
+  const Eigen::Vector3f origin = from.cast<float>(), along = direction.cast<float>();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(from.x());
-  ray.ray.org_y = static_cast<float>(from.y());
-  ray.ray.org_z = static_cast<float>(from.z());
-  ray.ray.dir_x = static_cast<float>(direction.x());
-  ray.ray.dir_y = static_cast<float>(direction.y());
-  ray.ray.dir_z = static_cast<float>(direction.z());
-  ray.ray.tfar = static_cast<float>(
-      std::min(reach, static_cast<double>(scene_->plane(from.cast<float>(), ray.ray.dir_x,
-                                                        ray.ray.dir_y, ray.ray.dir_z))));
+  ray.ray.org_x = origin.x();
+  ray.ray.org_y = origin.y();
+  ray.ray.org_z = origin.z();
+  ray.ray.dir_x = along.x();
+  ray.ray.dir_y = along.y();
+  ray.ray.dir_z = along.z();
+  ray.ray.tfar =
+      std::min(static_cast<float>(reach), s.plane(origin, along.x(), along.y(), along.z()));
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_->whole, &context, &ray);
-  return ray.ray.tfar < static_cast<float>(reach) ? static_cast<double>(ray.ray.tfar)
-                                                  : std::numeric_limits<double>::infinity();
+  rtcIntersect1(s.still, &context, &ray);
+  float nearest = ray.ray.tfar;
+  LimbHits met;
+  const RowOfRays only{along, Eigen::Vector3f::Zero()};
+  constexpr std::array<float, 1> kNumber{0.0F};
+  for (const Somebody& somebody : s.people) {
+    if (somebody.around.misses(origin, along)) continue;
+    for (std::size_t i = 0; i < somebody.limbs.size(); ++i) {
+      if (somebody.around_limb[i].misses(origin, along)) continue;
+      LimbRays(somebody.limbs[i], origin).meet(only, kNumber, met);
+      nearest = std::min(nearest, met.distance[0]);
+    }
+  }
+  return nearest < static_cast<float>(reach) ? static_cast<double>(nearest)
+                                             : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace usher::rendering

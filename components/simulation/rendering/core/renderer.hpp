@@ -58,9 +58,9 @@ struct Hits {
   std::vector<std::int16_t> body;      ///< index of the body that was hit; -1: none
 };
 
-/// Casts the rays of depth cameras into a model with people, on Embree. Deterministic: the same
-/// calls give the same bits on one machine. A 512 x 424 image takes about 10 ms (usher bench
-/// rendering); not thread-safe.
+/// Casts the rays of depth cameras into a model, on Embree, and into people, by LimbRays.
+/// Deterministic: the same calls give the same bits on one machine. A 512 x 424 image takes about
+/// 10 ms (usher bench rendering); not thread-safe.
 class Renderer {
  public:
   /// The error says what of the model cannot be (an outline with too few or infinite points).
@@ -82,6 +82,8 @@ class Renderer {
  private:
   struct Scene;
   static void take(const Scene& scene, const void* rays, int i, float reach, std::size_t pixel,
+                   Hits& hits);
+  void show_people(const Lens& lens, const geometry::Pose3& world_T_camera, float reach,
                    Hits& hits);
   explicit Renderer(std::unique_ptr<Scene> scene);
   std::unique_ptr<Scene> scene_;

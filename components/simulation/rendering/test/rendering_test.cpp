@@ -132,6 +132,40 @@ TEST(Bodies, AreSeenWhereTheyAreAndByNumber) {
   EXPECT_GT(counts[0], counts[1]);
 }
 
+/// Each pixel shows what its own ray meets, however near and wherever in the image somebody is.
+TEST(Bodies, AreSeenWholeAtTheEdgesAndBesideTheCamera) {
+  const Lens lens;
+  const Pose3 pose = camera(1.0, 0.1);
+  Renderer renderer = Renderer::make({}).value();
+  Hits hits;
+  int seen = 0;
+  for (const auto& [x, y] : {std::pair{2.0, 1.4},
+                             {2.0, -1.5},
+                             {0.3, 0.35},
+                             {0.1, -0.4},
+                             {0.0, 0.3},
+                             {-0.6, 0.0},
+                             {1.0, 0.0}}) {
+    const Body body{.pose = {x, y, 2.0}, .posture = Posture::kArmsOut};
+    renderer.place({&body, 1});
+    renderer.render(lens, pose, 9.0, hits);
+    for (int row = 0; row < lens.height; row += 5) {
+      for (int column = 0; column < lens.width; column += 5) {
+        const Eigen::Vector3d along =
+            pose.rotation *
+            Eigen::Vector3d(1.0, (lens.cx - column) / lens.fx, (lens.cy - row) / lens.fy);
+        const double length = along.norm();
+        const double met = renderer.distance(pose.translation, along / length, 9.0 * length);
+        const auto shown = static_cast<double>(hits.depth[pixel(column, row)]);
+        ASSERT_NEAR(shown, std::isfinite(met) ? met / length : 0.0, 1e-3)
+            << "at " << column << ", " << row << " of who is at " << x << ", " << y;
+        seen += hits.body[pixel(column, row)] == 0;
+      }
+    }
+  }
+  EXPECT_GT(seen, 2000);
+}
+
 /// The color of the pixel that shows somebody 3 m ahead at a height [m], standing or as told.
 std::array<int, 3> color_at(const Body& body, double height, const Gains& gains = {1, 1, 1}) {
   const Hits hits = seen({}, camera(1.0, 0.0), {&body, 1});
