@@ -153,7 +153,8 @@ inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelNavigation{
     1,
     20,
     "local_planner waypoint_follower",
-    "Velocity wanted to reach the goal; the stamp is that of the newest scan behind it."};
+    "Velocity wanted to reach the goal; the stamp is that of the newest scan behind it, where it "
+    "only stands that of writing."};
 inline constexpr Topic<usher_msgs::msg::DriveCommand> kDriveCommand{
     "drive/command",
     Kind::kCommand,

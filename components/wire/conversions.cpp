@@ -1,6 +1,9 @@
 #include "wire/conversions.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <initializer_list>
 
 namespace usher::wire {
 
@@ -12,10 +15,31 @@ constexpr std::size_t kMaxCells = 100'000'000;
 constexpr std::size_t kMaxBeams = 100'000;
 constexpr double kUnitTolerance = 1e-2;
 
+struct Value {
+  const char* name;
+  double value;
+};
+
+/// "velocity must be finite, got angular.z = nan": the first of them that is not, which one is.
+Error not_finite(const std::string& what, std::initializer_list<Value> values) {
+  const auto* const found = std::find_if(
+      values.begin(), values.end(), [](const Value& each) { return !std::isfinite(each.value); });
+  assert(found != values.end());
+  return {what + " must be finite, got " + found->name + " = " + std::to_string(found->value)};
+}
+
 Result<geometry::Pose3> checked_pose(double x, double y, double z,
                                      const geometry_msgs::msg::Quaternion& q) {
   geometry::Pose3 pose{{x, y, z}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
-  if (!pose.finite()) return Error{"pose is not finite"};
+  if (!pose.finite()) {
+    return not_finite("pose", {{"x", x},
+                               {"y", y},
+                               {"z", z},
+                               {"quaternion.x", q.x()},
+                               {"quaternion.y", q.y()},
+                               {"quaternion.z", q.z()},
+                               {"quaternion.w", q.w()}});
+  }
   const double norm = pose.rotation.norm();
   if (std::abs(norm - 1.0) > kUnitTolerance) {
     return Error{"quaternion must have unit length, got " + std::to_string(norm)};
@@ -40,7 +64,8 @@ Result<grid::GridGeometry> checked_geometry(std::uint32_t width, std::uint32_t h
   if (!std::isfinite(resolution) || resolution <= 0.0) {
     return Error{"resolution must be positive, got " + std::to_string(resolution)};
   }
-  if (!std::isfinite(x) || !std::isfinite(y)) return Error{"grid origin is not finite"};
+  if (!std::isfinite(x) || !std::isfinite(y))
+    return not_finite("grid origin", {{"x", x}, {"y", y}});
   const std::uint64_t wanted = std::uint64_t{width} * height;
   if (wanted == 0 || wanted > kMaxCells || wanted != cells) {
     return Error{"grid of " + std::to_string(width) + " x " + std::to_string(height) +
@@ -136,7 +161,8 @@ geometry_msgs::msg::TwistStamped to_message(Time stamp, const geometry::Twist2& 
 
 Result<geometry::Twist2> from_message(const geometry_msgs::msg::Twist& message) {
   const geometry::Twist2 twist{message.linear().x(), message.angular().z()};
-  if (!twist.finite()) return Error{"velocity is not finite"};
+  if (!twist.finite())
+    return not_finite("velocity", {{"linear.x", twist.v}, {"angular.z", twist.w}});
   return twist;
 }
 
@@ -237,7 +263,9 @@ Status check(const sensor_msgs::msg::LaserScan& scan) {
     return Error{"scan must have 1..100000 ranges, got " + std::to_string(beams)};
   if (!std::isfinite(scan.angle_min()) || !std::isfinite(scan.angle_max()) ||
       !std::isfinite(scan.angle_increment())) {
-    return Error{"scan angles are not finite"};
+    return not_finite("scan angles", {{"angle_min", scan.angle_min()},
+                                      {"angle_max", scan.angle_max()},
+                                      {"angle_increment", scan.angle_increment()}});
   }
   if (scan.angle_increment() <= 0.0F) {
     return Error{"scan increment must be positive, got " + std::to_string(scan.angle_increment())};
@@ -262,29 +290,38 @@ Status check(const sensor_msgs::msg::LaserScan& scan) {
 }
 
 std::array<double, 36> to_covariance(const Eigen::Matrix3d& planar) {
-  constexpr std::array<int, 3> kAxis = {0, 1, 5};
+  constexpr std::array<std::size_t, 3> kAxis = {0, 1, 5};
   std::array<double, 36> covariance{};
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      covariance[static_cast<std::size_t>(6 * kAxis[static_cast<std::size_t>(row)] +
-                                          kAxis[static_cast<std::size_t>(column)])] =
-          planar(row, column);
+      covariance[6 * kAxis[static_cast<std::size_t>(row)] +
+                 kAxis[static_cast<std::size_t>(column)]] = planar(row, column);
     }
   }
   return covariance;
 }
 
 Result<Eigen::Matrix3d> from_covariance(const std::array<double, 36>& covariance) {
-  constexpr std::array<int, 3> kAxis = {0, 1, 5};
+  constexpr std::array<std::size_t, 3> kAxis = {0, 1, 5};
   Eigen::Matrix3d planar;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      planar(row, column) = covariance[static_cast<std::size_t>(
-          6 * kAxis[static_cast<std::size_t>(row)] + kAxis[static_cast<std::size_t>(column)])];
+      planar(row, column) = covariance[6 * kAxis[static_cast<std::size_t>(row)] +
+                                       kAxis[static_cast<std::size_t>(column)]];
     }
   }
-  if (!planar.allFinite()) return Error{"covariance is not finite"};
-  if ((planar.diagonal().array() < 0.0).any()) return Error{"covariance has a negative variance"};
+  constexpr const char* kNames[] = {"x", "y", "yaw"};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      if (std::isfinite(planar(row, column))) continue;
+      return Error{std::string("covariance of ") + kNames[row] + " and " + kNames[column] +
+                   " must be finite, got " + std::to_string(planar(row, column))};
+    }
+    if (planar(row, row) < 0.0) {
+      return Error{std::string("variance of ") + kNames[row] + " must not be negative, got " +
+                   std::to_string(planar(row, row))};
+    }
+  }
   return planar;
 }
 

@@ -1,6 +1,7 @@
 #include "wire/stopping.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,11 @@ kinematics::StoppingDistance read_stopping(runtime::Host& host) {
     points.push_back({speeds[i], distances[i]});
   }
   auto measured = kinematics::StoppingDistance::make(points);
-  if (speeds.size() != distances.size()) host.fault("robot.stopping: as many speeds as distances");
+  if (speeds.size() != distances.size()) {
+    host.fault("robot.stopping must have as many distances as speeds, got " +
+               std::to_string(speeds.size()) + " in robot.stopping.speeds and " +
+               std::to_string(distances.size()) + " in robot.stopping.distances");
+  }
   if (!measured) host.fault("robot.stopping: " + measured.error());
   return std::move(measured).value();
 }

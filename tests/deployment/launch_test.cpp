@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "deployment/running_robot.hpp"
+#include "support/terminal.hpp"
 #include "support/test_domain.hpp"
 
 namespace usher::test {
@@ -160,6 +161,36 @@ TEST_F(Launch, KillsAndRestartsWhatDoesNotComeAlive) {
   EXPECT_EQ(launch.wait(), 0) << launch.output();
   const std::string told = launch.output();
   EXPECT_EQ(told.find("has not come alive"), told.rfind("has not come alive")) << told;
+}
+
+// Ctrl-S, for longer than the terminal's buffer lasts: the supervision goes on.
+TEST_F(Launch, RestartsWhatEndsThoughItsTerminalIsPaused) {
+  Terminal terminal;
+  Process launch({usher_program(), "launch", manifest(), "--host", "tablet"}, terminal.path());
+  const auto tablet_after = [&](pid_t former) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(40);
+    while (launch.pid() > 0 && std::chrono::steady_clock::now() < until) {
+      const auto components = components_from(folder_.path());
+      const auto tablet = components.find("tablet");
+      if (tablet != components.end() && tablet->second != former) return tablet->second;
+      launch.wait(std::chrono::milliseconds(20));
+    }
+    return pid_t{0};
+  };
+  pid_t tablet = tablet_after(0);
+  ASSERT_GT(tablet, 0) << terminal.text() << launch.errors();
+  terminal.type("\x13");
+  launch.wait(std::chrono::seconds(2));  // a table each second is held up
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(::kill(tablet, SIGKILL), 0);
+    const pid_t next = tablet_after(tablet);
+    ASSERT_GT(next, 0) << "restart " << i + 1;
+    tablet = next;
+  }
+  launch.signal(SIGTERM);
+  EXPECT_EQ(launch.wait(), 0) << launch.errors();
+  terminal.type("\x11");
+  EXPECT_TRUE(contains(terminal.text(), "tablet: started")) << terminal.text();
 }
 
 TEST(SecondLaunch, IsRefusedAndTheFirstGoesOn) {

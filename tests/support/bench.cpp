@@ -290,7 +290,13 @@ int Bench::run(int argc, char** argv) {
   bool complete = measure_times();
   metrics_["machine_ratio"] = metrics_["reference_loop_ms"] / kReferenceLoopMs;
   if (with_instructions_) complete = count_instructions() && complete;
-  for (const auto& [key, compute] : computed_) metrics_[key] = compute();
+  for (const auto& [key, compute] : computed_) {
+    try {
+      metrics_[key] = compute();
+    } catch (const std::out_of_range&) {
+      continue;  // of times that --benchmark_filter left out
+    }
+  }
   std::printf("%s\n", (print_json_ ? json() : table()).c_str());
   return complete && pass() ? 0 : 1;
 }

@@ -18,7 +18,7 @@ struct Output {
 };
 
 Output run(Bench& bench, std::vector<std::string> options) {
-  options.insert(options.begin(), "bench");
+  options.insert(options.begin(), {"bench", "--benchmark_filter=."});  // it outlives a run
   options.emplace_back("--benchmark_min_time=0.001");
   std::vector<char*> arguments;
   for (std::string& option : options) arguments.push_back(option.data());
@@ -49,6 +49,18 @@ TEST(Bench, PrintsOneJsonObjectWithNumbersAsMeasured) {
   EXPECT_EQ(json["published"]["third (a peer)"].as<double>(), 0.5);
   EXPECT_EQ(json["targets"]["third"].as<double>(), 0.4);
   EXPECT_TRUE(json["pass"].as<bool>());
+}
+
+TEST(Bench, AFilterLeavesOutWhatIsComputedFromTheOthersToo) {
+  Bench bench("filtered", "none");
+  bench.time("one_us", 1e-6, [] {});
+  bench.time("other_us", 1e-6, [] {});
+  bench.metric("twice_one", [&] { return 2.0 * bench.metrics().at("one_us"); });
+  bench.metric("twice_other", [&] { return 2.0 * bench.metrics().at("other_us"); });
+  const Output output = run(bench, {"--json", "--benchmark_filter=one"});
+  const YAML::Node metrics = YAML::Load(output.text)["metrics"];
+  EXPECT_TRUE(metrics["twice_one"]);
+  EXPECT_FALSE(metrics["twice_other"]);
 }
 
 TEST(Bench, FailsWhenATargetIsMissed) {

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "idl/topics.hpp"
+#include "operations/command_line/background_output.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/installation.hpp"
 #include "operations/command_line/robot.hpp"
@@ -227,26 +228,32 @@ std::string at_this_time(const std::string& event) {
 }
 
 /// What the operator reads while it runs: events, and on a terminal a table that is rewritten once
-/// a second.
+/// a second. Nothing here waits for the terminal, or the program that should read.
 class Display {
  public:
-  void show(const std::vector<std::string>& events, const Launcher& launcher,
-            const Heartbeats& heartbeats) {
-    std::cout.clear();  // what a full disk did not take is lost, what comes later need not be
-    if (!events.empty()) table_lines_ = 0;
-    for (const auto& event : events) std::cout << at_this_time(event) << "\n";
-    if (terminal_ && std::chrono::steady_clock::now() >= next_table_) {
-      next_table_ += milliseconds(1000);
-      const Table table = live_table(launcher, heartbeats);
-      if (table_lines_ > 0) std::cout << "\033[" << table_lines_ << "A\033[J";
-      std::cout << table.text();
-      table_lines_ = table.size() + 1;
-    }
-    std::cout << std::flush;
+  void say(const std::string& text) {
+    table_lines_ = 0;
+    output_.say(text);
+  }
+  void show(const std::vector<std::string>& events) {
+    std::string text;
+    for (const auto& event : events) text += at_this_time(event) + "\n";
+    if (!text.empty()) say(text);
+  }
+  void show_table(const Launcher& launcher, const Heartbeats& heartbeats) {
+    // One that waits would be old when it is read.
+    if (!terminal_ || std::chrono::steady_clock::now() < next_table_ || !output_.idle()) return;
+    next_table_ = std::chrono::steady_clock::now() + milliseconds(1000);
+    const Table table = live_table(launcher, heartbeats);
+    std::string text;
+    if (table_lines_ > 0) text = "\033[" + std::to_string(table_lines_) + "A\033[J";
+    output_.say(text + table.text());
+    table_lines_ = table.size() + 1;
   }
 
  private:
   const bool terminal_ = isatty(STDOUT_FILENO) != 0;
+  BackgroundOutput output_{STDOUT_FILENO};
   std::chrono::steady_clock::time_point next_table_ =
       std::chrono::steady_clock::now() + milliseconds(1000);
   std::size_t table_lines_ = 0;
@@ -294,10 +301,9 @@ int launch(const LaunchArguments& arguments) {
   const auto listening = RunningRobot::listen(manifest);
   if (!listening) return fail(listening.error());
   RunningRobot& robot = **listening;
-  std::cout << "launching " << manifest.name << "; logs in " << options.run_directory
-            << "; Ctrl-C stops the robot, then everything\n"
-            << std::flush;
   Display display;
+  display.say("launching " + manifest.name + "; logs in " + options.run_directory +
+              "; Ctrl-C stops the robot, then everything\n");
   service.ready();
   while (!stop_asked && !launcher->broken()) {
     robot.report_to(*launcher);
@@ -305,16 +311,17 @@ int launch(const LaunchArguments& arguments) {
     service.alive(launcher->healthy(), launcher->summary());
     auto events = launcher->events();
     for (auto& news : robot.refusals()) events.push_back(std::move(news));
-    display.show(events, *launcher, robot.heartbeats());
+    display.show(events);
+    display.show_table(*launcher, robot.heartbeats());
     std::this_thread::sleep_for(milliseconds(20));
   }
   const bool broken = launcher->broken();
   service.stopping();
-  std::cout << (broken ? "a component cannot be kept running; " : "")
-            << "stopping: first the robot, then everything in reverse order, the base driver last\n"
-            << std::flush;
+  display.say(
+      std::string(broken ? "a component cannot be kept running; " : "") +
+      "stopping: first the robot, then everything in reverse order, the base driver last\n");
   launcher->stop([&] { return robot.stands(); });
-  for (const auto& event : launcher->events()) std::cout << at_this_time(event) << "\n";
+  display.show(launcher->events());
   return broken ? 1 : 0;
 }
 

@@ -12,7 +12,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "control/manual_control/core/manual_control.hpp"
 #include "idl/topics.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/robot.hpp"
@@ -125,9 +127,16 @@ class Keyboard {
     const bool down = held(now);
     sensor_msgs::msg::Joy message;
     message.header(wire::header(stamp, ""));
-    message.axes(
-        {0.0F, down ? pace_ * sticks_.forward : 0.0F, 0.0F, down ? pace_ * sticks_.turn : 0.0F});
-    message.buttons({0, 0, 0, 0, down ? 1 : 0});
+    constexpr auto& kMap = manual_control::kKeyboardMapping;
+    std::vector<float> axes(std::max(kMap.forward_axis, kMap.turn_axis) + 1, 0.0F);
+    std::vector<std::int32_t> buttons(kMap.dead_man + 1, 0);
+    if (down) {
+      axes[kMap.forward_axis] = pace_ * sticks_.forward;
+      axes[kMap.turn_axis] = pace_ * sticks_.turn;
+      buttons[kMap.dead_man] = 1;
+    }
+    message.axes(axes);
+    message.buttons(buttons);
     return message;
   }
 
@@ -152,6 +161,7 @@ void show(const Keyboard& keyboard, const std::optional<MovementStatus>& movemen
 }
 
 int teleop(std::uint32_t domain, milliseconds hold) {
+  static_assert(manual_control::kKeyboard == kOperatorName);
   auto observer = Observer::create(reach_robot(kOperatorName, domain));
   if (!observer) return fail(observer.error());
   auto joy = (*observer)->writer(topics::kJoy);

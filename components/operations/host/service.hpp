@@ -23,9 +23,10 @@ struct ServiceUnit {
   std::string text;
 };
 
-/// One unit: `usher launch` for this host, restarted for ever, killed by the watchdog when the
-/// launcher hangs or can no longer keep its components running. Its run directory is
-/// /var/lib/usher/HOST, so that what is latched stays latched over stops and boots.
+/// One unit: `usher launch` for this host, restarted for ever, ended with all its components by the
+/// watchdog when the launcher hangs or can no longer keep them running; killed is only what is left
+/// of them when the base stands. Its run directory is /var/lib/usher/HOST, so that what is latched
+/// stays latched over stops and boots.
 ServiceUnit service_unit(const Manifest& manifest, const ServiceOptions& options);
 
 /// The service's side of the sd_notify(3) protocol: datagrams to the socket that $NOTIFY_SOCKET

@@ -1,10 +1,13 @@
 #include "runtime/dds/dds_transport.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 
 #include "runtime/dds/bytes_type.hpp"
@@ -20,6 +23,25 @@ namespace {
 
 Guid to_guid(const rtps::InstanceHandle_t& handle) {
   return usher::runtime::to_guid(rtps::iHandle2GUID(handle));
+}
+
+std::string name_of(const ReturnCode_t& code) {
+  switch (code()) {
+    case ReturnCode_t::RETCODE_ERROR:
+      return "RETCODE_ERROR";
+    case ReturnCode_t::RETCODE_BAD_PARAMETER:
+      return "RETCODE_BAD_PARAMETER";
+    case ReturnCode_t::RETCODE_PRECONDITION_NOT_MET:
+      return "RETCODE_PRECONDITION_NOT_MET";
+    case ReturnCode_t::RETCODE_OUT_OF_RESOURCES:
+      return "RETCODE_OUT_OF_RESOURCES";
+    case ReturnCode_t::RETCODE_NOT_ENABLED:
+      return "RETCODE_NOT_ENABLED";
+    case ReturnCode_t::RETCODE_TIMEOUT:
+      return "RETCODE_TIMEOUT";
+    default:
+      return "return code " + std::to_string(code());
+  }
 }
 
 /// Ports are declared by the component's code and checked by its tests, and the wire types are our
@@ -98,14 +120,17 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
                                                   declaration.qos, this))),
         guid_(usher::runtime::to_guid(writer_->guid())) {}
 
-  void write(std::shared_ptr<const Bytes> cdr) override {
+  bool write(std::shared_ptr<const Bytes> cdr) override {
     last_ = cdr;
     std::span<const std::uint8_t> payload(*cdr);
-    if (!writer_->write(&payload) && !failed_) {
-      failed_ = true;
-      std::fprintf(stderr, "warning: %zu bytes on rt/%s could not be written\n", payload.size(),
-                   topic_.c_str());
+    const ReturnCode_t code = writer_->write(&payload, rtps::c_InstanceHandle_Unknown);
+    if (code == ReturnCode_t::RETCODE_OK) return true;
+    if (const auto cause = 1U << std::min(code(), 31U); (told_ & cause) == 0) {
+      told_ |= cause;
+      std::fprintf(stderr, "warning: %zu bytes on rt/%s could not be written: %s\n", payload.size(),
+                   topic_.c_str(), name_of(code).c_str());
     }
+    return false;
   }
   std::size_t reader_count() const override { return readers_.load(std::memory_order_relaxed); }
   Guid guid() const override { return guid_; }
@@ -128,7 +153,7 @@ class DdsWriter final : public Transport::Writer, private dds::DataWriterListene
   std::shared_ptr<const Bytes> last_;
   dds::DataWriter* writer_;
   Guid guid_;
-  bool failed_ = false;
+  std::uint32_t told_ = 0;  ///< causes for which one was not written, a bit each
 };
 
 }  // namespace

@@ -330,6 +330,7 @@ class Engine::State {
       input.report_counts(heart);
       lost += input.lost();
     }
+    for (EngineOutput& output : outputs) output.report_counts(heart);
     heartbeat.publish(heart.beat(now, platform.resources(), lost));
     outbox.release();
   }

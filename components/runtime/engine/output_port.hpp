@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "runtime/api/ports.hpp"
+#include "runtime/engine/heart.hpp"
 #include "runtime/engine/transport.hpp"
 
 namespace usher::runtime {
@@ -39,7 +42,12 @@ class EngineOutput final : public OutputPort {
   topics::Scope scope() const { return declaration_.scope; }
   /// Nothing where it was not opened, as ports of the fleet of a robot that is in none.
   void write(std::shared_ptr<const Bytes> cdr) {
-    if (writer_ != nullptr) writer_->write(std::move(cdr));
+    if (writer_ != nullptr && !writer_->write(std::move(cdr))) ++not_written_;
+  }
+  /// Adds to the heartbeat's counters what was not written since the last call.
+  void report_counts(Heart& heart) {
+    if (not_written_ == 0) return;
+    heart.counter(declaration_.topic + ": not written") += std::exchange(not_written_, 0);
   }
 
   void publish(const void* message) override;
@@ -52,6 +60,7 @@ class EngineOutput final : public OutputPort {
   OutputDeclaration declaration_;
   Outbox* outbox_;
   Transport::Writer* writer_ = nullptr;
+  std::uint64_t not_written_ = 0;
   std::vector<std::shared_ptr<Bytes>> buffers_;  ///< used again when nobody else holds them
 };
 

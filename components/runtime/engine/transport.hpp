@@ -26,7 +26,8 @@ class Transport {
   class Writer {
    public:
     virtual ~Writer() = default;
-    virtual void write(std::shared_ptr<const Bytes> cdr) = 0;
+    /// False when it was not taken; the transport says why.
+    virtual bool write(std::shared_ptr<const Bytes> cdr) = 0;
     virtual std::size_t reader_count() const = 0;
     virtual Guid guid() const = 0;
   };

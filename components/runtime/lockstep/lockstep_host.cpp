@@ -168,10 +168,10 @@ class LockstepHost::Life final : public Platform, public Transport {
   class LeavingWriter final : public Transport::Writer {
    public:
     LeavingWriter(Life& life, Transport::Writer& writer) : life_(&life), writer_(&writer) {}
-    void write(std::shared_ptr<const Bytes> cdr) override {
+    bool write(std::shared_ptr<const Bytes> cdr) override {
       const Time now = life_->host_.schedule_.now();
       life_->host_.network_.set_departure(life_->id, now + life_->spent());
-      writer_->write(std::move(cdr));
+      return writer_->write(std::move(cdr));
     }
     std::size_t reader_count() const override { return writer_->reader_count(); }
     Guid guid() const override { return writer_->guid(); }
@@ -205,7 +205,7 @@ LockstepHost::LockstepHost(std::uint32_t index, Schedule& schedule, Network& net
       network_(network),
       factory_(std::move(factory)),
       file_(std::move(file)),
-      options_(options) {}
+      options_(std::move(options)) {}
 
 LockstepHost::~LockstepHost() = default;
 

@@ -111,7 +111,10 @@ class Network::Writer final : public Transport::Writer {
         qos(declaration.qos),
         id(its_guid) {}
 
-  void write(std::shared_ptr<const Bytes> cdr) override { network.write(*this, std::move(cdr)); }
+  bool write(std::shared_ptr<const Bytes> cdr) override {
+    network.write(*this, std::move(cdr));
+    return true;
+  }
   std::size_t reader_count() const override { return matches.size(); }
   Guid guid() const override { return id; }
 

@@ -122,6 +122,34 @@ TEST(Scan, IsCheckedBeforeAnybodyReadsIt) {
   EXPECT_FALSE(check(bad));
 }
 
+TEST(Refusals, NameTheValueThatIsNotFinite) {
+  const auto error_of = [](const auto& result) { return result ? std::string() : result.error(); };
+  auto pose = to_message(geometry::Pose2{});
+  pose.position().z(kNaN);
+  EXPECT_EQ(error_of(from_message(pose)), "pose must be finite, got z = nan");
+  auto frame = to_transform(geometry::Pose3{});
+  frame.rotation().y(-std::numeric_limits<double>::infinity());
+  EXPECT_EQ(error_of(from_message(frame)), "pose must be finite, got quaternion.y = -inf");
+  geometry_msgs::msg::Twist twist;
+  twist.angular().z(kNaN);
+  EXPECT_EQ(error_of(from_message(twist)), "velocity must be finite, got angular.z = nan");
+  auto costs = to_message(Time{}, "odom", grid::Grid<std::uint8_t>({1, 1, 0.05, 0, 0}));
+  costs.origin_y(kNaN);
+  EXPECT_EQ(error_of(from_message(costs)), "grid origin must be finite, got y = nan");
+  sensor_msgs::msg::LaserScan scan;
+  scan.ranges() = {1.0F};
+  scan.angle_max(static_cast<float>(kNaN));
+  EXPECT_EQ(error_of(check(scan)), "scan angles must be finite, got angle_max = nan");
+  auto covariance = to_covariance(Eigen::Matrix3d::Identity());
+  covariance[11] = kNaN;
+  EXPECT_EQ(error_of(from_covariance(covariance)),
+            "covariance of y and yaw must be finite, got nan");
+  covariance[7] = -1.0;
+  covariance[11] = 0.0;
+  EXPECT_EQ(error_of(from_covariance(covariance)),
+            "variance of y must not be negative, got -1.000000");
+}
+
 TEST(Covariance, KeepsThePlanarPart) {
   Eigen::Matrix3d planar;
   planar << 1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 3.0;

@@ -44,7 +44,7 @@ ManualControl::Pad& ManualControl::pad_of(const drive::WriterId& writer, Time no
 }
 
 Wish ManualControl::edge(Pad& pad, const Sticks& sticks) const {
-  const Mapping& map = parameters_.mapping;
+  const Mapping& map = mapping_of(sticks);
   // What stops wins when two are pressed at once.
   const std::array<std::pair<std::size_t, Wish>, 4> buttons{{{map.movement_off, Wish::kMovementOff},
                                                              {map.manual_off, Wish::kManualOff},
@@ -74,7 +74,7 @@ void ManualControl::release(Time now) {
 Wish ManualControl::take(const Sticks& sticks, Time now) {
   command(now);  // a holder that was silent for too long no longer is one
   Pad& pad = pad_of(sticks.writer, now);
-  const Mapping& map = parameters_.mapping;
+  const Mapping& map = mapping_of(sticks);
   const bool finite = std::all_of(sticks.axes.begin(), sticks.axes.end(),
                                   [](float axis) { return std::isfinite(axis); });
   if (!finite) ++rejected_;

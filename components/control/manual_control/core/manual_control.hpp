@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "drivers/base_obedience/core/writer_id.hpp"
 #include "foundation/geometry/pose2.hpp"
@@ -26,8 +27,13 @@ struct Mapping {
   std::size_t manual_off = 3;    ///< Y
 };
 
+/// The participant of `usher teleop`, whose keys are sticks and buttons as this says, however the
+/// robot's pad is laid out.
+inline constexpr std::string_view kKeyboard = "operator";
+inline constexpr Mapping kKeyboardMapping{};
+
 struct Parameters {
-  Mapping mapping;
+  Mapping mapping;          ///< of every pad
   double linear = 0.8;      ///< [m/s] {> 0} at full deflection
   double angular = 0.8;     ///< [rad/s] {> 0}
   double dead_zone = 0.12;  ///< {0..0.9} of a stick's way that counts as rest
@@ -45,7 +51,8 @@ struct Sticks {
   drive::WriterId writer{};  ///< whose pad it is
   std::span<const float> axes;
   std::span<const std::int32_t> buttons;
-  bool late = false;  ///< too old to drive by; its buttons were pressed all the same
+  bool late = false;      ///< too old to drive by; its buttons were pressed all the same
+  bool keyboard = false;  ///< they mean what kKeyboardMapping says
 };
 
 /// From sticks and buttons to a velocity. It drives only while the dead-man button is held, on one
@@ -79,6 +86,9 @@ class ManualControl {
   };
 
   Pad& pad_of(const drive::WriterId& writer, Time now);
+  const Mapping& mapping_of(const Sticks& sticks) const {
+    return sticks.keyboard ? kKeyboardMapping : parameters_.mapping;
+  }
   Wish edge(Pad& pad, const Sticks& sticks) const;
   void release(Time now);
   double deflection(float value) const;

@@ -1,5 +1,7 @@
 #include "control/manual_control/shell/component.hpp"
 
+#include <algorithm>
+
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
 
@@ -78,11 +80,26 @@ ManualControlComponent::ManualControlComponent(runtime::Host& host)
   host.health().set(runtime::HealthState::kOk);
 }
 
+/// Of its participant; empty where discovery does not know it yet.
+const std::string& ManualControlComponent::name_of(const runtime::Guid& writer) {
+  if (heard_.guid != writer || heard_.participant.empty()) {
+    const auto all = joy_.writers();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.guid == writer; });
+    heard_ = found == all.end() ? runtime::WriterInfo{} : *found;
+  }
+  return heard_.participant;
+}
+
 void ManualControlComponent::take(const sensor_msgs::msg::Joy& joy,
                                   const runtime::SampleInfo& info) {
+  const std::string& writer = name_of(info.writer);
+  // What its buttons mean is not known before discovery tells whose they are: a moment later.
+  if (writer.empty()) return;
   const bool held = core_.held();
   const bool late = joy_.fresh() == nullptr;
-  const Wish wish = core_.take({info.writer, joy.axes(), joy.buttons(), late}, now());
+  const Wish wish =
+      core_.take({info.writer, joy.axes(), joy.buttons(), late, writer == kKeyboard}, now());
   rejected_ = core_.rejected();
   if (wish != Wish::kNone) ask(wish);
   if (held || core_.held()) drive();

@@ -16,6 +16,7 @@ class ManualControlComponent final : public runtime::Component {
   static Parameters read_parameters(runtime::Parameters& parameters);
   Time now() const { return host_.now().time_since_epoch(); }
   void take(const sensor_msgs::msg::Joy& joy, const runtime::SampleInfo& info);
+  const std::string& name_of(const runtime::Guid& writer);
   void drive();
   void ask(Wish wish);
 
@@ -27,6 +28,7 @@ class ManualControlComponent final : public runtime::Component {
   bool asks_to_stop_ = false;  ///< as long as that is not answered
 
   runtime::Input<sensor_msgs::msg::Joy> joy_;
+  runtime::WriterInfo heard_;  ///< the newest sample's writer; empty where it is not known yet
   runtime::Input<usher_msgs::msg::SupervisorStatus> supervisor_;
   runtime::Output<geometry_msgs::msg::TwistStamped> command_;
   runtime::Timer timer_;

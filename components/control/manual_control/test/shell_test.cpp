@@ -24,8 +24,9 @@ sensor_msgs::msg::Joy joy_at(runtime::Time stamp, float forward,
   return message;
 }
 
-runtime::TestHost make() {
-  return runtime::TestHost(runtime::component_factory<ManualControlComponent>("manual_control"));
+runtime::TestHost make(const std::string& parameters = {}) {
+  return runtime::TestHost(runtime::component_factory<ManualControlComponent>("manual_control"),
+                           parameters);
 }
 
 TEST(ManualControlShell, PublishesWhileHeldAndFallsSilentAfterZeros) {
@@ -68,6 +69,44 @@ TEST(ManualControlShell, ASampleThatComesTooLateDrivesNothingButItsStopIsOne) {
   host.run_for(milliseconds(100));
   ASSERT_FALSE(host.written(topics::kSupervisorRequest).empty());
   EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_STOP);
+}
+
+// A pad whose turn is where the keyboard's forward is, and its A where the keyboard's dead-man is.
+TEST(ManualControlShell, TheKeyboardMeansTheSameWhateverThePadsLayout) {
+  auto host = make("{forward_axis: 0, turn_axis: 1, dead_man_button: 5, movement_on_button: 4}");
+  const auto press = [&](const std::string& who, float forward, float turn, std::size_t dead_man) {
+    for (const bool down : {false, true, true}) {
+      sensor_msgs::msg::Joy message;
+      message.header().stamp(wire::to_message(host.now()));
+      message.axes({0.0F, 0.0F, 0.0F, 0.0F});
+      message.buttons(std::vector<std::int32_t>(6, 0));
+      const bool keys = who == kKeyboard;
+      message.axes()[keys ? kKeyboardMapping.forward_axis : 0] = down ? forward : 0.0F;
+      message.axes()[keys ? kKeyboardMapping.turn_axis : 1] = down ? turn : 0.0F;
+      message.buttons()[dead_man] = down ? 1 : 0;
+      host.publish(topics::kJoy, message, who);
+      host.run_for(milliseconds(20));
+    }
+  };
+  const auto commanded = [&] {
+    const auto twist = host.last(topics::kCmdVelManual)->twist();
+    return std::pair(twist.linear().x(), twist.angular().z());
+  };
+  press(std::string(kKeyboard), 1.0F, 0.0F, kKeyboardMapping.dead_man);
+  ASSERT_TRUE(host.last(topics::kCmdVelManual))
+      << "the keyboard's dead-man is no button of the pad";
+  EXPECT_EQ(commanded(), std::pair(0.8, 0.0));
+  EXPECT_TRUE(host.written(topics::kSupervisorRequest).empty()) << "nobody pressed A";
+  host.run_for(milliseconds(1000));
+  host.clear();
+
+  press("gamepad", 0.0F, 1.0F, 5);
+  ASSERT_TRUE(host.last(topics::kCmdVelManual));
+  EXPECT_EQ(commanded(), std::pair(0.0, 0.8));
+  host.run_for(milliseconds(1000));
+  press("gamepad", 0.0F, 0.0F, 4);
+  ASSERT_TRUE(host.last(topics::kSupervisorRequest));
+  EXPECT_EQ(host.last(topics::kSupervisorRequest)->command(), COMMAND_MOVEMENT_ON);
 }
 
 TEST(ManualControlShell, IsNeverSilentWhileItIsItsTurn) {

@@ -45,7 +45,7 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
   const auto index = static_cast<std::size_t>(entry - health_.data());
   Record& record = records_[index];
   ComponentHealth& health = health_[index];
-  const Time at = std::max(now, health.heard_at.value_or(now));  // an old one unsays nothing
+  const Time at = std::max(now, health.heard_at.value_or(now));
   if (heartbeat.writer != record.writer) {
     // A, B, A: both live, and however many more are between. A, B alone is a restart.
     auto& earlier = record.earlier_writers;
@@ -59,12 +59,13 @@ bool HeartbeatTable::hear(const Heartbeat& heartbeat, Time now) {
         record.writer;
     record.writer = heartbeat.writer;
   }
+  if (now < at) return true;  // an old one unsays nothing
   record.reported = heartbeat.state;
   record.idl_digest = heartbeat.idl_digest;
   record.reason = heartbeat.reason;
   health.longest_handler = heartbeat.longest_handler;
   if (health.host != heartbeat.host) health.host = heartbeat.host;
-  health.heard_at = at;
+  health.heard_at = now;
   return true;
 }
 

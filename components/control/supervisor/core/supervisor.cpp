@@ -21,6 +21,21 @@ constexpr Time kOperatorsFirst = std::chrono::milliseconds(100);
 constexpr const char* kItself = "supervisor";
 constexpr const char* kOthers = "others";  // more clients than are remembered
 
+/// High, to see faces, while somebody stands before the robot; low where it drives.
+double camera_angle_in(State state, const Parameters& parameters) {
+  switch (state) {
+    case State::kInteraction:
+    case State::kNavigationStart:
+    case State::kNavigationEnd:
+      return parameters.camera_angle_interaction;
+    case State::kNavigationActive:
+    case State::kManual:
+      return parameters.camera_angle_navigation;
+    default:
+      return parameters.camera_angle_default;
+  }
+}
+
 bool over(GoalState state) {
   return state == GoalState::kSucceeded || state == GoalState::kFailed ||
          state == GoalState::kCancelled;
@@ -381,10 +396,7 @@ const Decision& Supervisor::step(Time now) {
   decision_.emergency_stop = faults_.active(Cause::kEmergencyStop) ||
                              (parameters_.emergency_stop_when_disobeying && runs_away_);
   decision_.reset_base = resetting(now) && !fault;
-  decision_.camera_angle =
-      decision_.state == State::kInteraction        ? parameters_.camera_angle_interaction
-      : decision_.state == State::kNavigationActive ? parameters_.camera_angle_navigation
-                                                    : parameters_.camera_angle_default;
+  decision_.camera_angle = camera_angle_in(decision_.state, parameters_);
   explain(now);
   decision_.reason = reason_;
   if (!behavior_.navigation_wanted()) goal_.clear();

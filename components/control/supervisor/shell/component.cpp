@@ -242,6 +242,7 @@ SupervisorComponent::SupervisorComponent(runtime::Host& host)
 
 void SupervisorComponent::watch(const std::string& topic) {
   host_.watch_writers(topic, [this, topic](const runtime::WriterInfo& writer) {
+    introduce_itself();
     if (writer.alive) {
       core_.writer_appeared(topic, {writer.guid, writer.participant, writer.host}, now());
     } else {
@@ -280,8 +281,9 @@ void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest&
   publish_status();
 }
 
-/// So that another writer of these topics is a second one, whatever its name.
+/// Before anybody else, so that another writer of these topics is a second one, whatever its name.
 void SupervisorComponent::introduce_itself() {
+  if (std::exchange(introduced_, true)) return;
   const auto introduce = [this](std::string_view topic, const runtime::Guid& writer) {
     core_.writer_appeared(topic, {writer, host_.name(), host_.host_name()}, now());
   };
@@ -292,8 +294,7 @@ void SupervisorComponent::introduce_itself() {
 }
 
 void SupervisorComponent::step() {
-  if (!introduced_) introduce_itself();
-  introduced_ = true;
+  introduce_itself();
   core_.alive(grant_.guid(), now());
   const Decision& decision = core_.step(now());
   publish_grant(decision);

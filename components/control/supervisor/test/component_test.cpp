@@ -226,6 +226,25 @@ TEST(BaseDriver, IsWhoeverWritesItsStatusInTheManifest) {
   }
 }
 
+TEST(ForeignWriters, AreNamedWhoseNameIsTheSupervisorsAndWhoWereMetFirst) {
+  const auto claim = [](const auto& topic) {
+    SCOPED_TRACE(topic.name);
+    runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"),
+                           kManifest};
+    host.publish(topic, {}, "supervisor");  // and nothing more
+    host.run_for(milliseconds(300));
+    const auto status = host.last(topics::kSupervisorStatus).value();
+    ASSERT_FALSE(status.faults().empty());
+    EXPECT_EQ(status.faults().front().component_name(), "supervisor");
+    EXPECT_TRUE(status.faults().front().latched());
+    EXPECT_NE(status.reason().find(topic.name), std::string::npos) << status.reason();
+  };
+  claim(topics::kDriveGrant);
+  claim(topics::kMovementEnable);
+  claim(topics::kBaseRequest);
+  claim(topics::kSupervisorStatus);
+}
+
 /// With a writer of every topic in it.
 std::string manifest_of_everybody() {
   std::string lines = "manifest.components:\n";

@@ -112,6 +112,14 @@ TEST(HeartbeatTable, AnOldHeartbeatUnsaysNoNewerOne) {
   heartbeats.hear(beat("amcl"), milliseconds(0));
   heartbeats.judge(milliseconds(1050));
   EXPECT_EQ(heartbeats.find("amcl")->health, Health::kOk);
+  heartbeats.hear(beat("amcl", Reported::kFault, 1, kDigest, "no map"), milliseconds(1060));
+  heartbeats.hear(beat("amcl", Reported::kOk, 1, kDigest + 1), milliseconds(1040));
+  heartbeats.judge(milliseconds(1070));
+  EXPECT_EQ(heartbeats.find("amcl")->health, Health::kFault);
+  EXPECT_EQ(heartbeats.find("amcl")->reason, "no map");
+  heartbeats.hear(beat("amcl"), milliseconds(1080));
+  heartbeats.judge(milliseconds(1080));
+  EXPECT_EQ(heartbeats.find("amcl")->health, Health::kOk);
 }
 
 TEST(HeartbeatTable, ARestartIsNoConflictButTwoLivesAre) {

@@ -559,6 +559,37 @@ TEST(Supervisor, CountsHeartbeatsThatTheManifestDoesNotKnow) {
   EXPECT_EQ(robot.supervisor.unknown_heartbeats(), 1U);
 }
 
+TEST(Supervisor, LooksUpWhereSomebodyStandsBeforeItAndDownWhereItDrives) {
+  const Parameters angles = parameters();
+  Robot robot;
+  robot.run(100);
+  const auto expect = [&](State state, double angle) {
+    EXPECT_EQ(robot.state(), state);
+    EXPECT_EQ(robot.supervisor.decision().camera_angle, angle) << text(state);
+    EXPECT_EQ(robot.supervisor.status().camera_angle, angle) << text(state);
+  };
+  expect(State::kInitialise, angles.camera_angle_default);
+  robot.appear();
+  robot.run(400);
+  expect(State::kInteraction, angles.camera_angle_interaction);
+  robot.ask(Command::kNavigationStart, "am218");
+  expect(State::kInactive, angles.camera_angle_default);
+  robot.run(300);
+  expect(State::kNavigationStart, angles.camera_angle_interaction);
+  robot.ask(Command::kNavigationGo);
+  robot.supervisor.navigation(41, GoalState::kActive);
+  robot.run(100);
+  expect(State::kNavigationActive, angles.camera_angle_navigation);
+  robot.supervisor.navigation(41, GoalState::kSucceeded);
+  robot.run(20);
+  expect(State::kNavigationEnd, angles.camera_angle_interaction);
+  robot.ask(Command::kManualOn);
+  robot.run(300);
+  expect(State::kManual, angles.camera_angle_navigation);
+  robot.ask(Command::kEmergencyStop);
+  expect(State::kFault, angles.camera_angle_default);
+}
+
 TEST(Supervisor, ReportsAppendixA3) {
   Robot robot = guiding();
   robot.silent.insert("tablet");

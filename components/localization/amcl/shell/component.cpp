@@ -246,7 +246,7 @@ void AmclComponent::publish_pose(runtime::Time stamp) {
 
 void AmclComponent::publish_status() {
   usher_msgs::msg::LocalizationStatus message;
-  message.header(wire::header(last_scan_, frames::kMap));
+  message.header(wire::header(last_used_, frames::kMap));  // readers age it
   message.particles(static_cast<std::uint32_t>(core_.particles().size()));
   std::string reason;
   Confidence confidence = Confidence::kLost;

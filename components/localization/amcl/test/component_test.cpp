@@ -163,6 +163,10 @@ TEST_F(Component, AgesScansOfAnotherHostFromTheirArrival) {
     host.run_for(milliseconds(100));
   }
   EXPECT_EQ(status().state(), STATE_GOOD) << status().reason();
+  // As do those who read its status on this host.
+  const auto age = host.now() - wire::from_message(status().header().stamp());
+  EXPECT_GE(age, milliseconds(0));
+  EXPECT_LT(age, milliseconds(250));
   run(700, false);
   EXPECT_EQ(status().state(), STATE_LOST);
 }

@@ -7,6 +7,7 @@
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
+#include "wire/low_scan.hpp"
 
 namespace usher::costmap {
 
@@ -164,8 +165,9 @@ void CostmapComponent::listen() {
   judge(low_beams_, kDepthAge, "kinect low");
   judge(rear_beams_, kDepthAge, "rear camera");
 
-  map_ = host_.input(topics::kMap, {},
-                     [this](const auto& message, const auto&) { take_map(message); });
+  map_ = host_.input(topics::kMap, {}, [this](const auto& message, const auto& info) {
+    take_map(message, info.effective);
+  });
   scan_ = host_.input(
       topics::kScanFiltered,
       {.max_age = silence, .on_loss = "publishes no local costs: the local planner stops"},
@@ -293,7 +295,8 @@ void CostmapComponent::refuse_map(const std::string& reason) {
   report();
 }
 
-void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
+void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message,
+                                runtime::Time effective) {
   const auto map = wire::from_message(message);
   if (!map) {
     refuse_map(map.error());
@@ -315,7 +318,7 @@ void CostmapComponent::take_map(const nav_msgs::msg::OccupancyGrid& message) {
   contacts_.clear();  // they were in the former map
   global_.static_known = true;
   if (static_in_local_) waiting_map_ = *map;
-  global_.newest = wire::from_message(message.header().stamp());
+  global_.newest = effective;
   publish_global();
 }
 
@@ -342,18 +345,20 @@ void CostmapComponent::take_scan(std::shared_ptr<const sensor_msgs::msg::LaserSc
   const std::string frame = scan->header().frame_id();
   transforms_.when_known(frames::kOdom, frame, stamp,
                          [this, scan = std::move(scan), &beams, layer, stamp,
-                          since = info.effective](const auto& pose) {
-                           if (host_.now() - since > beams.max_age) {
+                          effective = info.effective](const auto& pose) {
+                           if (host_.now() - effective > beams.max_age) {
                              ++*beams.late;  // nobody drives on what was
                            } else {
-                             place_scan(*scan, beams, layer, stamp, geometry::to_plane(pose));
+                             place_scan(*scan, beams, layer, stamp, effective,
+                                        geometry::to_plane(pose));
                            }
                          });
 }
 
+/// `stamp` is on the clock of the sensor's host, as tf of that time; `effective` on this one's.
 void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
                                   Costmap::LayerId Map::*layer, runtime::Time stamp,
-                                  const geometry::Pose2& odom_T_sensor) {
+                                  runtime::Time effective, const geometry::Pose2& odom_T_sensor) {
   const auto odom_T_base = transforms_.lookup_planar(frames::kOdom, frames::kBaseFootprint, stamp);
   if (!odom_T_base) {
     ++placeless_scans_;
@@ -367,9 +372,9 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
                         const geometry::Pose2& window_T_sensor) {
     if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
-    RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(stamp)};
+    RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(effective)};
     if (layer == &Map::low) {
-      split_feet(map, seen);
+      split_feet(map, seen, scan);
       seen.ranges = feet_ranges_;
       if (!observe(map, map.feet, seen)) return;
       seen.ranges = alone_ranges_;
@@ -382,8 +387,9 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     }
     if (!observe(map, map.*layer, seen)) return;
     if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
+    if (&map == &local_ && layer == &Map::laser && effective >= map.newest) laser_stamp_ = stamp;
     // The local costs are as old as their laser scan, whatever else was seen since.
-    if (&map == &global_ || layer == &Map::laser) map.newest = std::max(map.newest, stamp);
+    if (&map == &global_ || layer == &Map::laser) map.newest = std::max(map.newest, effective);
   };
   take(local_, *odom_T_base, odom_T_sensor);
   const auto map_T_odom = transforms_.lookup_planar(frames::kMap, frames::kOdom, stamp);
@@ -395,15 +401,17 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
 
 /// Low things are remembered for minutes, since nobody sees them again near the robot. What is low
 /// beside something that the laser sees and the map has not may be a foot of it: that is remembered
-/// as long as the laser sees such a thing there.
-void CostmapComponent::split_feet(const Map& map, const RangeObservation& low) {
+/// as long as the laser sees such a thing there. Where floor is missing is nobody's foot.
+void CostmapComponent::split_feet(const Map& map, const RangeObservation& low,
+                                  const sensor_msgs::msg::LaserScan& scan) {
   alone_ranges_ = feet_ranges_ = lasting_ranges_;
   for (std::size_t i = 0; i < lasting_ranges_.size(); ++i) {
     const float range = lasting_ranges_[i];
     if (!std::isfinite(range) || range <= 0.0F) continue;
     const geometry::Point2 place =
         low.sensor * geometry::Point2(static_cast<double>(range) * low.directions[i]);
-    const bool foot = map.costs->unmapped_beside(map.laser, place, kFoot);
+    const bool foot =
+        !wire::is_drop(scan, i) && map.costs->unmapped_beside(map.laser, place, kFoot);
     (foot ? alone_ranges_ : feet_ranges_)[i] = -range;  // nothing of that kind up to there
   }
 }
@@ -549,7 +557,7 @@ void CostmapComponent::forget_people() {
 void CostmapComponent::publish_local() {
   if (static_in_local_ && global_.static_known) {
     if (const auto map_T_odom =
-            transforms_.lookup_planar(frames::kMap, frames::kOdom, local_.newest)) {
+            transforms_.lookup_planar(frames::kMap, frames::kOdom, laser_stamp_)) {
       if (!local_.costs->set_static_transform(*map_T_odom)) ++rejected_maps_;
       if (waiting_map_) place_static_map();
     }
@@ -591,7 +599,7 @@ void CostmapComponent::report() {
     host_.health().set(HealthState::kDegraded, refused_map_);
   } else if (!global_.static_known) {
     host_.health().set(HealthState::kDegraded, "no map");
-  } else if (!transforms_.lookup(frames::kMap, frames::kBaseFootprint, local_.newest)) {
+  } else if (!transforms_.lookup(frames::kMap, frames::kBaseFootprint, laser_stamp_)) {
     host_.health().set(HealthState::kDegraded, "robot not localized");
   } else {
     host_.health().set(HealthState::kOk);

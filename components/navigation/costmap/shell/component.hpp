@@ -26,7 +26,9 @@ class CostmapComponent final : public runtime::Component {
     Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, low = 0, feet = 0,
                      rear = 0;
     bool static_known = false;
-    runtime::Time newest{};  ///< stamp of the newest data in it: an observation, or the map
+    /// When the newest data in it was true, an observation or the map, on this host's clock:
+    /// readers age the costs by it, and the layers what they remember.
+    runtime::Time newest{};
   };
   /// Beam directions of one scanner, computed when its angles change.
   struct Beams {
@@ -46,18 +48,19 @@ class CostmapComponent final : public runtime::Component {
   void read_echo_settings(runtime::Parameters& parameters);
   void listen();
   void read_depth();
-  void take_map(const nav_msgs::msg::OccupancyGrid& message);
+  void take_map(const nav_msgs::msg::OccupancyGrid& message, runtime::Time effective);
   void refuse_map(const std::string& reason);
   void take_scan(std::shared_ptr<const sensor_msgs::msg::LaserScan> scan,
                  const runtime::SampleInfo& info, Beams& beams, Costmap::LayerId Map::*layer);
   void place_scan(const sensor_msgs::msg::LaserScan& scan, Beams& beams,
-                  Costmap::LayerId Map::*layer, runtime::Time stamp,
+                  Costmap::LayerId Map::*layer, runtime::Time stamp, runtime::Time effective,
                   const geometry::Pose2& odom_T_sensor);
   void hear(const sensor_msgs::msg::LaserScan& sonar, const Beams& rays,
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
-  void split_feet(const Map& map, const RangeObservation& low);
+  void split_feet(const Map& map, const RangeObservation& low,
+                  const sensor_msgs::msg::LaserScan& scan);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
@@ -106,6 +109,7 @@ class CostmapComponent final : public runtime::Component {
   std::optional<Costmap> static_costs_;             ///< of the map alone, like global_
   grid::Grid<std::uint8_t> passing_;                ///< the global costs as published
   Beams laser_beams_, ultrasonic_beams_, depth_beams_, low_beams_, rear_beams_;
+  runtime::Time laser_stamp_{};  ///< of the newest laser scan, on its own host's clock: for tf
   runtime::Time local_published_{};
   std::uint64_t last_request_ = 0;
 

@@ -10,6 +10,7 @@
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/low_scan.hpp"
 
 namespace usher::costmap {
 namespace {
@@ -53,7 +54,7 @@ class Component : public testing::Test {
           host.now(), frames::kOdom, frames::kBaseFootprint, geometry::to_space(base)));
       if (localized)
         moving.transforms().push_back(
-            wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::Pose3{}));
+            wire::transform(host.now(), frames::kMap, frames::kOdom, geometry::to_space(odom)));
       host.publish(topics::kTf, moving);
       if (scans) {
         host.publish(topics::kScanFiltered, scan("laser", laser_range));
@@ -91,7 +92,8 @@ class Component : public testing::Test {
   grid::OccupancyGrid map{{160, 160, 0.05, -4.0, -4.0}, grid::kFree};
   runtime::TestHost host{runtime::component_factory<CostmapComponent>("costmap"), kFootprint};
   runtime::Time map_stamp{}, last_scan{};
-  geometry::Pose2 base;  // in odom and map
+  geometry::Pose2 base;  // in odom
+  geometry::Pose2 odom;  // in map
   float laser_range = 2.0F;
 };
 
@@ -260,6 +262,33 @@ TEST_F(Component, RemembersTheFootOfAThingAsLongAsTheLaserSeesIt) {
     look(3.5F, 1500);  // who stood there has gone, or a door is open
     EXPECT_EQ(local_cost(1.72, 0.0) == kLethalCost, mapped) << "what stands before a wall stays";
     EXPECT_EQ(global_cost(1.72, 0.0) >= kPassing, mapped);
+  }
+}
+
+TEST_F(Component, RemembersADropBesideSomebodyWhoHasLeft) {
+  const auto look = [&](float middle, int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      auto message = scan("laser", 3.5F);
+      std::fill_n(message.ranges().begin() + 20, 40, middle);
+      host.publish(topics::kScanFiltered, message);
+      run(20, false);
+    }
+  };
+  for (const float intensity : {1.0F, wire::kDrop}) {
+    SCOPED_TRACE(intensity);
+    give_map();
+    look(2.03F, 300);  // he stands at the top of the stairs
+    for (int i = 0; i < 5; ++i) {
+      auto low = scan("laser", 1.7F);
+      low.intensities().assign(low.ranges().size(), intensity);
+      host.publish(topics::kKinectScanLow, low);
+      look(2.03F, 40);
+    }
+    EXPECT_EQ(local_cost(1.72, 0.0), kLethalCost);
+    look(3.5F, 1500);
+    const bool drop = intensity == wire::kDrop;
+    EXPECT_EQ(local_cost(1.72, 0.0) == kLethalCost, drop) << "a thing may have been his foot";
+    EXPECT_EQ(global_cost(1.72, 0.0) >= kPassing, drop);
   }
 }
 
@@ -515,7 +544,7 @@ TEST_F(Component, CountsWhatItsLayersCannotUse) {
 
 TEST_F(Component, JudgesNoOtherHostsStampsByItsOwnClock) {
   give_map();
-  for (int i = 0; i < 20; ++i) {  // the clock of the scanner's host is 0.4 s behind
+  for (int i = 0; i < 40; ++i) {  // the clock of the scanner's host is 0.4 s behind
     run(40, false);
     auto message = scan("laser", 1.0F);
     message.header(wire::header(host.now() - milliseconds(400), "laser"));
@@ -523,6 +552,37 @@ TEST_F(Component, JudgesNoOtherHostsStampsByItsOwnClock) {
   }
   EXPECT_EQ(host.counter("scan: late"), 0U);
   EXPECT_EQ(local_cost(1.0, 0.0), kLethalCost);
+  // Nor do those who read the costs on this host, and age them by their stamps.
+  for (const auto& costs : {host.last(topics::kLocalCosts), host.last(topics::kGlobalCosts)}) {
+    ASSERT_TRUE(costs);
+    const auto stamp = wire::from_message(costs->header().stamp());
+    EXPECT_LE(stamp, host.now());
+    EXPECT_LT(host.now() - stamp, milliseconds(1100)) << "the map's costs come once a second";
+  }
+  const auto local = host.last(topics::kLocalCosts);
+  EXPECT_LT(host.now() - wire::from_message(local->header().stamp()), milliseconds(100));
+  // Where the robot was at that time, it says on the clock of the scan.
+  base.x = 1.0;
+  run(200, false);
+  auto before = scan("laser", 2.5F);
+  before.header(wire::header(host.now() - milliseconds(400), "laser"));
+  host.world().publish(topics::kScanFiltered, before, "scan_filter", "sensing");
+  run(40, false);
+  EXPECT_EQ(local_cost(2.5, 0.0), kLethalCost);
+}
+
+TEST_F(Component, PutsTheMapWhereItWasAtTheTimeOfAnotherHostsScan) {
+  map.at(map.geometry().cell_at(-1.0, 0.02)) = grid::kOccupied;  // behind: no sensor sees it
+  give_map();
+  run(1000, false);
+  odom.x = 0.5;
+  run(200, false);
+  auto before = scan();
+  before.header(wire::header(host.now() - milliseconds(400), "laser"));
+  host.world().publish(topics::kScanFiltered, before, "scan_filter", "sensing");
+  run(40, false);
+  EXPECT_EQ(local_cost(-1.0, 0.02), kLethalCost);
+  EXPECT_LT(local_cost(-1.5, 0.02), kLethalCost);
 }
 
 TEST_F(Component, CountsAScanWithoutTheRobotsPose) {

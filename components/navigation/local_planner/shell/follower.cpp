@@ -109,7 +109,7 @@ FollowerComponent::FollowerComponent(runtime::Host& host, std::shared_ptr<PathFo
                        [this](const auto& message, const auto&) { cancel(message); });
   costs_ = host.input(
       topics::kLocalCosts, {.max_age = kCostsAge, .on_loss = "commands zero and waits"},
-      [this](const auto& message, const auto&) { take_costs(message); },
+      [this](const auto& message, const auto& info) { take_costs(message, info.effective); },
       [this] { stand(STATE_WAITING, "no local costs"); });
   odom_ = host.input(topics::kOdom, {.max_age = kOdomAge, .on_loss = "commands zero and waits"}, {},
                      [this] { stand(STATE_WAITING, "no odometry"); });
@@ -177,17 +177,18 @@ void FollowerComponent::forget_goal(const std::string& reason) {
   stand(STATE_IDLE, reason);
 }
 
-void FollowerComponent::take_costs(const usher_msgs::msg::Costmap& message) {
+void FollowerComponent::take_costs(const usher_msgs::msg::Costmap& message,
+                                   runtime::Time effective) {
   const auto costs = wire::from_message(message);
   if (!costs || message.header().frame_id() != frames::kOdom) {
     ++rejected_;
     stand(STATE_WAITING, "local costs refused");
     return;
   }
-  decide(*costs, wire::from_message(message.header().stamp()));
+  decide(*costs, effective);
 }
 
-void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp) {
+void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::Time effective) {
   if (mode_ == MODE_STOP || state_ == STATE_SUCCEEDED || state_ == STATE_FAILED ||
       state_ == STATE_CANCELLED) {
     stand(state_, "");
@@ -224,9 +225,9 @@ void FollowerComponent::decide(const grid::Grid<std::uint8_t>& costs, runtime::T
   last_command_ = decided.command;
   roll_out_.drive(last_command_, host_.now().time_since_epoch());
   last_decision_ = host_.now();
-  command_.publish(wire::to_message(stamp, decided.command));
+  command_.publish(wire::to_message(effective, decided.command));
   if (view_.reader_count() > 0)
-    view_.publish(wire::to_message(stamp, frames::kOdom, decided.trajectory));
+    view_.publish(wire::to_message(effective, frames::kOdom, decided.trajectory));
   conclude(decided, pose);
 }
 

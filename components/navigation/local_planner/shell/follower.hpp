@@ -37,8 +37,9 @@ class FollowerComponent : public runtime::Component {
   void take_goal(const usher_msgs::msg::FollowGoal& goal);
   void cancel(const usher_msgs::msg::GoalCancel& cancel);
   void forget_goal(const std::string& reason);
-  void take_costs(const usher_msgs::msg::Costmap& message);
-  void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time stamp);
+  void take_costs(const usher_msgs::msg::Costmap& message, runtime::Time effective);
+  /// The command is as old as the costs: `effective`, on this host's clock.
+  void decide(const grid::Grid<std::uint8_t>& costs, runtime::Time effective);
   Decision decision(const grid::Grid<std::uint8_t>& costs, const geometry::Pose2& pose,
                     const geometry::Twist2& measured);
   const usher_msgs::msg::People* people_now() const;

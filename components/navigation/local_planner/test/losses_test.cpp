@@ -52,8 +52,9 @@ class Losses : public testing::TestWithParam<const char*> {
       host.publish(topics::kTfStatic, mount_of_laser());
       if (scans) host.publish(topics::kScanFiltered, scan());
       if (sees) {
-        host.publish(topics::kLocalCosts,
-                     wire::to_message(host.now() - costs_late, costs_frame, costs));
+        host.world().publish(topics::kLocalCosts,
+                             wire::to_message(host.now() - costs_late, costs_frame, costs),
+                             "costmap", costs_host);
       }
       host.run_for(milliseconds(people.people().empty() ? 50 : 45));
     }
@@ -135,7 +136,7 @@ class Losses : public testing::TestWithParam<const char*> {
   std::optional<usher_msgs::msg::Whiskers> whiskers;
   usher_msgs::msg::People people;
   milliseconds people_ahead{0};
-  std::string people_host;
+  std::string people_host, costs_host;  // empty: its own
   runtime::TestHost host;
   std::uint64_t goal_id = 0;
 };
@@ -309,6 +310,16 @@ TEST_P(WindowLosses, JudgesNoOtherHostsPeopleByItsOwnClock) {
   add_person(3.5, 0.0, -0.9, 0.0);     // in 2.5 s they would be before the robot
   run(600);
   EXPECT_NE(status().reason(), to_string(Reason::kGivingWay));
+}
+
+TEST_P(Losses, TellsNobodyOfItsHostTheStampOfAnotherHostsCosts) {
+  costs_host = "mapping";
+  costs_late = milliseconds(2500);  // that host's clock is behind
+  drive();
+  EXPECT_TRUE(drives());
+  const auto age =
+      host.now() - wire::from_message(host.last(topics::kCmdVelNavigation)->header().stamp());
+  EXPECT_LT(age, milliseconds(100)) << "who reads the command ages it by that";
 }
 
 TEST_P(Losses, TakesNothingForTouchedWhenTheWhiskersAreSilent) {

@@ -3,10 +3,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <thread>
 
+#include "foundation/kinematics/roll_out.hpp"
 #include "operations/host/doctor.hpp"
 #include "operations/host/service.hpp"
 #include "support/folder.hpp"
@@ -41,6 +43,23 @@ TEST(ServiceUnit, RestartsAndIsWatched) {
                            "WantedBy=multi-user.target\n", "LimitNICE=31\n"})
     EXPECT_THAT(unit.text, HasSubstr(line));
   EXPECT_THAT(unit.text, Not(HasSubstr("RTPRIO"))) << "nothing runs in real time";
+}
+
+TEST(ServiceUnit, OfAHungLauncherEndsTheBasesGuardByNoSignalBeforeTheBaseStands) {
+  const auto unit = service_unit(
+      manifest(),
+      {.program = "/bin/true", .manifest = "/m.yaml", .host = "nuc", .keys = "", .user = ""});
+  // With this KillMode the watchdog's signal goes to all processes, SIGKILL to what is left of
+  // them; a guard ignores SIGTERM.
+  EXPECT_THAT(unit.text, HasSubstr("\nKillMode=control-group\n"));
+  EXPECT_THAT(unit.text, HasSubstr("\nWatchdogSignal=SIGTERM\n"));
+  EXPECT_THAT(unit.text, Not(HasSubstr("SIGKILL")));
+  const std::string key = "\nTimeoutAbortSec=";
+  const auto at = unit.text.find(key);
+  ASSERT_NE(at, std::string::npos) << "TimeoutStopSec= would count: the robot waits for nothing";
+  const std::chrono::duration<double> patience(std::stod(unit.text.substr(at + key.size())));
+  constexpr std::chrono::duration<double> kSilence(0.15);  // of a hung driver, to its guard
+  EXPECT_GT(patience, kSilence + kinematics::RollOut::longest(10.0));
 }
 
 TEST(ServiceUnit, IsAcceptedBySystemd) {

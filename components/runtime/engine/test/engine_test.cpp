@@ -70,12 +70,15 @@ class FakeTransport final : public Transport {
   };
   class FakeWriter final : public Writer {
    public:
-    void write(std::shared_ptr<const Bytes> cdr) override {
+    bool write(std::shared_ptr<const Bytes> cdr) override {
+      if (full) return false;
       ++written;
       last = *cdr;
+      return true;
     }
     std::size_t reader_count() const override { return 1; }
     Guid guid() const override { return {9}; }
+    bool full = false;  ///< takes nothing
     int written = 0;
     Bytes last;
   };
@@ -171,6 +174,34 @@ TEST_F(EngineTest, AFaultOfTheConstructorLeavesAHeartbeatAndNothingElse) {
   const auto beat = type.deserialize(transport_.writers["heartbeat"].last);
   EXPECT_EQ(static_cast<const usher_msgs::msg::Heartbeat*>(beat.get())->reason(), "no laser");
   EXPECT_FALSE(engine_->run_turn());
+}
+
+TEST_F(EngineTest, SamplesThatAreNotWrittenAreCounted) {
+  Output<Message> output;
+  make([&](Host& host) {
+    output = host.output(kReplies);
+    host.timer("speak", std::chrono::milliseconds(10), [&](auto) { output.publish(*message_); });
+  });
+  const auto counted = [&] {
+    advance(std::chrono::milliseconds(100));
+    while (engine_->next_due() <= platform_.now()) EXPECT_TRUE(engine_->run_turn());
+    const auto beat = message_type<usher_msgs::msg::Heartbeat>().deserialize(
+        transport_.writers["heartbeat"].last);
+    std::uint64_t count = 0;
+    for (const auto& counter :
+         static_cast<const usher_msgs::msg::Heartbeat*>(beat.get())->counters()) {
+      if (counter.name() == "test/replies: not written") count = counter.count();
+    }
+    return count;
+  };
+  EXPECT_EQ(counted(), 0U);
+  const int written = transport_.writers["test/replies"].written;
+  EXPECT_GT(written, 0);
+  transport_.writers["test/replies"].full = true;
+  const auto first = counted();
+  EXPECT_GT(first, 0U);
+  EXPECT_GT(counted(), first);
+  EXPECT_EQ(transport_.writers["test/replies"].written, written);
 }
 
 TEST_F(EngineTest, WrongParametersAreNoFaultAndExplainOne) {
@@ -401,6 +432,7 @@ TEST_F(EngineTest, TakesFromManyThreads) {
   });
   constexpr int kThreads = 3, kSamples = 20000;
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   std::atomic<int> running{kThreads};
   for (int t = 0; t < kThreads; ++t) {
     threads.emplace_back([&, t] {

@@ -104,6 +104,8 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
   }
   seen_low_.resize(geometry_.count);
   tall_.resize(geometry_.count);
+  fallen_.resize(geometry_.count);
+  low_drops_.resize(geometry_.count);
   looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
 }
@@ -146,10 +148,12 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   view.drops = mark_drops(image, view.pose);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
+  tell_drops();
   tell_what_hides_low();
   view.processed = processed_;
   view.scan = &scan_;
   view.low = &low_;
+  view.low_drops = low_drops_;
   return view;
 }
 
@@ -206,6 +210,7 @@ void DepthPipeline::clear_bearings() {
   std::fill(low_.ranges.begin(), low_.ranges.end(), kUnknown);
   std::fill(seen_low_.begin(), seen_low_.end(), kUnknown);
   std::fill(tall_.begin(), tall_.end(), kUnknown);
+  std::fill(fallen_.begin(), fallen_.end(), kUnknown);
   std::fill(looked_.begin(), looked_.end(), std::uint8_t{0});
 }
 
@@ -393,12 +398,13 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
         mark(scan_.ranges, column, forward, side_per_pixel(forward));
         if (seen_above(image, pose, column, row_of_floor(pose, forward))) {
           mark(low_.ranges, column, forward, side_per_pixel(forward));
+          mark(fallen_, column, forward, side_per_pixel(forward));
         } else {
           const std::size_t bearing =
               bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel(forward));
           const std::size_t last = std::min(bearing + 1, geometry_.count - 1);  // as mark_seen
           for (std::size_t i = bearing; i <= last; ++i) {
-            low_.ranges[i] = kUnknown;
+            low_.ranges[i] = fallen_[i] = kUnknown;
             looked_[i] = 0;
           }
         }
@@ -408,6 +414,12 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
     begin = end;
   }
   return count;
+}
+
+/// Where a thing stands before the missing floor, the range is that of the thing.
+void DepthPipeline::tell_drops() {
+  for (std::size_t i = 0; i < low_.ranges.size(); ++i)
+    low_drops_[i] = std::isfinite(fallen_[i]) && low_.ranges[i] == fallen_[i] ? 1 : 0;
 }
 
 /// What stands high hides what is low behind it: up to there nothing low is.

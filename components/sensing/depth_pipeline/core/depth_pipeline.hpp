@@ -69,6 +69,8 @@ struct DepthView {
   /// Only what is lower than low_height, and drops; -r: nothing low up to r [m], where something
   /// high hides it.
   const DepthScan* low = nullptr;
+  /// Of each bearing of `low`: 1 where its range ends at missing floor and not at a thing.
+  std::span<const std::uint8_t> low_drops;
   CameraPose pose;  ///< as used: refitted when `refitted`
   bool refitted = false;
   int drops = 0;          ///< columns that end at missing floor
@@ -113,6 +115,7 @@ class DepthPipeline {
   double row_of_high(const CameraPose& pose, double depth) const;
   double row_of_floor(const CameraPose& pose, double forward) const;
   void add_low();
+  void tell_drops();
   void tell_what_hides_low();
   void drop_unsupported(std::vector<float>& ranges) const;
   void mark(std::vector<float>& ranges, int column, double forward, double side_per_pixel);
@@ -133,6 +136,8 @@ class DepthPipeline {
   /// [m] of each bearing: what is high, its foot, and what may be one. Both are in one column and
   /// not always at one bearing, where the camera looks down: at the image's edge the foot alone is.
   std::vector<float> tall_;
+  std::vector<float> fallen_;  // [m] of each bearing: where floor is missing that low_ tells of
+  std::vector<std::uint8_t> low_drops_;
   std::vector<std::uint8_t> looked_;  // of each bearing, whether its columns measured something
   mutable std::vector<float> spare_;
   Confidence confidence_, low_confidence_;

@@ -260,7 +260,7 @@ void DepthPipelineComponent::publish(Camera& camera, const DepthView& view, runt
                        view.scan->intensities);
   if (camera.low) {
     camera.low->publish(stamp, geometry.angle_min, geometry.increment, view.low->ranges,
-                        view.low->intensities);
+                        view.low->intensities, view.low_drops);
   }
   if (camera.output.reader_count() == 0) return;
   const imaging::Intrinsics& size = camera.pipeline->intrinsics();

@@ -2,6 +2,7 @@
 
 #include "wire/conversions.hpp"
 #include "wire/frames.hpp"
+#include "wire/low_scan.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -18,7 +19,8 @@ ScanOutput::ScanOutput(runtime::Host& host, const topics::Topic<sensor_msgs::msg
 }
 
 void ScanOutput::publish(runtime::Time stamp, double angle_min, double increment,
-                         std::span<const float> ranges, std::span<const float> intensities) {
+                         std::span<const float> ranges, std::span<const float> intensities,
+                         std::span<const std::uint8_t> drops) {
   message_.header(wire::header(stamp, frame_.name));
   message_.angle_min(static_cast<float>(angle_min));
   message_.angle_increment(static_cast<float>(increment));
@@ -26,6 +28,9 @@ void ScanOutput::publish(runtime::Time stamp, double angle_min, double increment
       static_cast<float>(angle_min + increment * (static_cast<double>(ranges.size()) - 1.0)));
   message_.ranges().assign(ranges.begin(), ranges.end());
   message_.intensities().assign(intensities.begin(), intensities.end());
+  for (std::size_t i = 0; i < drops.size(); ++i) {
+    if (drops[i] != 0) message_.intensities()[i] = wire::kDrop;
+  }
   output_.publish(message_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "idl/topics.hpp"
@@ -19,8 +20,10 @@ class ScanOutput {
   ScanOutput(runtime::Host& host, const topics::Topic<sensor_msgs::msg::LaserScan>& topic,
              const Frame& frame, double max_range);
 
+  /// `drops`: of each bearing, not 0 where it ends at missing floor; empty: nowhere.
   void publish(runtime::Time stamp, double angle_min, double increment,
-               std::span<const float> ranges, std::span<const float> intensities);
+               std::span<const float> ranges, std::span<const float> intensities,
+               std::span<const std::uint8_t> drops = {});
 
   /// Where the scan's frame is.
   geometry_msgs::msg::TransformStamped place(runtime::Time stamp) const;

@@ -12,24 +12,9 @@ namespace usher::depth_pipeline {
 namespace {
 
 using std::chrono::milliseconds;
-using namespace usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr auto kPeriod = milliseconds(100);
 constexpr auto kHold = milliseconds(2000);
-
-float angle_for(const usher_msgs::msg::SupervisorStatus& status) {
-  switch (status.state()) {
-    case STATE_INTERACTION:
-    case STATE_NAVIGATION_START:
-    case STATE_NAVIGATION_END:
-      return status.kinect_angle_interaction();
-    case STATE_NAVIGATION_ACTIVE:
-    case STATE_MANUAL:
-      return status.kinect_angle_navigation();
-    default:
-      return status.kinect_angle_default();
-  }
-}
 
 }  // namespace
 
@@ -43,7 +28,7 @@ TiltControl::TiltControl(runtime::Host& host) : host_(host) {
       topics::kSupervisorStatus,
       {.max_age = milliseconds(2000), .on_loss = "the camera keeps its angle", .optional = true},
       [this](const auto& status, const auto&) {
-        wanted_ = servo_.servo_for(static_cast<double>(angle_for(status)));
+        wanted_ = servo_.servo_for(static_cast<double>(status.kinect_angle()));
       });
   request_ = host.input(topics::kKinectTiltRequest, {.optional = true},
                         [this](const auto& request, const auto&) {

@@ -8,7 +8,7 @@
 
 namespace usher::depth_pipeline {
 
-/// Keeps the Kinect's tilt where the robot's state wants it: low to navigate, high to see faces; an
+/// Keeps the Kinect's tilt where the supervisor asks for it: low to navigate, high to see faces; an
 /// operator's request holds it elsewhere for two seconds.
 class TiltControl {
  public:

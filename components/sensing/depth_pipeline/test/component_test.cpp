@@ -8,6 +8,7 @@
 #include "sensing/depth_pipeline/test/synthetic.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
+#include "wire/low_scan.hpp"
 
 namespace usher::depth_pipeline {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using runtime::TestHost;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-using namespace usher_msgs::msg::SupervisorStatus_Constants;
 
 constexpr const char* kParameters =
     "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: 0.235 m, "
@@ -189,6 +189,31 @@ TEST_F(DepthPipelineComponentTest, MakesScansImagesAndFramesOfImages) {
   ASSERT_TRUE(processed.has_value());
   EXPECT_EQ(processed->encoding(), "16UC1");
   EXPECT_EQ(host_.heartbeat().state(), usher_msgs::msg::Heartbeat_Constants::STATE_OK);
+}
+
+TEST_F(DepthPipelineComponentTest, MarksWhereFloorIsMissing) {
+  scene_.half_width = scene_.end = 30.0;
+  scene_.ceiling = 3.0;
+  scene_.boxes = {{0.5, 0.9, 0.3, 1.8, 2.0}};  // x is right: -0.35 rad
+  scene_.edge = 2.4;
+  tell_camera();
+  live(100);
+  show();
+  live(120);
+  const auto low = host_.last(topics::kKinectScanLow);
+  ASSERT_TRUE(low.has_value());
+  const auto at = [&](double bearing) {
+    return static_cast<std::size_t>((bearing - static_cast<double>(low->angle_min())) /
+                                    static_cast<double>(low->angle_increment()));
+  };
+  EXPECT_NEAR(low->ranges()[at(0.1)], 2.4, 0.1);
+  EXPECT_TRUE(wire::is_drop(*low, at(0.1)));
+  EXPECT_NEAR(low->ranges()[at(-0.35)], 1.8 / std::cos(0.35), 0.1);
+  EXPECT_FALSE(wire::is_drop(*low, at(-0.35)));
+  EXPECT_EQ(low->intensities()[at(-0.35)], 1.0F) << "its confidence";
+  const auto scan = host_.last(topics::kKinectScan);
+  ASSERT_TRUE(scan.has_value());
+  EXPECT_EQ(scan->intensities()[at(0.1)], 1.0F) << "in the scan of everything, too";
 }
 
 TEST_F(DepthPipelineComponentTest, WaitsForThePitchOfTheImage) {
@@ -547,19 +572,17 @@ TEST_F(DepthPipelineComponentTest, RefusesImagesThatDoNotFit) {
   EXPECT_THAT(host_.heartbeat().reason(), HasSubstr("carries 0"));
 }
 
-TEST_F(DepthPipelineComponentTest, TiltFollowsTheRobotsStateAndAnOperatorMayHoldIt) {
+TEST_F(DepthPipelineComponentTest, TiltFollowsTheSupervisorAndAnOperatorMayHoldIt) {
   usher_msgs::msg::SupervisorStatus status;
-  const auto tell = [&](std::uint8_t state) {
+  const auto tell = [&](float angle) {
     status.header(wire::header(host_.now(), ""));
-    status.state(state);
+    status.kinect_angle(angle);
     host_.publish(topics::kSupervisorStatus, status);
   };
-  status.kinect_angle_navigation(-0.0873F);
-  status.kinect_angle_interaction(0.1745F);
-  tell(STATE_INTERACTION);
+  tell(0.1745F);
   live(250);
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), 0.1745, 1e-6);
-  tell(STATE_NAVIGATION_ACTIVE);
+  tell(-0.0873F);
   live(250);
   EXPECT_NEAR(host_.last(topics::kKinectTiltCommand)->servo(), -0.0873, 1e-6);
   usher_msgs::msg::CameraTilt request;

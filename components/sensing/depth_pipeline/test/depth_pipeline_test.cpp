@@ -224,6 +224,44 @@ TEST(DepthPipeline, MissingFloorIsAnObstacleWhereItEnds) {
   }
 }
 
+TEST(DepthPipeline, TellsADropFromALowThing) {
+  for (const double pit : {0.17, 1.0, 6.0}) {
+    SyntheticScene scene;
+    scene.half_width = scene.end = 30.0;
+    scene.ceiling = 3.0;
+    scene.edge = 2.4;
+    scene.pit = pit;
+    scene.boxes = {{0.4, 0.8, 0.3, 1.8, 2.0}};  // before the edge
+    DepthPipeline pipeline = make(scene);
+    const auto image = scene.draw(kPose);
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    const auto& ranges = view.low->ranges;
+    ASSERT_EQ(view.low_drops.size(), ranges.size());
+    std::size_t things = 0, drops = 0;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const double bearing =
+          pipeline.geometry().angle_min + pipeline.geometry().increment * static_cast<double>(i);
+      const auto forward = static_cast<double>(ranges[i]) * std::cos(bearing);
+      if (!std::isfinite(ranges[i]) || ranges[i] < 0.0F) {
+        EXPECT_EQ(view.low_drops[i], 0) << pit << " " << bearing;
+      } else if (view.low_drops[i] != 0) {
+        EXPECT_NEAR(forward, 2.4, 0.1) << pit << " " << bearing;
+        ++drops;
+      } else {
+        EXPECT_NEAR(forward, 1.9, 0.12) << pit << " " << bearing;
+        ++things;
+      }
+    }
+    EXPECT_GT(things, 60U) << pit;
+    EXPECT_GT(drops, 300U) << pit;
+
+    scene.edge = std::numeric_limits<double>::infinity();  // and no view keeps those of the last
+    const auto whole = scene.draw(kPose);
+    const auto next = pipeline.process(view_of(scene.camera, whole), kPose).value();
+    EXPECT_EQ(std::count(next.low_drops.begin(), next.low_drops.end(), 1), 0) << pit;
+  }
+}
+
 TEST(DepthPipeline, AHoleIsAsWideAsItIsThoughTheCameraLooksDown) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;
