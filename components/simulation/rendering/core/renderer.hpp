@@ -59,8 +59,8 @@ struct Hits {
 };
 
 /// Casts the rays of depth cameras into a model, on Embree, and into people, by LimbRays.
-/// Deterministic: the same calls give the same bits on one machine. A 512 x 424 image takes about
-/// 10 ms (usher bench rendering); not thread-safe.
+/// Deterministic: the same calls give the same bits on one machine. The rays of a 512 x 424 image
+/// take 6 ms (usher bench rendering); not thread-safe.
 class Renderer {
  public:
   /// The error says what of the model cannot be (an outline with too few or infinite points).
