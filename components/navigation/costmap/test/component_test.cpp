@@ -47,6 +47,15 @@ class Component : public testing::Test {
     message.ranges().assign(81, range);
     return message;
   }
+  /// The laser sees something ahead, 3.5 m away beside it.
+  void look(float middle, int ms) {
+    for (int at = 0; at < ms; at += 20) {
+      auto message = scan("laser", 3.5F);
+      std::fill_n(message.ranges().begin() + 20, 40, middle);
+      host.publish(topics::kScanFiltered, message);
+      run(20, false);
+    }
+  }
   void run(int ms, bool scans = true, bool localized = true) {
     for (int at = 0; at < ms; at += 20) {
       tf2_msgs::msg::TFMessage moving;
@@ -239,14 +248,6 @@ TEST_F(Component, ForgetsALowThingThatIsGoneBeforeAWall) {
 }
 
 TEST_F(Component, RemembersTheFootOfAThingAsLongAsTheLaserSeesIt) {
-  const auto look = [&](float middle, int ms) {
-    for (int at = 0; at < ms; at += 20) {
-      auto message = scan("laser", 3.5F);
-      std::fill_n(message.ranges().begin() + 20, 40, middle);
-      host.publish(topics::kScanFiltered, message);
-      run(20, false);
-    }
-  };
   for (const bool mapped : {false, true}) {
     if (mapped) {
       for (int y = 0; y < map.height(); ++y) map.at({120, y}) = grid::kOccupied;  // x = 2 m
@@ -266,14 +267,6 @@ TEST_F(Component, RemembersTheFootOfAThingAsLongAsTheLaserSeesIt) {
 }
 
 TEST_F(Component, RemembersADropBesideSomebodyWhoHasLeft) {
-  const auto look = [&](float middle, int ms) {
-    for (int at = 0; at < ms; at += 20) {
-      auto message = scan("laser", 3.5F);
-      std::fill_n(message.ranges().begin() + 20, 40, middle);
-      host.publish(topics::kScanFiltered, message);
-      run(20, false);
-    }
-  };
   for (const float intensity : {1.0F, wire::kDrop}) {
     SCOPED_TRACE(intensity);
     give_map();
