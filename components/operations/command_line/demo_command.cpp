@@ -1,4 +1,5 @@
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "operations/command_line/background_output.hpp"
 #include "operations/command_line/commands.hpp"
 #include "operations/command_line/demo.hpp"
 #include "operations/command_line/installation.hpp"
@@ -155,6 +157,7 @@ Result<Deployment> deployment_for(const Demo& demo, const Installation& installa
 void run(Demo& demo, Launcher& launcher, Watch& watch) {
   const auto start = std::chrono::steady_clock::now();
   auto next_line = start;
+  BackgroundOutput output(STDOUT_FILENO);  // a paused terminal must not keep the launcher waiting
   const auto goes_on = [&] {
     const std::lock_guard lock(watch.mutex);
     demo.step();
@@ -163,16 +166,15 @@ void run(Demo& demo, Launcher& launcher, Watch& watch) {
   while (!stop_asked && !launcher.incomplete() && goes_on()) {
     launcher.poll();
     for (const auto& event : launcher.events()) {
-      if (!event.ends_with(": started")) std::cout << "  " << event << "\n";
+      if (!event.ends_with(": started")) output.say("  " + event + "\n");
     }
     if (std::chrono::steady_clock::now() >= next_line) {
       next_line += milliseconds(1000);
       const std::lock_guard lock(watch.mutex);
       watch.load.sample();
       if (const auto line = demo.progress(watch.record); !line.empty())
-        std::cout << "  " << line << "\n";
+        output.say("  " + line + "\n");
     }
-    std::cout << std::flush;
     std::this_thread::sleep_for(milliseconds(20));
   }
 }

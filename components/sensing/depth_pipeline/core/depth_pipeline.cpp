@@ -66,6 +66,7 @@ Status check(const PipelineConfig& config) {
                              1.0, Confidence::kMostFrames},
                             {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
                             {"least_confidence", config.least_confidence, 0.0, 1.0},
+                            {"lasting_confidence", config.lasting_confidence, 0.0, 1.0},
                             {"least_measured", config.least_measured, 0.0, 1.0}});
       !status)
     return status;
@@ -147,7 +148,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   forget_blind_falls(floor);
   view.drops = mark_drops(image, view.pose);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
-  low_confidence_.rate(low_.ranges, config_.least_confidence, low_.intensities);
+  low_confidence_.rate(low_.ranges, config_.lasting_confidence, low_.intensities);
   tell_drops();
   tell_what_hides_low();
   view.processed = processed_;

@@ -39,6 +39,7 @@ struct PipelineConfig {
   int confidence_frames = 3;          ///< {1..8} of the rolling mean
   double confidence_threshold = 0.5;  ///< [m] {0.01..10} deviation with confidence 0
   double least_confidence = 0.2;      ///< {0..1} ranges with less become NaN
+  double lasting_confidence = 0.8;    ///< {0..1} the same in `low`, which others remember
   double least_measured = 0.02;       ///< {0..1} a smaller share of pixels is a blind camera's
   bool refit = false;  ///< fit the floor in each frame; then floor_margin may be small
   FloorFitConfig fit;

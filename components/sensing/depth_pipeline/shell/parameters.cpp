@@ -45,6 +45,8 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
                "Deviation from the mean that has no confidence (equation 4.23).");
   c.least_confidence = p.number("least_confidence", "-", {0, 1}, c.least_confidence,
                                 "Ranges with less are left out.");
+  c.lasting_confidence = p.number("lasting_confidence", "-", {0, 1}, c.lasting_confidence,
+                                  "The same of low things, which the costmap remembers.");
   c.least_measured = p.number("least_measured", "-", {0, 1}, c.least_measured,
                               "A camera that measures in a smaller share of its pixels is blind.");
   return c;

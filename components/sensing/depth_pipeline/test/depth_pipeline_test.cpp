@@ -7,6 +7,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "sensing/depth_pipeline/test/synthetic.hpp"
 #include "support/data.hpp"
@@ -162,6 +163,32 @@ TEST(DepthPipeline, WhatIsLowAndNarrowAsPixelsAtAnEdgeIsNotKnown) {
 }
 
 // Nearer than 2.0 m ahead, but looked at flatter than vinyl must be to mirror: it lies aside.
+// What a jump of the pitch makes of the floor stands elsewhere in each of its frames. The robot
+// heeds it; remembered, it would bar the way for minutes.
+TEST(DepthPipeline, NothingLowIsRememberedThatStandsElsewhereInEachFrame) {
+  SyntheticScene scene;
+  DepthPipeline pipeline = make(scene, {});
+  const double ahead = pipeline.geometry().increment;  // beside the middle of the image
+  const auto look = [&](std::optional<double> box) {
+    scene.boxes.clear();
+    if (box) scene.boxes.push_back({-0.3, 0.3, 0.2, *box, *box + 0.3});
+    const auto image = scene.draw(kPose);
+    return pipeline.process(view_of(scene.camera, image), kPose).value();
+  };
+  look({});
+  look({});
+  for (const double box : {2.0, 1.7, 1.4}) {
+    const auto view = look(box);
+    EXPECT_EQ(positive(view.low->ranges), 0U) << box;
+    if (box < 1.5) {
+      EXPECT_NEAR(at(pipeline, view.scan->ranges, ahead), box, 0.02);
+    }
+  }
+  // Two frames later it has stood still for three, and counts.
+  look(1.4);
+  EXPECT_NEAR(at(pipeline, look(1.4).low->ranges, ahead), 1.4, 0.02);
+}
+
 TEST(DepthPipeline, AMirroringPatchAsideIsNoDrop) {
   for (const bool aside : {true, false}) {
     SyntheticScene scene;
