@@ -18,7 +18,8 @@ Result<StoppingDistance> StoppingDistance::make(std::span<const StoppingPoint> p
       return Error{
           "stopping distance: speeds and distances must be finite and grow from (0, 0), found (" +
           std::to_string(point.speed) + " m/s, " + std::to_string(point.distance) + " m) after (" +
-          std::to_string(last.speed) + " m/s, " + std::to_string(last.distance) + " m)"};
+          std::to_string(last.speed) + " m/s, " + std::to_string(last.distance) +
+          " m) before it"};  // what a message ends with in parentheses is a place
     }
     table.push_back(point);
   }

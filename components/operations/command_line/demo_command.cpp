@@ -289,8 +289,8 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   command->add_flag(
       "--pixels", arguments->pixels,
       "The guide: render every pixel of both depth cameras for the depth pipeline and "
-      "the people detector themselves, not for the models fitted to them; half to "
-      "three quarters of a core more");
+      "the people detector themselves, not for the models fitted to them; half of "
+      "a core more");
   command->callback([arguments, &exit_code] { exit_code = demo(*arguments); });
 }
 

@@ -365,6 +365,8 @@ std::string suggestion_beside(const std::filesystem::path& path) {
   std::vector<std::string> known;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!path.has_extension() && entry.path().stem() == path.stem())
+      return "; did you mean " + entry.path().filename().string() + "?";
     if (!path.has_extension() || entry.path().extension() == path.extension())
       known.push_back(entry.path().stem().string());
   }

@@ -1,10 +1,13 @@
 #include "operations/manifest/resolve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "foundation/text/suggestion.hpp"
 #include "idl/topics.hpp"
@@ -151,6 +154,8 @@ class Resolver {
             "a fleet and security do not go together: nothing on the fleet's domain is signed",
             manifest_.origin_of("fleet"));
     for (const auto& component : manifest_.components) resolve(component, overrides);
+    report_shared_devices();
+    report_other_base();
     report_unknown_facts(robot_);
     report_unknown_facts(site_);
     report_unknown_components(robot_);
@@ -309,13 +314,69 @@ class Resolver {
       }
       value.yaml = Tree::word(given->text, value.origin).yaml();
     }
-    // A text whose default is a stream's address is one.
-    if (parameter.kind == ParameterKind::kText &&
-        runtime::StreamAddress::parse(parameter.fallback)) {
+    if (is_address(parameter)) {
       if (const auto address = runtime::StreamAddress::parse(given->text); !address)
         found(Verdict::kWrongValue, "'" + parameter.name + "': " + address.error(), value.origin);
     }
     file.values.push_back(std::move(value));
+  }
+
+  /// A text whose default is a stream's address is one.
+  static bool is_address(const Contract::Parameter& parameter) {
+    return parameter.kind == ParameterKind::kText &&
+           runtime::StreamAddress::parse(parameter.fallback);
+  }
+
+  /// Two components of one host that read one device take each other's bytes.
+  void report_shared_devices() {
+    std::map<std::pair<std::string, std::string>, std::string> users;  // of host and device
+    for (const auto& file : out_.files) {
+      const auto contract = contracts_.find(file.component);
+      if (contract == contracts_.end()) continue;
+      for (const auto& parameter : contract->second.parameters) {
+        if (!is_address(parameter)) continue;
+        const auto set = std::ranges::find(file.values, parameter.name, &ParameterValue::name);
+        const bool given = set != file.values.end();
+        const auto value = given ? runtime::interpret(parameter, *set)
+                                 : runtime::interpret(parameter, {.yaml = parameter.fallback});
+        const auto address = value ? runtime::StreamAddress::parse(value->text)
+                                   : Result<runtime::StreamAddress>(Error{value.error()});
+        using Kind = runtime::StreamAddress::Kind;
+        if (!address || (address->kind != Kind::kSerial && address->kind != Kind::kDevice))
+          continue;
+        const auto [user, first] = users.emplace(std::pair(file.host, address->target), file.name);
+        if (!first) {
+          found(Verdict::kWrongValue,
+                "'" + user->second + "' and '" + file.name + "' of host '" + file.host +
+                    "' both open " + address->target,
+                given ? set->origin : manifest_.component(file.name)->origin_of("type"));
+        }
+      }
+    }
+  }
+
+  /// With the file of a robot on another base, a base that leans is taken for one that does not.
+  void report_other_base() {
+    constexpr std::array<std::pair<const char*, const char*>, 2> kBases{
+        {{"segway_rmp", "segway"}, {"p3dx", "pioneer"}}};
+    Contract::Parameter base;
+    base.kind = ParameterKind::kText;
+    const auto given = robot_.shared.find("robot.base");
+    const bool said = given != robot_.shared.end();
+    const auto read = said ? runtime::interpret(base, given->second)
+                           : runtime::interpret(base, {.yaml = "segway"});
+    if (!read) return;  // found where it is judged
+    for (const auto& [driver, kind] : kBases) {
+      for (const auto& component : manifest_.components) {
+        const bool drives =
+            component.type == driver || component.type == std::string(driver) + "_sim";
+        if (!drives || read->text == kind) continue;
+        found(Verdict::kWrongValue,
+              "'" + component.name + "' drives a " + kind + ", and the robot's file says base: " +
+                  read->text + (said ? "" : " (by saying nothing)") + ": is it this robot's?",
+              said ? given->second.origin : manifest_.origin_of("robot"));
+      }
+    }
   }
 
   /// A fact of the robot or site that no contract at all asks for is a typing error.

@@ -52,6 +52,12 @@ std::string role(const std::string& type) {
   return type.ends_with(kSimulated) ? type.substr(0, type.size() - kSimulated.size()) : type;
 }
 
+/// What one device of a robot writes, whichever its make: of two the readers would make one.
+bool of_one_device(std::string_view topic) {
+  return topic == topics::kBaseStatus.name || topic == topics::kOdom.name ||
+         topic == topics::kScan.name;
+}
+
 /// Of a component that must stop the robot [s]: its loss is seen, and the first zero reaches the
 /// base, within 0.2 s. Heartbeats come every 0.02 s.
 constexpr double kLongestCriticalTimeout = 0.15;
@@ -176,7 +182,8 @@ class Judge {
                   topic,
               *writer.component);
       }
-      const auto [other, first] = by_role.emplace(type, writer.component);
+      const auto [other, first] =
+          by_role.emplace(of_one_device(topic) ? std::string() : type, writer.component);
       if (!first) {
         found(Verdict::kTwoWriters,
               topic + " is written by '" + other->second->name + "' and by '" +

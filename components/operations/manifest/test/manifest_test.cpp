@@ -174,6 +174,9 @@ TEST_F(ManifestFile, SaysWhichFileWasMeant) {
   ASSERT_FALSE(misspelt);
   EXPECT_EQ(shortened(misspelt.error()),
             "there is no such file; did you mean marvin.yaml? (mavin.yaml)");
+  EXPECT_EQ(error("extends: marvin\n"),
+            "'extends' names marvin, which is no file; did you mean marvin.yaml? (m.yaml:1)")
+      << "not the same word again";
 }
 
 TEST_F(ManifestFile, IsNoneWithoutAnyOfItsKeys) {

@@ -253,6 +253,52 @@ TEST_F(Resolving, FindsAddressesThatAreNone) {
         << bad;
 }
 
+TEST_F(Resolving, FindsADeviceThatTwoComponentsOpen) {
+  auto& parameters = contracts_.at("legs").parameters;
+  parameters.push_back(of_kind("line", ParameterKind::kText));
+  parameters.back().fallback = "serial:///dev/ttyUSB0?baud=9600";
+  const auto with = [&](const std::string& second) {
+    return findings("  legs: {host: nuc}\n  arms: {type: legs, host: nuc" + second + "}\n");
+  };
+  const auto both =
+      HasSubstr("wrong value: 'legs' and 'arms' of host 'nuc' both open /dev/ttyUSB0");
+  EXPECT_THAT(with(""), ElementsAre(both)) << "by their defaults";
+  EXPECT_THAT(with(", parameters: {line: \"serial:///dev/ttyUSB0?baud=115200\"}"),
+              ElementsAre(testing::AllOf(both, HasSubstr("deploy/m.yaml:6"))));
+  EXPECT_THAT(with(", parameters: {line: \"device:///dev/ttyUSB0\"}"), ElementsAre(both));
+  EXPECT_THAT(with(", parameters: {line: \"serial:///dev/ttyUSB1?baud=9600\"}"), IsEmpty());
+  for (const char* port : {"1", "2"}) {
+    const std::string tcp = "tcp://10.0.0.1:" + std::string(port);
+    EXPECT_THAT(findings("  legs: {host: nuc, parameters: {line: \"tcp://10.0.0.1:1\"}}\n  arms: "
+                         "{type: legs, host: nuc, parameters: {line: \"" +
+                         tcp + "\"}}\n"),
+                IsEmpty())
+        << "a server may serve two";
+  }
+}
+
+TEST_F(Resolving, FindsTheFileOfARobotOnAnotherBase) {
+  Contract base;
+  base.parameters = {of_kind("robot.base", ParameterKind::kText)};
+  for (const char* driver : {"segway_rmp", "p3dx_sim"}) {
+    base.component = driver;
+    contracts_[driver] = base;
+  }
+  const auto with = [&](const char* driver) {
+    return findings("  legs: {host: nuc}\n  base: {host: nuc, type: " + std::string(driver) +
+                    "}\n");
+  };
+  EXPECT_THAT(with("segway_rmp"), IsEmpty());
+  EXPECT_THAT(with("p3dx_sim"),
+              ElementsAre(HasSubstr("m.yaml:1: wrong value: 'base' drives a pioneer, and the "
+                                    "robot's file says base: segway (by saying nothing)")));
+  robot_ += "base: pioneer\n";
+  EXPECT_THAT(with("p3dx_sim"), IsEmpty());
+  EXPECT_THAT(with("segway_rmp"),
+              ElementsAre(HasSubstr("r.yaml:3: wrong value: 'base' drives a segway, and the "
+                                    "robot's file says base: pioneer: is it this robot's?")));
+}
+
 TEST_F(Resolving, SaysOnceThatAComponentHasNoHost) {
   EXPECT_THAT(findings("  judge: {host: nuc}\n  legs: {}\n"),
               ElementsAre(HasSubstr("deploy/m.yaml:6: missing value: component 'legs' has no "

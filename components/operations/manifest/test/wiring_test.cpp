@@ -112,6 +112,19 @@ TEST_F(Wiring, FindsTwoWriters) {
       << "a simulated device takes the place of the real one";
 }
 
+TEST_F(Wiring, FindsASecondDeviceOfAnotherMake) {
+  add(writer("lms100", "scan"));
+  add(writer("urg04lx", "scan"));
+  EXPECT_THAT(findings("  lms100: {host: nuc}\n  urg04lx: {host: nuc}\n"),
+              ElementsAre("m.yaml:6: two writers: scan is written by 'lms100' and by 'urg04lx'"));
+  for (const char* topic : {"base/status", "odom"}) {
+    add(writer("segway_rmp", topic, 100));
+    add(writer("p3dx", topic, 10));
+    EXPECT_THAT(findings("  segway_rmp: {host: nuc}\n  p3dx: {host: nuc}\n"),
+                ElementsAre(HasSubstr("two writers: " + std::string(topic) + " is written by ")));
+  }
+}
+
 TEST_F(Wiring, AllowsSeveralWritersWhereTheCatalogueNamesThem) {
   add(writer("segway_rmp", "tf", 100));
   add(writer("amcl", "tf", 50));
