@@ -55,6 +55,7 @@ class Wiring : public testing::Test {
     std::vector<Finding> found;
     judge_wiring(*manifest, contracts_, found);
     std::vector<std::string> texts;
+    texts.reserve(found.size());
     for (const auto& finding : found)
       texts.push_back(to_string(finding).substr(folder_.path().size() + 1));
     return texts;
@@ -241,9 +242,9 @@ TEST_F(Wiring, FindsGuidesWhoseLossWouldNotStopTheRobot) {
     contracts_.clear();
     add(writer(type, topic));
     add(writer("supervisor", "drive/grant"));
-    const auto with = [&](const std::string& setting) {
-      return findings("  supervisor: {host: nuc}\n  " + std::string(type) +
-                      ":\n    host: tablet\n    " + setting + "\n");
+    const auto with = [&, guide = std::string(type)](const std::string& setting) {
+      return findings("  supervisor: {host: nuc}\n  " + guide + ":\n    host: tablet\n    " +
+                      setting + "\n");
     };
     EXPECT_THAT(with("criticality: stop"), IsEmpty()) << "on whatever host";
     EXPECT_THAT(with("criticality: notify"),
