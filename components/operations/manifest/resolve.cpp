@@ -314,7 +314,7 @@ class Resolver {
       }
       value.yaml = Tree::word(given->text, value.origin).yaml();
     }
-    if (is_address(parameter)) {
+    if (is_stream(parameter)) {
       if (const auto address = runtime::StreamAddress::parse(given->text); !address)
         found(Verdict::kWrongValue, "'" + parameter.name + "': " + address.error(), value.origin);
     }
@@ -322,7 +322,7 @@ class Resolver {
   }
 
   /// A text whose default is a stream's address is one.
-  static bool is_address(const Contract::Parameter& parameter) {
+  static bool is_stream(const Contract::Parameter& parameter) {
     return parameter.kind == ParameterKind::kText &&
            runtime::StreamAddress::parse(parameter.fallback);
   }
@@ -334,7 +334,7 @@ class Resolver {
       const auto contract = contracts_.find(file.component);
       if (contract == contracts_.end()) continue;
       for (const auto& parameter : contract->second.parameters) {
-        if (!is_address(parameter)) continue;
+        if (!is_stream(parameter)) continue;
         const auto set = std::ranges::find(file.values, parameter.name, &ParameterValue::name);
         const bool given = set != file.values.end();
         const auto value = given ? runtime::interpret(parameter, *set)
@@ -368,9 +368,7 @@ class Resolver {
     if (!read) return;  // found where it is judged
     for (const auto& [driver, kind] : kBases) {
       for (const auto& component : manifest_.components) {
-        const bool drives =
-            component.type == driver || component.type == std::string(driver) + "_sim";
-        if (!drives || read->text == kind) continue;
+        if (role(component.type) != driver || read->text == kind) continue;
         found(Verdict::kWrongValue,
               "'" + component.name + "' drives a " + kind + ", and the robot's file says base: " +
                   read->text + (said ? "" : " (by saying nothing)") + ": is it this robot's?",

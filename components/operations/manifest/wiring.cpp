@@ -46,12 +46,6 @@ const std::map<std::string, CatalogueEntry>& catalogue() {
   return entries;
 }
 
-/// A simulated variant counts as the component whose place it takes.
-std::string role(const std::string& type) {
-  constexpr std::string_view kSimulated = "_sim";
-  return type.ends_with(kSimulated) ? type.substr(0, type.size() - kSimulated.size()) : type;
-}
-
 /// What one device of a robot writes, whichever its make: of two the readers would make one.
 bool of_one_device(std::string_view topic) {
   return topic == topics::kBaseStatus.name || topic == topics::kOdom.name ||
@@ -291,6 +285,11 @@ class Judge {
 };
 
 }  // namespace
+
+std::string role(const std::string& type) {
+  constexpr std::string_view kSimulated = "_sim";
+  return type.ends_with(kSimulated) ? type.substr(0, type.size() - kSimulated.size()) : type;
+}
 
 void judge_wiring(const Manifest& manifest, const Contracts& contracts,
                   std::vector<Finding>& findings) {

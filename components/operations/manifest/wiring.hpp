@@ -13,4 +13,7 @@ void judge_wiring(const Manifest& manifest, const Contracts& contracts,
 /// Where nothing may move without whiskers somebody must write them.
 void judge_whiskers(const Contracts& contracts, Deployment& deployment);
 
+/// A simulated variant counts as the component whose place it takes.
+std::string role(const std::string& type);
+
 }  // namespace usher::operations
