@@ -90,6 +90,10 @@ struct Raster {
     return {floor_to_int((x - anchor_x) * cells_per_meter) - first_x,
             floor_to_int((y - anchor_y) * cells_per_meter) - first_y};
   }
+  geometry::Point2 center(grid::Cell cell) const {
+    return {anchor_x + (first_x + cell.x + 0.5) * resolution,
+            anchor_y + (first_y + cell.y + 0.5) * resolution};
+  }
 };
 
 inline bool reachable(double x, double y) {  // false for NaN too

@@ -237,6 +237,12 @@ void Costmap::keep_beside(LayerId layer, LayerId other, double reach) {
       [&](grid::Cell cell) { return unmapped_beside(layers_[other], cell, reach); }));
 }
 
+void Costmap::forget_passed(LayerId layer, const RangeObservation& observation,
+                            std::span<const geometry::Point2> places, double reach) {
+  assert(layer < layers_.size());
+  touch(layers_[layer].forget_passed(observation, places, reach, raster_));
+}
+
 void Costmap::invalidate() {
   static_stale_ = true;
   dirty_ = raster_.all();

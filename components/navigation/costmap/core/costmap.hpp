@@ -89,6 +89,11 @@ class Costmap {
   /// belonged to has gone.
   void keep_beside(LayerId layer, LayerId other, double reach);
 
+  /// Forgets obstacles of a layer within `reach` [m] of one of the places that the scan looks
+  /// beyond, however near to the sensor: who stood there walks on.
+  void forget_passed(LayerId layer, const RangeObservation& observation,
+                     std::span<const geometry::Point2> places, double reach);
+
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
   /// observations' stamps; only persistence depends on it. The reference stays valid as long as the
   /// costmap; its content until the next call.

@@ -11,7 +11,6 @@ namespace {
 constexpr float kArc = 0.9F;  // [m] nearer, the axis alone: arcs beside a door post bar the door
 constexpr double kBehind = 0.15;  // [m] both sensors' errors: glass may stand before a wall
 constexpr double kBody = 0.6;     // [m] from where somebody is, and the width of a cone
-constexpr double kBeside = 0.35;  // [m] so near to where somebody is a line of sight ends
 constexpr int kNeighbours = 3;    // beams that agree; glass sends back one now and then
 }  // namespace
 
@@ -111,22 +110,6 @@ void keep_middle(std::span<const geometry::Point2> rays, std::size_t sensors, do
     const geometry::Point2& axis = rays[i / beams * beams + beams / 2];
     if (rays[i].dot(axis) < least || !(ranges[i] > 0.0F))
       ranges[i] = std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
-void drop_what_people_hide(std::span<const geometry::Point2> directions,
-                           const geometry::Pose2& window_T_camera,
-                           std::span<const geometry::Point2> people, std::span<float> ranges) {
-  const geometry::Pose2 camera_T_window = geometry::inverse(window_T_camera);
-  for (const geometry::Point2& person : people) {
-    const geometry::Point2 place = camera_T_window * person;
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const double range = ranges[i];
-      if (!std::isfinite(range) || range <= 0.0) continue;
-      const double along = std::clamp(directions[i].dot(place), 0.0, range);
-      if ((place - along * directions[i]).norm() < kBeside)
-        ranges[i] = std::numeric_limits<float>::quiet_NaN();
-    }
   }
 }
 

@@ -54,11 +54,4 @@ void spread_echoes(std::span<const float> echoes, std::span<const geometry::Poin
 void keep_middle(std::span<const geometry::Point2> rays, std::size_t sensors, double width,
                  std::span<float> ranges);
 
-/// Sets to NaN the positive `ranges` of a depth camera's low scan, one per direction, whose line of
-/// sight one of the `people` [m, in the frame of window_T_camera] bars: floor that is hidden by
-/// somebody who is too near to be measured looks like a hole. O(ranges x people).
-void drop_what_people_hide(std::span<const geometry::Point2> directions,
-                           const geometry::Pose2& window_T_camera,
-                           std::span<const geometry::Point2> people, std::span<float> ranges);
-
 }  // namespace usher::costmap

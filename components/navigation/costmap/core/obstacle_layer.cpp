@@ -25,6 +25,11 @@ std::int32_t elapsed(std::uint32_t now, std::uint32_t then) {
   return static_cast<std::int32_t>(now - then);
 }
 
+/// [m] Between a point and the line of a beam.
+double off(const geometry::Point2& direction, const geometry::Point2& point) {
+  return std::abs(direction.x() * point.y() - direction.y() * point.x());
+}
+
 std::string meters(double value) { return std::to_string(value) + " m"; }
 
 }  // namespace
@@ -171,27 +176,20 @@ bool ObstacleLayer::collect(grid::Cell hit) {
 void ObstacleLayer::restore(const RangeObservation& observation, const Raster& raster) {
   const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
   for (const std::uint32_t index : lost_) {
-    const auto cell = static_cast<int>(index);
-    const int x = raster.first_x + cell % states_.width();
-    const int y = raster.first_y + cell / states_.width();
-    const geometry::Point2 center(raster.anchor_x + (x + 0.5) * raster.resolution,
-                                  raster.anchor_y + (y + 0.5) * raster.resolution);
-    if (!passed(observation, sensor_T_window * center)) states_[index] = kSeenOccupied;
+    const geometry::Point2 place = sensor_T_window * raster.center(states_.geometry().cell(index));
+    if (!passed(observation, place, place.norm() - kHidden)) states_[index] = kSeenOccupied;
   }
 }
 
 /// Whether the nearest beams on both sides of a point, in the sensor's frame, and all within
-/// kBeside of it tell that nothing is there.
-bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::Point2& point) {
+/// kBeside of it reach as far as `least` [m].
+bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::Point2& point,
+                           double least) {
   const auto& directions = observation.directions;
-  const double least = point.norm() - kHidden;
   const auto tells = [&](std::size_t beam) {
     return observation.ranges[beam] > 0.0F && observation.ranges[beam] >= least;
   };
-  const auto beside = [&](std::size_t beam) {
-    const geometry::Point2& direction = directions[beam];
-    return std::abs(direction.x() * point.y() - direction.y() * point.x()) <= kBeside;
-  };
+  const auto beside = [&](std::size_t beam) { return off(directions[beam], point) <= kBeside; };
   std::size_t nearest = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t beam = 0; beam < directions.size(); ++beam) {
@@ -206,6 +204,41 @@ bool ObstacleLayer::passed(const RangeObservation& observation, const geometry::
     if (!tells(beam)) return false;
   }
   return true;
+}
+
+/// Whether a beam leads to a point in the sensor's frame.
+bool ObstacleLayer::looks_at(const RangeObservation& observation, const geometry::Point2& point) {
+  return std::ranges::any_of(observation.directions, [&](const geometry::Point2& direction) {
+    return direction.dot(point) > 0.0 && off(direction, point) <= kBeside;
+  });
+}
+
+CellRect ObstacleLayer::forget_passed(const RangeObservation& observation,
+                                      std::span<const geometry::Point2> places, double reach,
+                                      const Raster& raster) {
+  CellRect touched;
+  if (!has_obstacles_) return touched;
+  const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
+  const int cells = static_cast<int>(std::ceil(reach * raster.cells_per_meter));
+  for (const geometry::Point2& place : places) {
+    if (!reachable(place.x(), place.y())) continue;
+    const grid::Cell middle = raster.cell_at(place.x(), place.y());
+    const CellRect near =
+        CellRect{middle.x, middle.y, middle.x + 1, middle.y + 1}.grown(cells).within(seen_);
+    for (int y = near.y0; y < near.y1; ++y) {
+      for (int x = near.x0; x < near.x1; ++x) {
+        std::uint8_t& state = states_.row(y)[x];
+        if (state != kSeenOccupied) continue;
+        const geometry::Point2 center = sensor_T_window * raster.center({x, y});
+        // Its own echo is no farther than the cell.
+        const double beyond = center.norm() + raster.resolution;
+        if (!looks_at(observation, center) || !passed(observation, center, beyond)) continue;
+        state = kSeenFree;
+        touched = touched.united({x, y, x + 1, y + 1});
+      }
+    }
+  }
+  return touched;
 }
 
 /// The number of the first cell of a line that is not nearer than the minimum raytrace range.

@@ -85,6 +85,11 @@ class ObstacleLayer {
   CellRect expire(double now);
   /// Forgets everything but obstacles in `kept`. Returns the changed rectangle.
   CellRect forget(const CellRect& kept = {});
+  /// Forgets obstacles within `reach` [m] of the places (costmap's frame, x and y apart) that a
+  /// scan looks beyond, however near they are (min_raytrace_range). Returns the changed rectangle.
+  CellRect forget_passed(const RangeObservation& observation,
+                         std::span<const geometry::Point2> places, double reach,
+                         const Raster& raster);
   /// Forgets the obstacles whose cells are not `kept`. Returns the changed rectangle.
   template <class Kept>
   CellRect keep(const Kept& kept) {
@@ -121,7 +126,9 @@ class ObstacleLayer {
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
   bool collect(grid::Cell hit);
   void restore(const RangeObservation& observation, const Raster& raster);
-  static bool passed(const RangeObservation& observation, const geometry::Point2& point);
+  static bool passed(const RangeObservation& observation, const geometry::Point2& point,
+                     double least);
+  static bool looks_at(const RangeObservation& observation, const geometry::Point2& point);
   int first_cleared(grid::Cell from, grid::Cell to, double cells_per_meter) const;
   void trace(grid::Cell from, grid::Cell to, int first, bool through);
   void mark(std::size_t index, std::uint32_t time);

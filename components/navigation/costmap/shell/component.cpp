@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "navigation/costmap/core/echo_check.hpp"
+#include "navigation/costmap/core/low_things.hpp"
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
@@ -373,19 +374,15 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
                         const geometry::Pose2& window_T_sensor) {
     if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
     RangeObservation seen{window_T_sensor, beams.directions, scan.ranges(), in_seconds(effective)};
-    if (layer == &Map::low) {
-      split_feet(map, seen, scan);
-      seen.ranges = feet_ranges_;
-      if (!observe(map, map.feet, seen)) return;
-      seen.ranges = alone_ranges_;
-    }
     if (layer == &Map::ultrasonic) {
       seen.ranges = middle_ranges_;
       if (!observe(map, map.*layer, seen)) return;
       seen.ranges = cone_ranges_;
       seen.clears = false;
     }
-    if (!observe(map, map.*layer, seen)) return;
+    if (!(layer == &Map::low ? take_low(map, scan, seen) : observe(map, map.*layer, seen))) return;
+    if (layer == &Map::rear)
+      forget_who_left(map, seen, window_T_base * geometry::inverse(*odom_T_base));
     if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
     if (&map == &local_ && layer == &Map::laser && effective >= map.newest) laser_stamp_ = stamp;
     // The local costs are as old as their laser scan, whatever else was seen since.
@@ -399,21 +396,29 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
-/// Low things are remembered for minutes, since nobody sees them again near the robot. What is low
-/// beside something that the laser sees and the map has not may be a foot of it: that is remembered
-/// as long as the laser sees such a thing there. Where floor is missing is nobody's foot.
-void CostmapComponent::split_feet(const Map& map, const RangeObservation& low,
-                                  const sensor_msgs::msg::LaserScan& scan) {
-  alone_ranges_ = feet_ranges_ = lasting_ranges_;
-  for (std::size_t i = 0; i < lasting_ranges_.size(); ++i) {
-    const float range = lasting_ranges_[i];
-    if (!std::isfinite(range) || range <= 0.0F) continue;
-    const geometry::Point2 place =
-        low.sensor * geometry::Point2(static_cast<double>(range) * low.directions[i]);
-    const bool foot =
-        !wire::is_drop(scan, i) && map.costs->unmapped_beside(map.laser, place, kFoot);
-    (foot ? alone_ranges_ : feet_ranges_)[i] = -range;  // nothing of that kind up to there
-  }
+/// What is low beside something that the laser sees and the map has not may be a foot of it: that
+/// is remembered as long as the laser sees such a thing there. Where floor is missing is nobody's
+/// foot. False when a layer refused the scan.
+bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& scan,
+                                RangeObservation seen) {
+  const auto is_foot = [&](std::size_t bearing, const geometry::Point2& place) {
+    return !wire::is_drop(scan, bearing) &&
+           map.costs->unmapped_beside(map.laser, seen.sensor * place, kFoot);
+  };
+  split_feet(lasting_ranges_, seen.directions, is_foot, alone_ranges_, feet_ranges_);
+  seen.ranges = feet_ranges_;
+  if (!observe(map, map.feet, seen)) return false;
+  seen.ranges = alone_ranges_;
+  return observe(map, map.low, seen);
+}
+
+/// Near the robot the rear camera looks over what it saw, so that it stays there: but not where
+/// somebody is or was a moment ago, once the camera looks beyond that place. He walks on.
+void CostmapComponent::forget_who_left(Map& map, const RangeObservation& seen,
+                                       const geometry::Pose2& window_T_odom) {
+  places_.clear();
+  for (const geometry::Point2& person : maybe_there_) places_.push_back(window_T_odom * person);
+  map.costs->forget_passed(map.rear, seen, places_, kFoot);
 }
 
 /// What the ultrasonic sensors hear and the laser does not see, over their whole cones, and what

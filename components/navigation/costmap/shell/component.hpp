@@ -59,8 +59,9 @@ class CostmapComponent final : public runtime::Component {
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
-  void split_feet(const Map& map, const RangeObservation& low,
-                  const sensor_msgs::msg::LaserScan& scan);
+  bool take_low(Map& map, const sensor_msgs::msg::LaserScan& scan, RangeObservation seen);
+  void forget_who_left(Map& map, const RangeObservation& seen,
+                       const geometry::Pose2& window_T_odom);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
@@ -89,6 +90,7 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
   std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before
+  std::vector<geometry::Point2> places_;           ///< theirs in a map's frame
 
   struct Contact {
     geometry::Point2 place;  ///< in map

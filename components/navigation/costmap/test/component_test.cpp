@@ -324,23 +324,60 @@ TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
   EXPECT_EQ(global_cost(1.02, 0.02), 252) << "the highest that a planner crosses";
 }
 
-TEST_F(Component, KeepsTheLowBoxBehindThatItBacksUpTo) {
-  tf2_msgs::msg::TFMessage fixed;
-  fixed.transforms().push_back(wire::transform(host.now(), frames::kBaseFootprint, "rear",
-                                               geometry::to_space({0.0, 0.0, geometry::kPi})));
-  host.publish(topics::kTfStatic, fixed);
-  give_map();
-  run(200);
-  const float nothing = std::numeric_limits<float>::infinity();
+class LooksBack : public Component {
+ protected:
+  LooksBack() {
+    tf2_msgs::msg::TFMessage fixed;
+    fixed.transforms().push_back(wire::transform(host.now(), frames::kBaseFootprint, "rear",
+                                                 geometry::to_space({0.0, 0.0, geometry::kPi})));
+    host.publish(topics::kTfStatic, fixed);
+    give_map();
+    run(200);
+  }
+  void see(float range, int times = 1) {
+    for (int i = 0; i < times; ++i) host.publish(topics::kRearScan, scan("rear", range)), run(60);
+  }
+  /// Somebody is told of there, and the camera sees that far.
+  void follow(double x, float range, int times) {
+    for (int i = 0; i < times; ++i) {
+      usher_msgs::msg::People people;
+      people.header(wire::header(last_scan, frames::kOdom));
+      people.people().emplace_back().x(x);
+      host.publish(topics::kPeople, people);
+      see(range);
+    }
+  }
+  static constexpr float kNothing = std::numeric_limits<float>::infinity();
+};
+
+TEST_F(LooksBack, AndKeepsTheLowBoxThatItBacksUpTo) {
   for (; base.x > -0.8; base.x -= 0.02) {  // the box is at -1.5 and leaves the image at 1.1 m
     const auto gap = static_cast<float>(base.x + 1.5);
-    host.publish(topics::kRearScan, scan("rear", gap > 1.1F ? gap : nothing));
-    run(60);
+    see(gap > 1.1F ? gap : kNothing);
   }
   EXPECT_EQ(local_cost(-1.5, 0.0), kLethalCost);
   base.x = 0.0;
-  for (int i = 0; i < 10; ++i) host.publish(topics::kRearScan, scan("rear", nothing)), run(60);
+  see(kNothing, 10);
   EXPECT_LT(local_cost(-1.5, 0.0), kLethalCost) << "gone, as is seen from afar";
+}
+
+TEST_F(LooksBack, AndForgetsWhereSomebodyStoodWhoWalksOn) {
+  follow(-0.95, 0.82F, 10);
+  EXPECT_EQ(local_cost(-0.82, 0.0), kLethalCost);
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  follow(-0.95, unknown, 10);
+  EXPECT_EQ(local_cost(-0.82, 0.0), kLethalCost) << "too near to be measured, perhaps";
+  follow(-1.2, 1.02F, 10);
+  EXPECT_LT(local_cost(-0.82, 0.0), kLethalCost) << "he stepped back: it may turn there";
+  EXPECT_EQ(local_cost(-1.02, 0.0), kLethalCost);
+}
+
+TEST_F(LooksBack, AndKeepsTheBoxFarFromWhoeverFollows) {
+  see(0.82F, 10);
+  follow(-1.6, kNothing, 10);
+  EXPECT_EQ(local_cost(-0.82, 0.0), kLethalCost) << "0.8 m before him";
+  follow(-1.1, kNothing, 10);
+  EXPECT_LT(local_cost(-0.82, 0.0), kLethalCost) << "the price: a box at his feet";
 }
 
 TEST_F(Component, GivesPeopleRoomUntilNobodyTellsOfThem) {

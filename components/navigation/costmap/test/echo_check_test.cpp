@@ -158,24 +158,6 @@ TEST(Cones, TheEchoOfAPersonIsOnTheAxisAlone) {
   EXPECT_FLOAT_EQ(ranges[3], 1.8F) << "nobody stands before the other one";
 }
 
-TEST(EchoCheck, SomebodyInTheLineOfSightHidesTheFloorBehindHim) {
-  const auto directions = beam_directions(-0.4, 0.4, 3);
-  const geometry::Pose2 camera{1.0, 2.0, geometry::kPi / 2};
-  const auto see = [&](std::vector<geometry::Point2> people) {
-    std::vector<float> ranges{2.0F, 2.0F, -2.0F};
-    drop_what_people_hide(directions, camera, people, ranges);
-    return ranges;
-  };
-  const auto in_front = see({{1.0, 3.2}});  // nearer than 0.35 m to the middle ray alone
-  EXPECT_FLOAT_EQ(in_front[0], 2.0F);
-  EXPECT_TRUE(std::isnan(in_front[1]));
-  EXPECT_FLOAT_EQ(in_front[2], -2.0F) << "nothing low up to there";
-  EXPECT_TRUE(std::isnan(see({{1.0, 2.5}})[0])) << "so near that he hides all";
-  EXPECT_FLOAT_EQ(see({{1.0, 4.5}})[1], 2.0F) << "behind it";
-  EXPECT_FLOAT_EQ(see({{1.0, 1.5}})[1], 2.0F) << "behind the camera";
-  EXPECT_FLOAT_EQ(see({})[1], 2.0F);
-}
-
 TEST(EchoCheck, NoEchoStaysNoEcho) {
   const auto echoes =
       after_check(wall_beside(0.7), {kInfinity, kInfinity, kInfinity, kInfinity, kInfinity});

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "foundation/geometry/pose2.hpp"
+
+namespace usher::costmap {
+
+/// Sets to NaN the positive `ranges` of a depth camera's low scan, one per direction, whose line of
+/// sight one of the `people` [m, in the frame of window_T_camera] bars: floor that is hidden by
+/// somebody who is too near to be measured looks like a hole. O(ranges x people).
+void drop_what_people_hide(std::span<const geometry::Point2> directions,
+                           const geometry::Pose2& window_T_camera,
+                           std::span<const geometry::Point2> people, std::span<float> ranges);
+
+/// Splits what is low, `ranges` [m], one per direction: `is_foot(bearing, place in the sensor's
+/// frame)` says what may be somebody's foot. Feet have -r in `alone`, the others in `feet`: nothing
+/// of that kind is up to there (negative_clears).
+template <class IsFoot>
+void split_feet(std::span<const float> ranges, std::span<const geometry::Point2> directions,
+                const IsFoot& is_foot, std::vector<float>& alone, std::vector<float>& feet) {
+  alone.assign(ranges.begin(), ranges.end());
+  feet.assign(ranges.begin(), ranges.end());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const float range = ranges[i];
+    if (!std::isfinite(range) || range <= 0.0F) continue;
+    const geometry::Point2 place(static_cast<double>(range) * directions[i]);
+    (is_foot(i, place) ? alone : feet)[i] = -range;
+  }
+}
+
+}  // namespace usher::costmap
