@@ -115,6 +115,30 @@ TEST(DepthScanModel, AgreesWithTheRenderedChain) {
   EXPECT_NEAR(model_unknown, pixels_unknown, 0.005 * all) << "of " << all << " bearings not known";
 }
 
+/// Somebody nearer than the camera measures fills the image: what is behind him is not known.
+TEST(DepthScanModel, KnowsNothingBehindWhatIsTooNearLikeThePixels) {
+  const auto building = load_building(kOffice).value();
+  const std::vector<PersonPlan> people{{.name = "a", .start = {3.65, 5.0}, .yaw = 1.5708}};
+  World world({}, building, people, {3.0, 5.0, 0.0}, 7);
+  depth_pipeline::PipelineConfig config;
+  config.confidence_frames = 1;
+  Chain chain(world, 3, config);
+  DepthScanModel model({}, 5);
+  DepthScanResult result;
+  for (int k = 0; k < 5; ++k) chain.step();
+  const auto view = chain.see(world.base().truth().pitch);
+  model.scan(world, chain.camera(), result);
+  const std::size_t middle = result.ranges.size() / 2;
+  int modelled = 0, rendered = 0, bearings = 0;
+  for (std::size_t b = middle - 20; b <= middle + 20; ++b, ++bearings) {
+    modelled += std::isnan(result.ranges[b]) && std::isnan(result.low[b]);
+    rendered += std::isnan(view.scan->ranges[b]);
+  }
+  EXPECT_GT(modelled, 35) << "of " << bearings;
+  EXPECT_GT(rendered, 35) << "of " << bearings;
+  EXPECT_TRUE(std::isfinite(result.ranges[5]) || std::isinf(result.ranges[5])) << "beside him";
+}
+
 TEST(ScanJudgement, CountsWhatIsNotKnownWhereSomethingIs) {
   constexpr float kFree = std::numeric_limits<float>::infinity();
   const std::vector<float> truth{2, 2, 2, 2, 2, 2, kFree, kFree, kFree, kFree};

@@ -11,7 +11,7 @@ namespace usher::people_detector {
 namespace {
 using std::chrono::milliseconds;
 constexpr auto kImageAge = milliseconds(300);
-constexpr auto kPeriod = milliseconds(60);  // as often as the real one looks at an image
+constexpr auto kPeriod = milliseconds(50);  // as often as the real one looks at an image
 }  // namespace
 
 PeopleDetectorSimComponent::PeopleDetectorSimComponent(runtime::Host& host)

@@ -13,8 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr auto kImageAge = milliseconds(300);
-constexpr auto kPeriod = milliseconds(60);  // every second image of a camera of 30 Hz
-constexpr double kFar = 12.0;               // [m] that 255 means in an 8-bit image (thesis 4.9)
+// Every second image of a camera of 30 Hz, however unevenly they were taken.
+constexpr auto kPeriod = milliseconds(50);
+constexpr double kFar = 12.0;  // [m] that 255 means in an 8-bit image (thesis 4.9)
 
 }  // namespace
 

@@ -84,6 +84,7 @@ DepthScanModel::DepthScanModel(const DepthScanModelConfig& config, std::uint64_t
   see_through_.assign(count, 0);
   high_.resize(count);
   low_.resize(count);
+  hidden_.resize(count);
 }
 
 /// Heights so that every thing is cut by a fan, low things near their top, and feet of that height.
@@ -111,6 +112,11 @@ void DepthScanModel::choose_heights(const Scene& scene, double feet) {
 /// Whether a point straight ahead is in the image, by its height.
 bool DepthScanModel::in_view(double forward, double height) const {
   return in_rows(config_.lens, forward, height - camera_height_, down_, config_.least_depth);
+}
+
+/// [m] Along the optical axis.
+double DepthScanModel::depth_of(double forward, double height) const {
+  return forward * std::cos(down_) - (height - camera_height_) * std::sin(down_);
 }
 
 void DepthScanModel::cast(const World& world, const Pose2& camera, double height) {
@@ -144,14 +150,26 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
 
   std::fill(high_.begin(), high_.end(), kFree);
   std::fill(low_.begin(), low_.end(), kFree);
+  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
+  bool first = true;  // of the fans that tell what is hidden
   const auto things = world.scene().things();
   const auto take = [&](double height, bool pits) {
     cast(world, origin, height);
     std::vector<float>& nearest = height > config_.low_height ? high_ : low_;
+    // Where the nearest thing that can be measured would be in the image at this height.
+    const double nearest_forward =
+        (config_.least_depth + (height - camera_height_) * std::sin(down_)) / std::cos(down_);
+    const bool tells_hidden =
+        height > config_.low_height && in_view(nearest_forward + 1e-6, height);
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const auto range = static_cast<double>(hits_.range[i]);
-      if (hits_.what[i] < 0 || range >= config_.max_range) continue;
       const double forward = range * static_cast<double>(fan_.cosines()[i]) - ahead;
+      const bool hit = hits_.what[i] >= 0 && range < config_.max_range;
+      if (tells_hidden) {
+        const bool near = hit && depth_of(forward, height) < config_.least_depth;
+        hidden_[i] = near && (first || hidden_[i] != 0) ? 1 : 0;
+      }
+      if (!hit) continue;
       if (pits) {
         const auto thing = static_cast<std::size_t>(hits_.what[i]);
         if (thing >= things.size() || things[thing].top > 0.0 || forward > config_.drop_range)
@@ -163,6 +181,7 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
       if (!in_view(forward, std::max(height, 0.0))) continue;
       nearest[i] = std::min(nearest[i], hits_.range[i]);
     }
+    first = first && !tells_hidden;
   };
   for (const double height : heights_) take(height, false);
   const auto is_pit = [](const Thing& thing) { return thing.top <= 0.0; };
@@ -176,6 +195,7 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
     const bool alone = low_[i] + static_cast<float>(config_.low_gap) < high_[i];
     result.ranges[i] = std::min(high_[i], low_[i]);
     result.low[i] = alone || (low_[i] == kFree && high_[i] == kFree) ? low_[i] : -result.ranges[i];
+    if (hidden_[i] != 0) result.ranges[i] = result.low[i] = kUnknown;
   }
   disturb(camera.burst(), result);
 }

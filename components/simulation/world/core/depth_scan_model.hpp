@@ -61,6 +61,7 @@ class DepthScanModel {
   void choose_heights(const Scene& scene, double feet);
   void cast(const World& world, const Pose2& camera, double height);
   bool in_view(double forward, double height) const;
+  double depth_of(double forward, double height) const;
   void disturb(double burst, DepthScanResult& result);
 
   DepthScanModelConfig config_;
@@ -75,6 +76,8 @@ class DepthScanModel {
   double feet_ = 0.0;  // [m] that the heights are chosen for
   double camera_height_ = 0.0, down_ = 0.0;
   std::vector<float> high_, low_;
+  std::vector<std::uint8_t>
+      hidden_;  // bearings where what is too near to be measured fills the image
 };
 
 }  // namespace usher::world

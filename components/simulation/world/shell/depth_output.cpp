@@ -197,6 +197,9 @@ void DepthOutput::take(Pixels& pixels) {
       [this, &pixels, &shot] {
         if (!shot.error.empty()) host_.fault(shot.error);
         shot.state = Shot::State::kReady;
+        // Before the depths of the same moment: whoever has those has the colors, too. Not with
+        // them: a color image is the larger one, and they would come later for it.
+        if (shot.painted) pixels.colors.publish(shot.color);
         if (shot.due) publish(pixels, shot);
       });
 }
@@ -225,9 +228,7 @@ void DepthOutput::deliver(Pixels& pixels) {
   if (shot.state == Shot::State::kReady) publish(pixels, shot);
 }
 
-/// The colors before the depths of the same moment: whoever has those has the colors, too.
 void DepthOutput::publish(Pixels& pixels, Shot& shot) {
-  if (shot.painted) pixels.colors.publish(shot.color);
   pixels.depths.publish(shot.depth);
   shot.state = Shot::State::kNone;
 }

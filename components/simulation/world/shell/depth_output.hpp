@@ -17,7 +17,7 @@ namespace usher::world {
 /// The simulated depth cameras' side of the world component: pixels, or the scans and the people
 /// that the fitted models make without them, at 30 Hz (rear camera and people 15, faces 10), the
 /// two cameras in turn. Stamps are those of the world's steps; an image is rendered beside the
-/// handlers and comes two turns later, as regularly as from a camera.
+/// handlers; its depths come two turns later, as regularly as from a camera, its colors before.
 class DepthOutput {
  public:
   /// `world` is null while the component is only described; it must outlive this.
