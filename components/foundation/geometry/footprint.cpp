@@ -72,6 +72,12 @@ Footprint Footprint::rectangle(double length, double width) {
   return Footprint({{x, -y}, {x, y}, {-x, y}, {-x, -y}});
 }
 
+double Footprint::half_width() const {
+  double farthest = 0.0;
+  for (const Point2& corner : corners_) farthest = std::max(farthest, std::abs(corner.y()));
+  return farthest;
+}
+
 double Footprint::distance(const Point2& point) const {
   bool inside = true;
   double nearest = std::numeric_limits<double>::infinity();

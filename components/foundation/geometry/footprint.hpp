@@ -38,6 +38,9 @@ class Footprint {
     return circumscribed_;
   }  ///< [m] smallest circle around the origin outside
 
+  /// [m] How far its corners reach to the left or right of the origin, whichever is more.
+  double half_width() const;
+
   /// Distance from a point in base_footprint to the polygon [m]; zero inside.
   double distance(const Point2& point) const;
 

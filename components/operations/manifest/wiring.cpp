@@ -227,7 +227,10 @@ class Judge {
     for (const auto& [name, component] : guides) {
       if (!chain.contains(name)) judge_critical(*component, "tells where the robot may drive");
     }
-    const ManifestComponent* first = nullptr;
+    if (chain.empty()) return;
+    // Where the base is plugged in is the right one.
+    const auto bases = writers_of({"base/status"});
+    const ManifestComponent* const base = (bases.empty() ? chain : bases).begin()->second;
     for (const auto& [name, component] : chain) {
       const std::string role = "belongs to the drive chain";
       judge_critical(*component, role);
@@ -240,10 +243,9 @@ class Judge {
               "'" + name + "' " + role + ": its restart_budget must be at least 1", *component,
               "restart_budget");
       }
-      if (first == nullptr) first = component;
-      if (component->host != first->host) {
+      if (component->host != base->host) {
         found(Verdict::kSplitDriveChain,
-              "the drive chain must live on one host: '" + first->name + "' is on " + first->host +
+              "the drive chain must live on one host: '" + base->name + "' is on " + base->host +
                   ", '" + name + "' on " + component->host,
               *component, "host");
       }

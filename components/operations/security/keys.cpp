@@ -224,6 +224,14 @@ void judge_keys(const Manifest& manifest, const Contracts& contracts,
     findings.push_back({Verdict::kNoPermission, text,
                         component != nullptr ? component->origin : manifest.origin_of("security")});
   }
+  const std::string governance = manifest.keys + "/governance.smime";
+  const auto holds = read_file(governance);
+  if (!holds || !verify_document(*holds, *authority)) {
+    findings.push_back({Verdict::kNoPermission,
+                        (holds ? governance + " is not signed by the CA" : holds.error()) +
+                            ", so that nobody starts; `usher keys` signs it anew",
+                        manifest.origin_of("security")});
+  }
 }
 
 }  // namespace usher::operations

@@ -83,13 +83,17 @@ int open_serial(const StreamAddress& address) {
 
 Result<StreamAddress> StreamAddress::parse(const std::string& uri) {
   const Error error{
-      "a stream is tcp://ADDRESS:PORT, listen://ADDRESS:PORT, serial://DEVICE?baud=RATE or "
-      "device://DEVICE, found '" +
+      "a stream is tcp://ADDRESS:PORT, listen://ADDRESS:PORT, serial:///DEVICE?baud=RATE or "
+      "device:///DEVICE, found '" +
       uri + "'"};
   const std::size_t scheme = uri.find("://");
   if (scheme == std::string::npos) return error;
   const std::string kind = uri.substr(0, scheme);
   const std::string rest = uri.substr(scheme + 3);
+  if ((kind == "serial" || kind == "device") && !rest.starts_with('/')) {
+    return Error{"a device is a path from the root, such as " + kind + ":///dev/ttyUSB0" +
+                 (kind == "serial" ? "?baud=115200" : "") + ", found '" + uri + "'"};
+  }
   StreamAddress address;
   if (kind == "tcp" || kind == "listen") {
     address.kind = kind == "tcp" ? Kind::kTcp : Kind::kListen;
@@ -108,14 +112,14 @@ Result<StreamAddress> StreamAddress::parse(const std::string& uri) {
   if (kind == "serial") {
     address.kind = Kind::kSerial;
     const std::size_t question = rest.find("?baud=");
-    if (question == std::string::npos || question == 0) return error;
+    if (question == std::string::npos) return error;
     address.target = rest.substr(0, question);
     const auto baud = whole_number(std::string_view(rest).substr(question + 6));
     if (!baud || !baud_rates().contains(*baud)) return error;
     address.number = *baud;
     return address;
   }
-  if (kind == "device" && !rest.empty()) {
+  if (kind == "device") {
     address.kind = Kind::kDevice;
     address.target = rest;
     return address;

@@ -128,6 +128,8 @@ MovementControl::Bound MovementControl::bound(const Inputs& inputs, const Wish& 
   bound.limit = inputs.situation == Situation::kOpen       ? parameters_.open
                 : inputs.situation == Situation::kCorridor ? parameters_.corridor
                                                            : parameters_.confined;
+  bound.limit.linear = std::min(bound.limit.linear, parameters_.obeyed.linear);
+  bound.limit.angular = std::min(bound.limit.angular, parameters_.obeyed.angular);
   const auto tighten = [&bound](const VelocityLimit& limit, Limit cause) {
     if (limit.linear < bound.limit.linear) {
       bound.limit.linear = limit.linear;
@@ -391,6 +393,10 @@ Decision MovementControl::decide(const Inputs& inputs, Time now) {
     decision.twist = reflex(inputs.motors_off ? geometry::Twist2{} : rolls, inputs, now);
   }
 
+  // A share of a wish may round up, and the arc that a base rolls out on be over the limit.
+  const VelocityLimit& most = parameters_.obeyed;
+  decision.twist = {std::clamp(decision.twist.v, -most.linear, most.linear),
+                    std::clamp(decision.twist.w, -most.angular, most.angular)};
   last_ = decision.twist;
   if (last_.v != 0.0) direction_ = last_.v;
   last_at_ = now;

@@ -46,6 +46,7 @@ struct AccelerationLimit {
 struct Parameters {
   bool guarded = false;  ///< all sources
   Guard::Parameters guard;
+  VelocityLimit obeyed{1.5, 1.5};  ///< {> 0} the base refuses more
   // The thesis, section 8.1.3 and 6.1.
   VelocityLimit open{1.4, 1.0};
   VelocityLimit corridor{1.0, 1.0};

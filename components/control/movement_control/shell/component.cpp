@@ -57,9 +57,10 @@ float in_seconds(Time time) { return single(std::chrono::duration<double>(time).
 
 }  // namespace
 
-FreeSpaceParameters MovementControlComponent::read_free_space(runtime::Parameters& parameters) {
+FreeSpaceParameters MovementControlComponent::read_free_space(runtime::Parameters& parameters,
+                                                              const geometry::Footprint& outline) {
   FreeSpaceParameters p;
-  p.half_width = parameters.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  p.half_width = outline.half_width();
   p.base_T_sensor.x = parameters.number("robot.laser.mount_x", "m", {-2, 2}, 0.0,
                                         "Laser ahead of the axle's middle.");
   return p;
@@ -100,6 +101,10 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
                               "Nobody moves the robot faster than it stops before what the "
                               "laser sees and the local costs know.");
   p.guard = read_guard(host);
+  p.obeyed.linear = parameters.number("robot.limits.linear", "m/s", {0.1, 3}, p.obeyed.linear,
+                                      "Faster commands are refused by the base.");
+  p.obeyed.angular = parameters.number("robot.limits.angular", "rad/s", {0.1, 5}, p.obeyed.angular,
+                                       "Faster commands are refused by the base.");
   const auto limit = [&](VelocityLimit& value, const std::string& name, const std::string& when) {
     value.linear = parameters.number(name + "_v", "m/s", {0, 1.5}, value.linear,
                                      "Greatest speed " + when + ".");
@@ -146,8 +151,8 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
 
 MovementControlComponent::MovementControlComponent(runtime::Host& host)
     : host_(host),
-      free_space_(read_free_space(host.parameters())),
       parameters_(read_parameters(host)),
+      free_space_(read_free_space(host.parameters(), parameters_.guard.outline)),
       core_(parameters_),
       surroundings_({.base_T_sensor = free_space_.base_T_sensor}),
       rejected_(host.health().counter("cmd_vel: rejected")),

@@ -21,7 +21,8 @@ class MovementControlComponent final : public runtime::Component {
  private:
   static Guard::Parameters read_guard(runtime::Host& host);
   static Parameters read_parameters(runtime::Host& host);
-  static FreeSpaceParameters read_free_space(runtime::Parameters& parameters);
+  static FreeSpaceParameters read_free_space(runtime::Parameters& parameters,
+                                             const geometry::Footprint& outline);
   static std::optional<geometry::Twist2> velocity(
       const RightfulInput<geometry_msgs::msg::TwistStamped>& source);
   std::optional<geometry::Twist2> measured() const;
@@ -35,8 +36,8 @@ class MovementControlComponent final : public runtime::Component {
   void publish_status();
 
   runtime::Host& host_;
-  FreeSpaceParameters free_space_;
   Parameters parameters_;
+  FreeSpaceParameters free_space_;
   bool assume_person_;
   double low_battery_;
   MovementControl core_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <set>
@@ -17,7 +18,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr const char* kRobot = R"(
-robot.half_width: 0.3 m
 robot.footprint: [0.3, 0.3, -0.2, 0.3, -0.2, -0.3, 0.3, -0.3]
 robot.laser.mount_x: 0.28 m
 assume_person_ahead: false
@@ -34,6 +34,9 @@ manifest.components:
 /// silent.
 class Component : public testing::Test {
  protected:
+  explicit Component(const std::string& more = {})
+      : host(runtime::component_factory<MovementControlComponent>("movement_control"),
+             kRobot + more + kManifest) {}
   void run(int ms) {
     for (int at = 0; at < ms; at += 20) {
       speak();
@@ -43,8 +46,7 @@ class Component : public testing::Test {
   double commanded() { return host.last(topics::kDriveCommand)->v(); }
   usher_msgs::msg::MovementStatus status() { return host.last(topics::kMovementStatus).value(); }
 
-  runtime::TestHost host{runtime::component_factory<MovementControlComponent>("movement_control"),
-                         std::string(kRobot) + kManifest};
+  runtime::TestHost host;
   std::set<std::string> silent;
   std::optional<bool> clear;  ///< what the people detector says; nothing: there is none
   double wanted_v = 1.0, wanted_w = 0.0;
@@ -206,6 +208,30 @@ TEST_F(Component, DrivesWhatIsWantedUnderTheEpochOfTheEnable) {
   EXPECT_NEAR(commanded(), 1.0, 1e-6);
   EXPECT_EQ(host.last(topics::kDriveCommand)->epoch(), 7U);
   EXPECT_TRUE(status().ok()) << status().limit_reason();
+}
+
+class SlowComponent : public Component {
+ protected:
+  SlowComponent() : Component("robot.limits.linear: 0.3 m/s\nrobot.limits.angular: 0.2 rad/s\n") {}
+};
+
+TEST_F(SlowComponent, WantsNoMoreThanItsBaseObeys) {
+  const auto most = [this](double v, double w) {
+    host.clear();
+    wanted_v = v, wanted_w = w;
+    run(3000);
+    geometry::Twist2 found;
+    for (const auto& command : host.written(topics::kDriveCommand)) {
+      found.v = std::max(found.v, command.v());
+      found.w = std::max(found.w, command.w());
+    }
+    return found;
+  };
+  const auto straight = most(1.12, 0.0);  // 1.12 * (0.3 / 1.12) is more than 0.3
+  EXPECT_EQ(straight.v, 0.3);
+  const auto arc = most(1.0, 1.0);
+  EXPECT_LE(arc.v, 0.3);
+  EXPECT_EQ(arc.w, 0.2) << "the narrower limit";
 }
 
 TEST_F(Component, HearsNobodyBesideTheOneWhoWishesAlready) {

@@ -24,6 +24,12 @@ TEST(Footprint, KnowsItsRadii) {
   EXPECT_NEAR(square.circumscribed_radius(), 0.5, 1e-12);
 }
 
+TEST(Footprint, KnowsHowFarItReachesToItsSides) {
+  EXPECT_NEAR(Footprint::rectangle(0.6, 0.8).half_width(), 0.4, 1e-12);
+  const std::vector<Point2> lopsided{{0.3, 0.2}, {-0.3, 0.2}, {-0.3, -0.5}, {0.3, -0.4}};
+  EXPECT_NEAR(Footprint::make(lopsided).value().half_width(), 0.5, 1e-12);
+}
+
 TEST(Footprint, AcceptsEitherSense) {
   std::vector<Point2> corners = regular(5, 0.4);
   const Footprint one = Footprint::make(corners).value();

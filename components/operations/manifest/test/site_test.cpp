@@ -141,7 +141,7 @@ TEST_F(Site, LiesOnItsMap) {
 
 TEST_F(Site, HasRoomForTheRobotWhereItShallStand) {
   auto outline = fact("robot.footprint", ParameterKind::kNumbers);
-  outline.fallback = "[1.2, 1.2, -1.2, 1.2, -1.2, -1.2, 1.2, -1.2]";
+  folder_.file("config/robots/r.yaml", "footprint: [1.2, 1.2, -1.2, 1.2, -1.2, -1.2, 1.2, -1.2]\n");
   outline.count_min = outline.count_max = 8;
   add("amcl", {fact("site.initial_pose", ParameterKind::kNumbers), outline});
   folder_.file("config/sites/s/map.pgm", "P2\n4 2\n255\n0 255 255 205\n255 255 255 255\n");
@@ -156,17 +156,65 @@ TEST_F(Site, HasRoomForTheRobotWhereItShallStand) {
                   HasSubstr("'unknown' at (2.50, 1.50) m is where the map knows nothing")));
 }
 
+TEST_F(Site, HasWaysToItsPlacesThatAreWideEnough) {
+  const auto reached = [&](double half_side) {
+    const std::string s = std::to_string(half_side), n = ", -" + s;
+    auto outline = fact("robot.footprint", ParameterKind::kNumbers);
+    outline.count_min = outline.count_max = 8;
+    add("amcl", {fact("site.initial_pose", ParameterKind::kNumbers), outline});
+    folder_.file("config/robots/r.yaml",
+                 "footprint: [" + s + ", " + s + n + ", " + s + n + n + ", " + s + n + "]\n");
+    return findings(
+        "map: map.yaml\ninitial_pose: [-0.5, 1.5, 0]\nlocations:\n"
+        "  - {name: here, x: 0.5, y: 1.5, yaw: 0}\n"
+        "  - {name: lab, x: 7.5, y: 1.5, yaw: 0}\n",
+        kGuide);
+  };
+  const std::string room = "255 255 255 255 ", wall = room + "0 " + room + "\n";
+  const std::string door = room + "205 " + room + "\n";
+  folder_.file("config/sites/s/map.pgm", "P2\n9 3\n255\n" + wall + door + wall);
+  EXPECT_THAT(reached(2.9), IsEmpty()) << "through the door, which the map does not know";
+  EXPECT_THAT(reached(3.1),
+              ElementsAre("config/sites/s/site.yaml:5: wrong value: 'lab' at (7.50, 1.50) m cannot "
+                          "be reached from the start at (-0.50, 1.50) m: no way of the map is wide "
+                          "enough for the robot (6.20 m)"));
+  folder_.file("config/sites/s/map.pgm", "P2\n9 3\n255\n" + wall + wall + wall);
+  EXPECT_THAT(reached(0.3), ElementsAre(HasSubstr("'lab' at (7.50, 1.50) m cannot be reached")));
+}
+
+TEST_F(Site, HasRoomsOnItsMapEachOnceAndApart) {
+  const std::string site =
+      "map: map.yaml\nlocations:\n  - {name: blue, x: 1, y: 1, yaw: 0}\n"
+      "  - {name: red, x: 1, y: 1, yaw: 0}\nmeeting_rooms:\n"
+      "  - {name: blue, west: 0, south: 0, east: 1, north: 1}\n";
+  EXPECT_THAT(findings(site + "  - {name: red, west: 1, south: 0, east: 2, north: 1}\n", kMeeting),
+              IsEmpty())
+      << "side by side";
+  EXPECT_THAT(
+      findings(site + "  - {name: red, west: 0.5, south: 0.5, east: 2, north: 1.5}\n"
+                      "  - {name: blue, west: 2.5, south: 0, east: 5, north: 1}\n",
+               kMeeting),
+      ElementsAre(
+          "config/sites/s/site.yaml:7: wrong value: the meeting room 'red' overlaps 'blue': "
+          "nobody knows which one it is",
+          "config/sites/s/site.yaml:8: wrong value: the meeting room 'blue' is not on the "
+          "map, which reaches from (-1.00, 0.00) m to (3.00, 2.00) m",
+          "config/sites/s/site.yaml:8: wrong value: the meeting room 'blue' is given twice"));
+}
+
 TEST_F(Site, HasRoomsWithAnInsideAndALocation) {
-  const std::string site = "map: map.yaml\nlocations:\n  - {name: blue, x: 1, y: 1, yaw: 0}\n";
+  const std::string site =
+      "map: map.yaml\nlocations:\n  - {name: blue, x: 1, y: 1, yaw: 0}\n"
+      "  - {name: red, x: 1, y: 1, yaw: 0}\n";
   EXPECT_THAT(
       findings(site + "meeting_rooms:\n"
                       "  - {name: blue, west: 0, south: 0, east: 1, north: 1}\n"
-                      "  - {name: bleu, west: 0, south: 0, east: 1, north: 1}\n"
-                      "  - {name: blue, west: 2, south: 0, east: 1, north: 1}\n",
+                      "  - {name: bleu, west: 1, south: 0, east: 2, north: 1}\n"
+                      "  - {name: red, west: 2, south: 0, east: 1, north: 1}\n",
                kMeeting),
-      ElementsAre("config/sites/s/site.yaml:6: wrong value: the meeting room 'bleu' must have a "
-                  "location of its name, where the robot turns round; there are blue",
-                  "config/sites/s/site.yaml:7: wrong value: the meeting room 'blue' must have west "
+      ElementsAre("config/sites/s/site.yaml:7: wrong value: the meeting room 'bleu' must have a "
+                  "location of its name, where the robot turns round; there are blue, red",
+                  "config/sites/s/site.yaml:8: wrong value: the meeting room 'red' must have west "
                   "< east and south < north"));
 }
 

@@ -265,7 +265,12 @@ TEST_F(Wiring, KeepsTheDriveChainOnOneHost) {
   EXPECT_THAT(findings("  movement_control: {host: nuc}\n  segway_rmp: {host: nuc}\n"
                        "  supervisor:\n    host: tablet\n"),
               ElementsAre("m.yaml:8: split drive chain: the drive chain must live on one host: "
-                          "'movement_control' is on nuc, 'supervisor' on tablet"));
+                          "'segway_rmp' is on nuc, 'supervisor' on tablet"));
+  EXPECT_THAT(findings("  movement_control:\n    host: tablet\n  segway_rmp: {host: nuc}\n"
+                       "  supervisor: {host: nuc}\n"),
+              ElementsAre("m.yaml:6: split drive chain: the drive chain must live on one host: "
+                          "'segway_rmp' is on nuc, 'movement_control' on tablet"))
+      << "not the two that are where the base is";
 }
 
 TEST_F(Wiring, KeepsAGroupTogether) {

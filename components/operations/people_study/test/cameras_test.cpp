@@ -107,7 +107,7 @@ class Cameras : public testing::Test {
   std::vector<std::uint16_t> pixels;
   const Pose2 odom_T_base{3.0, -1.0, 2.0};
   runtime::TestHost host{runtime::component_factory<PeopleDetectorComponent>("people_detector"),
-                         "robot.half_width: 0.33 m"};
+                         "robot.footprint: [0.3, 0.33, -0.3, 0.33, -0.3, -0.33, 0.3, -0.33]"};
 };
 
 TEST_F(Cameras, FindWhoStandsBeforeTheRobotAndTellMovementControl) {

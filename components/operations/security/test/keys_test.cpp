@@ -196,6 +196,14 @@ TEST_F(Keys, AreFoundWantingInAnotherDomainAndOfAnotherCa) {
   EXPECT_THAT(findings()[0], HasSubstr("the certificate of 'movement_control' is not valid here"));
 }
 
+TEST_F(Keys, AreFoundWantingWithoutAGovernanceOfTheirCa) {
+  ASSERT_TRUE(make());
+  folder_.file("keys/governance.smime", "");
+  EXPECT_THAT(findings(), ElementsAre(HasSubstr("governance.smime is not signed by the CA")));
+  std::filesystem::remove(manifest_.keys + "/governance.smime");
+  EXPECT_THAT(findings(), ElementsAre(HasSubstr("cannot read " + manifest_.keys + "/governance")));
+}
+
 TEST_F(Keys, OfAnotherHostNeedNotBeHere) {
   EXPECT_THAT(findings(), ElementsAre(HasSubstr("missing file: cannot read")));
   ASSERT_TRUE(make());

@@ -6,6 +6,7 @@
 
 #include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
+#include "wire/footprint.hpp"
 #include "wire/frames.hpp"
 
 namespace usher::people_detector {
@@ -17,8 +18,8 @@ using std::chrono::milliseconds;
 
 constexpr auto kScanAge = milliseconds(250);
 constexpr auto kFacesAge = milliseconds(1000);
-constexpr auto kLooks = milliseconds(300);             // a camera that looked so long ago looks
-constexpr auto kPeriod = milliseconds(60);             // every third scan of a laser of 50 Hz
+constexpr auto kLooks = milliseconds(300);  // a camera that looked so long ago looks
+constexpr auto kPeriod = milliseconds(50);  // of scans (every third of 50 Hz), and what is told
 constexpr auto kLocalizationAge = milliseconds(1000);  // of map -> odom
 constexpr auto kFramesPeriod = milliseconds(200);
 constexpr std::size_t kMostFrames = 16;  // transforms in one message
@@ -76,9 +77,10 @@ SightingErrors error_parameters(runtime::Parameters& p) {
   return e;
 }
 
-AheadConfig ahead_parameters(runtime::Parameters& p) {
+AheadConfig ahead_parameters(runtime::Host& host) {
+  auto& p = host.parameters();
   AheadConfig c;
-  c.half_width = p.number("robot.half_width", "m", {0.1, 1}, "Half of the robot's width.");
+  c.half_width = wire::read_footprint(host).half_width();
   c.beside = p.number("ahead.beside", "m", {0, 2}, c.beside,
                       "So near beside the robot's way somebody is in it.");
   c.reach = p.number("ahead.reach", "m", {0.5, 8}, c.reach, "So far ahead.");
@@ -134,7 +136,7 @@ Following::Following(runtime::Host& host, std::function<std::string()> trouble)
       errors_(error_parameters(host.parameters())),
       in_wall_(wall_parameter(host.parameters())),
       show_frames_(frames_parameter(host.parameters())),
-      ahead_(ahead_parameters(host.parameters())),
+      ahead_(ahead_parameters(host)),
       rejected_(host.health().counter("scans: rejected")),
       late_(host.health().counter("images: late")),
       late_scans_(host.health().counter("scans: late")),

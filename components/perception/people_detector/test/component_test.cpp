@@ -58,7 +58,7 @@ class Component : public testing::Test {
   }
 
   runtime::TestHost host{runtime::component_factory<PeopleDetectorComponent>("people_detector"),
-                         "robot.half_width: 0.33 m"};
+                         "robot.footprint: [0.3, 0.33, -0.3, 0.33, -0.3, -0.33, 0.3, -0.33]"};
   const Pose2 map_T_odom{0.5, 0.5, 0.3};
   const Pose2 odom_T_base{0.4, 0.6, 0.1};
   bool localized = false, blind_ahead = false;
@@ -273,7 +273,7 @@ class SimComponent : public testing::Test {
   imaging::Appearance clothes;
   runtime::TestHost host{
       runtime::component_factory<PeopleDetectorSimComponent>("people_detector_sim"),
-      "robot.half_width: 0.33 m"};
+      "robot.footprint: [0.3, 0.33, -0.3, 0.33, -0.3, -0.33, 0.3, -0.33]"};
 };
 
 TEST_F(SimComponent, FollowsWhomTheModelFinds) {

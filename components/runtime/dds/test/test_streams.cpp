@@ -147,10 +147,11 @@ TEST(StreamAddress, ReadsEachKind) {
 }
 
 TEST(StreamAddress, RefusesEverythingElse) {
-  for (const char* uri : {"", "tcp://", "tcp://host.local:1", "tcp://1.2.3.4", "tcp://1.2.3.4:0",
-                          "tcp://1.2.3.4:65536", "tcp://1.2.3.4:1x", "tcp://:5", "serial:///dev/x",
-                          "serial:///dev/x?baud=12345", "serial://?baud=9600", "udp://1.2.3.4:5",
-                          "/dev/ttyUSB0", "listen://0.0.0.0", "device://"}) {
+  for (const char* uri :
+       {"", "tcp://", "tcp://host.local:1", "tcp://1.2.3.4", "tcp://1.2.3.4:0",
+        "tcp://1.2.3.4:65536", "tcp://1.2.3.4:1x", "tcp://:5", "serial:///dev/x",
+        "serial:///dev/x?baud=12345", "serial://?baud=9600", "udp://1.2.3.4:5", "/dev/ttyUSB0",
+        "listen://0.0.0.0", "device://", "device://js0", "serial://dev/x?baud=9600"}) {
     EXPECT_FALSE(StreamAddress::parse(uri).ok()) << uri;
   }
 }
