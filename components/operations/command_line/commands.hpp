@@ -1,6 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <vector>
+
+#include "operations/manifest/resolve.hpp"
 
 namespace usher::operations {
 
@@ -19,5 +22,8 @@ void add_calibrate_faces(CLI::App& calibrate_command, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);  ///< demo
 void add_measuring_commands(
     CLI::App& app, int& exit_code);  ///< experiment bench: other programs of the installation
+
+/// `--set COMPONENT.PARAMETER=VALUE`, any number of them.
+void add_set_option(CLI::App& command, std::vector<Override>& overrides);
 
 }  // namespace usher::operations

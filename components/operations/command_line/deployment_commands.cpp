@@ -14,11 +14,11 @@ namespace usher::operations {
 
 namespace {
 
-int check(const std::vector<std::string>& manifests) {
+int check(const std::vector<std::string>& manifests, const std::vector<Override>& overrides) {
   const auto installation = Installation::of_this_program();
   int bad = 0;
   for (const auto& path : manifests) {
-    auto deployment = load_deployment(path, installation, {}, keys_folder());
+    auto deployment = load_deployment(path, installation, overrides, keys_folder());
     if (!deployment) {
       ++bad;
       std::cout << to_string(finding_of(Verdict::kUnreadable, deployment.error(), path)) << "\n";
@@ -102,12 +102,30 @@ int graph(const std::string& path) {
 
 }  // namespace
 
+void add_set_option(CLI::App& command, std::vector<Override>& overrides) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&overrides](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              auto parsed = parse_override(text);
+              if (!parsed) throw CLI::ValidationError("--set", parsed.error());
+              overrides.push_back(std::move(parsed).value());
+            }
+          },
+          "COMPONENT.PARAMETER=VALUE, over everything else")
+      ->allow_extra_args(false);
+}
+
 void add_deployment_commands(CLI::App& app, int& exit_code) {
   auto manifests = std::make_shared<std::vector<std::string>>();
+  auto overrides = std::make_shared<std::vector<Override>>();
   auto* check_command =
       app.add_subcommand("check", "Judge manifests offline: wiring, rates, values, policies");
   check_command->add_option("manifest", *manifests, "Manifest files")->required();
-  check_command->callback([manifests, &exit_code] { exit_code = check(*manifests); });
+  add_set_option(*check_command, *overrides);
+  check_command->callback(
+      [manifests, overrides, &exit_code] { exit_code = check(*manifests, *overrides); });
 
   auto manifest = std::make_shared<std::string>();
   auto* components_command =

@@ -261,19 +261,14 @@ class Display {
 
 struct LaunchArguments {
   std::string manifest, host, run_directory;
-  std::vector<std::string> settings;
+  std::vector<Override> overrides;
 };
 
 /// The deployment as it is asked for. What is wrong with it goes to stderr.
 Result<Deployment> deployment_for(const LaunchArguments& arguments,
                                   const Installation& installation) {
-  std::vector<Override> overrides;
-  for (const auto& text : arguments.settings) {
-    auto parsed = parse_override(text);
-    if (!parsed) return Error{parsed.error()};
-    overrides.push_back(*parsed);
-  }
-  auto deployment = load_deployment(arguments.manifest, installation, overrides, keys_folder());
+  auto deployment =
+      load_deployment(arguments.manifest, installation, arguments.overrides, keys_folder());
   if (!deployment) return Error{deployment.error()};
   for (const auto& finding : deployment->findings) std::cerr << to_string(finding) << "\n";
   if (!deployment->findings.empty())
@@ -333,12 +328,7 @@ void add_launch_command(CLI::App& app, int& exit_code) {
       "launch", "Start a deployment, watch it, restart what ends, stop it on Ctrl-C");
   launch_command->add_option("manifest", arguments->manifest, "Manifest file")->required();
   launch_command->add_option("--host", arguments->host, "Start only this host's part");
-  launch_command
-      ->add_option("--set", arguments->settings, "COMPONENT.PARAMETER=VALUE, over everything else")
-      ->check([](const std::string& text) {
-        const auto parsed = parse_override(text);
-        return parsed ? std::string() : parsed.error();
-      });
+  add_set_option(*launch_command, arguments->overrides);
   launch_command->add_option("--run-directory", arguments->run_directory,
                              "Parameter files, logs, memory of the components");
   launch_command->callback([arguments, &exit_code] { exit_code = launch(*arguments); });

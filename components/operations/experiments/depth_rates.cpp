@@ -13,6 +13,7 @@
 #include "operations/command_line/table.hpp"
 #include "operations/experiments/site_facts.hpp"
 #include "operations/launcher/launcher.hpp"
+#include "operations/launcher/precedence.hpp"
 #include "runtime/dds/observer.hpp"
 
 namespace usher::operations {
@@ -140,8 +141,9 @@ Status run(const ExperimentOptions& options, const Setup& setup, Measured& measu
   auto launcher =
       Launcher::create(*deployment, {"", options.installation.programs, options.out + "/run"});
   if (!launcher) return Error{launcher.error()};
-  auto observer =
-      runtime::Observer::create({.name = "operator", .host = "nuc", .domain = options.domain});
+  const auto observer = made_before_all([&] {
+    return runtime::Observer::create({.name = "operator", .host = "nuc", .domain = options.domain});
+  });
   if (!observer) return Error{observer.error()};
   const auto images = (*observer)->reader(
       topics::kKinectDepth, [&](const auto&, const auto&) { measured.images.note(); });

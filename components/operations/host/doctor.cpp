@@ -212,9 +212,19 @@ Diagnosis examine_limits() {
 
 /// `usher launch` goes on without, and says so.
 Diagnosis examine_precedence() {
-  if (may_go_first()) return {"precedence", Verdict::kGood, "the drive chain may go first", ""};
-  return {"precedence", Verdict::kWarning, "no right to go before other programs",
-          "`USER - nice -11` in /etc/security/limits.d/usher.conf, then a new login"};
+  const bool first = may_go_first(), real_time = may_run_in_real_time();
+  if (first && real_time)
+    return {"precedence", Verdict::kGood,
+            "the drive chain may go first, and real time is permitted", ""};
+  std::string missing, lines;
+  if (!first) missing = "no right to go before other programs", lines = "`USER - nice -11`";
+  if (!real_time) {
+    missing +=
+        (missing.empty() ? "" : ", ") + std::string("no real time (two processors at least)");
+    lines += (lines.empty() ? "" : " and ") + std::string("`USER - rtprio 11`");
+  }
+  return {"precedence", Verdict::kWarning, missing,
+          lines + " in /etc/security/limits.d/usher.conf, then a new login"};
 }
 
 Diagnosis examine_processor() {

@@ -58,8 +58,11 @@ ServiceUnit service_unit(const Manifest& manifest, const ServiceOptions& options
          "# What must outlive a stop and a boot lies here: an emergency stop holds until it is "
          "cleared.\n"
          "StateDirectory=usher\nEnvironment=XDG_RUNTIME_DIR=/run\n"
-         "# Without it the drive chain of a user other than root would wait for other programs.\n"
-         "LimitNICE=31\nLimitNOFILE=4096\nLimitCORE=0\nUMask=0077\nNoNewPrivileges=true\n";
+         "# Without them the drive chain of a user other than root would wait for other programs, "
+         "and nothing would\n"
+         "# run in real time.\n"
+         "LimitNICE=31\nLimitRTPRIO=10\nLimitNOFILE=4096\nLimitCORE=0\nUMask=0077\nNoNewPrivileges="
+         "true\n";
   if (!options.user.empty())
     out << "User=" << options.user << "\nSupplementaryGroups=dialout input audio video\n";
   out << "\n[Install]\nWantedBy=multi-user.target\n";

@@ -144,6 +144,7 @@ Launcher::Launcher(Launcher&& other) noexcept
       events_(std::move(other.events_)),
       operator_file_(std::exchange(other.operator_file_, {})),
       may_go_first_(other.may_go_first_),
+      may_run_in_real_time_(other.may_run_in_real_time_),
       since_boot_(other.since_boot_),
       locks_(std::exchange(other.locks_, {})),
       last_poll_(other.last_poll_),
@@ -206,12 +207,6 @@ Status Launcher::prepare(const Deployment& deployment) {
   if (!since_boot_) {
     if (auto status = forget_session(); !status) return status;
   }
-  may_go_first_ = may_go_first();
-  if (!may_go_first_) {
-    events_.push_back(
-        "the drive chain cannot go before other programs here, so a busy machine may stop the "
-        "robot (permit it with CAP_SYS_NICE or RLIMIT_NICE 31)");
-  }
   const std::int64_t anchor = clock_anchor();
   if (auto status = leave_operator_file(deployment, anchor); !status) return status;
   if (auto status = add_discovery_server(deployment, anchor); !status) return status;
@@ -251,13 +246,33 @@ Status Launcher::prepare(const Deployment& deployment) {
         found != deployment.movement.end())
       process->movement = std::max(process->movement, found->second);
     process->goes_first = process->goes_first || file.critical;
+    process->real_time = process->real_time || component.real_time;
     process->components.push_back(component.name);
     process->arguments.push_back("--parameters");
     process->arguments.push_back(path);
   }
   if (processes_.empty())
     return Error{"nothing runs on host '" + options_.host + "' (" + deployment.manifest.path + ")"};
+  ask_for_precedence();
   return {};
+}
+
+void Launcher::ask_for_precedence() {
+  may_go_first_ = may_go_first();
+  may_run_in_real_time_ = may_run_in_real_time();
+  if (!may_go_first_) {
+    events_.push_back(
+        "the drive chain cannot go before other programs here, so a busy machine may stop the "
+        "robot (permit it with CAP_SYS_NICE or RLIMIT_NICE 31)");
+  }
+  if (may_run_in_real_time_) return;
+  for (const Process& process : processes_) {
+    if (!process.real_time) continue;
+    events_.push_back(process.name +
+                      ": cannot run in real time here, so it is less even than its manifest wants "
+                      "(that takes two processors, and CAP_SYS_NICE or RLIMIT_RTPRIO " +
+                      std::to_string(kRealTime) + ")");
+  }
 }
 
 Status Launcher::leave_operator_file(const Deployment& deployment, std::int64_t anchor) {
@@ -315,6 +330,7 @@ void Launcher::start(Process& process) {
     if (log >= 0) dup2(log, STDOUT_FILENO), dup2(log, STDERR_FILENO);
     if (null >= 0) dup2(null, STDIN_FILENO);
     if (process.goes_first && may_go_first_) go_first();
+    if (process.real_time && may_run_in_real_time_) run_in_real_time();
     execv(arguments[0], arguments.data());
     _exit(127);
   }

@@ -44,6 +44,7 @@ struct Process {
   std::chrono::steady_clock::duration start_patience{};
   std::string log;
   bool goes_first = false;  ///< before all other programs of this machine, where that is permitted
+  bool real_time = false;   ///< before those, too, where that is permitted
 
   State state = State::kWaiting;
   pid_t pid = 0;
@@ -116,6 +117,7 @@ class Launcher {
   Status forget_session() const;
   Status leave_operator_file(const Deployment& deployment, std::int64_t anchor);
   Status add_discovery_server(const Deployment& deployment, std::int64_t anchor);
+  void ask_for_precedence();
   void start(Process& process);
   void ended(Process& process, int status);
   bool reap(Process& process);
@@ -132,9 +134,10 @@ class Launcher {
   std::vector<Process> processes_;
   std::vector<std::string> events_;
   std::string operator_file_;
-  bool may_go_first_ = false;  ///< permitted
-  bool since_boot_ = false;    ///< this host's part was launched before, since the boot
-  std::vector<int> locks_;     ///< open files, locked while this launcher lives
+  bool may_go_first_ = false;          ///< permitted
+  bool may_run_in_real_time_ = false;  ///< permitted
+  bool since_boot_ = false;            ///< this host's part was launched before, since the boot
+  std::vector<int> locks_;             ///< open files, locked while this launcher lives
   std::chrono::steady_clock::time_point last_poll_{};
   std::chrono::steady_clock::time_point trusted_from_{};  ///< silence before is not believed
   std::chrono::steady_clock::time_point anybody_heard_at_{};

@@ -102,7 +102,10 @@ class Fields {
     return node;
   }
 
+  /// A key that is there and says nothing is wrong already.
   void missing(const std::string& key) {
+    if (const Tree* node = tree_.find(key); node != nullptr && node->kind == Tree::Kind::kScalar)
+      return;
     findings_.push_back(
         {Verdict::kMissingValue, what_ + ": '" + key + "' must be given", tree_.origin});
   }
@@ -210,6 +213,7 @@ ManifestComponent read_component(const std::string& name, const Tree& tree,
   fields.number("restart_budget", 0, 1000, component.restart_budget);
   fields.number("heartbeat_timeout", 0.05, 60.0, component.heartbeat_timeout);
   fields.number("start_patience", 1.0, 600.0, component.start_patience);
+  fields.one_of("real_time", {{"true", true}, {"false", false}}, component.real_time);
   if (const Tree* parameters = fields.map("parameters"); parameters != nullptr) {
     for (const auto& [key, value] : parameters->entries)
       component.parameters.push_back({key, value.yaml(), value.origin});
@@ -425,7 +429,9 @@ Result<Manifest> read_manifest(const std::string& path,
     for (const auto& [name, entry] : components->entries) {
       const auto& component =
           manifest.components.emplace_back(read_component(name, entry, manifest.findings));
-      judge_host("component '" + name + "'", component.host, component.origin_of("host"), manifest);
+      if (!component.host.empty() || !component.origins.contains("host"))
+        judge_host("component '" + name + "'", component.host, component.origin_of("host"),
+                   manifest);
     }
     for (const auto& [name, entry] : components->removed) {
       const Tree* type = entry.find("type");

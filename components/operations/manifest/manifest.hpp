@@ -28,6 +28,8 @@ struct ManifestComponent {
   double heartbeat_timeout = 0.12;  ///< [s] six heartbeats of a critical component
   double start_patience = 30.0;  ///< [s] from its start to its first sign of life; with keys twice
   std::string group;             ///< components of one group share a process; empty = its own
+  bool real_time = false;  ///< its process goes before all others, on one processor of its host:
+                           ///< for short work that must be even, as that on a camera's images
   std::vector<runtime::ParameterValue> parameters;
   std::string origin;
   std::map<std::string, std::string> origins;  ///< of the keys that are given

@@ -277,6 +277,12 @@ class Judge {
                   "' and '" + component.name + "' differ",
               component, first.restart != component.restart ? "restart" : "restart_budget");
       }
+      if (first.real_time != component.real_time) {
+        found(Verdict::kSplitGroup,
+              "group '" + component.group + "' must have one real_time: those of '" + first.name +
+                  "' and '" + component.name + "' differ",
+              component, "real_time");
+      }
     }
   }
 

@@ -209,6 +209,8 @@ void judge_keys(const Manifest& manifest, const Contracts& contracts,
   for (const auto& component : manifest.components) {
     if (has_identity(component.name)) hosts_with_keys.insert(component.host);
   }
+  std::vector<Finding> refused;
+  std::size_t judged = 0;
   for (const auto& wanted : permissions_of(manifest, contracts)) {
     const auto* component = manifest.component(wanted.name);
     const std::string host = component != nullptr              ? component->host
@@ -219,10 +221,19 @@ void judge_keys(const Manifest& manifest, const Contracts& contracts,
                                ? wanted.name != kLauncher
                                : !hosts_with_keys.empty() && !hosts_with_keys.contains(host);
     if (!has_identity(wanted.name) && elsewhere) continue;
+    ++judged;
     const std::string text = complaint(wanted, manifest.keys, *authority);
     if (text.empty()) continue;
-    findings.push_back({Verdict::kNoPermission, text,
-                        component != nullptr ? component->origin : manifest.origin_of("security")});
+    refused.push_back({Verdict::kNoPermission, text,
+                       component != nullptr ? component->origin : manifest.origin_of("security")});
+  }
+  if (judged > 1 && refused.size() == judged) {
+    findings.push_back({Verdict::kNoPermission,
+                        "none of the " + std::to_string(judged) + " keys in " + manifest.keys +
+                            " is one of this manifest; the first: " + refused.front().text,
+                        manifest.origin_of("security")});
+  } else {
+    findings.insert(findings.end(), refused.begin(), refused.end());
   }
   const std::string governance = manifest.keys + "/governance.smime";
   const auto holds = read_file(governance);

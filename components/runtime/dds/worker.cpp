@@ -1,5 +1,9 @@
 #include "runtime/dds/worker.hpp"
 
+#include <sched.h>
+
+#include <cstring>
+
 namespace usher::runtime {
 
 void Worker::stop() {
@@ -21,7 +25,22 @@ void Worker::submit(std::function<void()> job) {
   changed_.notify_one();
 }
 
+namespace {
+
+/// The calling thread alone: as an ordinary one, on all processors that its process is permitted.
+void leave_real_time() {
+  if (sched_getscheduler(0) != SCHED_FIFO) return;
+  const sched_param ordinary{};
+  sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  cpu_set_t all;
+  std::memset(&all, 0xff, sizeof(all));
+  sched_setaffinity(0, sizeof(all), &all);
+}
+
+}  // namespace
+
 void Worker::run() {
+  leave_real_time();
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stop_ || !jobs_.empty(); });

@@ -9,7 +9,8 @@
 namespace usher::runtime {
 
 /// One thread that runs jobs in the order of their submission; it starts with the first. The engine
-/// bounds how many are under way.
+/// bounds how many are under way. Jobs are long: in a process that runs in real time they run
+/// outside of it.
 class Worker {
  public:
   Worker() = default;

@@ -1,6 +1,7 @@
 #include "operations/launcher/launcher.hpp"
 
 #include <gmock/gmock.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -135,6 +136,56 @@ TEST_F(Launching, LetsWhatMustAnswerInTimeGoFirst) {
     EXPECT_THAT(events_, Contains(HasSubstr("cannot go before other programs")));
   }
   EXPECT_TRUE(wait_for(made, [&] { return nice("ears") == before; }));
+}
+
+/// Processors on which a process may run; -1 where it is gone.
+int processors(pid_t pid) {
+  cpu_set_t set;
+  return sched_getaffinity(pid, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : -1;
+}
+
+TEST_F(Launching, LetsWhatMustBeEvenRunInRealTimeOnOneProcessor) {
+  const int before = sched_getscheduler(0), all = processors(0);
+  const bool permitted = may_run_in_real_time();
+  EXPECT_EQ(sched_getscheduler(0), before) << "asking changes nothing";
+  EXPECT_EQ(processors(0), all);
+  component("eyes", "sleeper").group = "depth";
+  component("scans", "sleeper").group = "depth";
+  component("legs", "sleeper");
+  deployment_.manifest.components[0].real_time = true;
+  deployment_.files[2].critical = true;
+  program("group", "exec sleep 1000");
+  auto made = launcher();
+  const auto sleeps = [&](const char* name) {  // and has all that it will have
+    const std::string folder = "/proc/" + std::to_string(made.find(name)->pid);
+    return test::content_of(folder + "/comm") == "sleep\n";
+  };
+  ASSERT_TRUE(wait_for(made, [&] { return sleeps("eyes") && sleeps("legs"); }));
+  const pid_t eyes = made.find("eyes")->pid, legs = made.find("legs")->pid;
+  EXPECT_EQ(sched_getscheduler(legs), before);
+  EXPECT_EQ(processors(legs), all);
+  if (permitted) {
+    EXPECT_EQ(sched_getscheduler(eyes), SCHED_FIFO);
+    EXPECT_EQ(processors(eyes), 1) << "the others are the drive chain's";
+  } else {
+    EXPECT_EQ(sched_getscheduler(eyes), before);
+    EXPECT_THAT(events_, Contains(HasSubstr("depth: cannot run in real time")));
+  }
+}
+
+TEST(Precedence, OfWhoMeasuresIsThatOfTheThreadsThatItStarts) {
+  const int before = sched_getscheduler(0);
+  const auto measuring = made_before_all([] {
+    std::pair<int, sched_param> found;
+    std::thread([&] {
+      found.first = sched_getscheduler(0);
+      sched_getparam(0, &found.second);
+    }).join();
+    return found;
+  });
+  EXPECT_EQ(sched_getscheduler(0), before) << "the caller's own";
+  if (measuring.first != SCHED_FIFO) GTEST_SKIP() << "real time is not permitted here";
+  EXPECT_GE(measuring.second.sched_priority, kRealTime);
 }
 
 TEST_F(Launching, RestartsAtOnceWhatWasKilled) {

@@ -47,6 +47,7 @@ TEST_F(ManifestFile, SaysWhatRunsWhere) {
            "domain: 7\nseed: 9\ncomponents:\n"
            "  amcl: {host: nuc, criticality: degrade, restart: on_failure,\n"
            "         restart_budget: 3, heartbeat_timeout: 0.5, start_patience: 4, group: g,\n"
+           "         real_time: true,\n"
            "         parameters: {max_beams: 60, list: [1, 2]}}\n"
            "  eyes: {type: kinect, host: tablet}\n");
   ASSERT_TRUE(manifest) << manifest.error();
@@ -65,10 +66,11 @@ TEST_F(ManifestFile, SaysWhatRunsWhere) {
   EXPECT_EQ(amcl->restart_budget, 3);
   EXPECT_EQ(amcl->heartbeat_timeout, 0.5);
   EXPECT_EQ(amcl->start_patience, 4.0);
+  EXPECT_TRUE(amcl->real_time);
   EXPECT_EQ(amcl->group, "g");
   ASSERT_EQ(amcl->parameters.size(), 2U);
   EXPECT_EQ(amcl->parameters[1].yaml, "[1, 2]");
-  EXPECT_EQ(shortened(amcl->parameters[1].origin), "m.yaml:9");
+  EXPECT_EQ(shortened(amcl->parameters[1].origin), "m.yaml:10");
   EXPECT_EQ(manifest->component("eyes")->type, "kinect");
   EXPECT_EQ(manifest->component("nobody"), nullptr);
   EXPECT_EQ(manifest->host("nobody"), nullptr);
@@ -82,6 +84,7 @@ TEST_F(ManifestFile, IsSafeWhereNothingIsSaid) {
   EXPECT_EQ(amcl.restart, RestartPolicy::kAlways);
   EXPECT_EQ(amcl.heartbeat_timeout, 0.12);
   EXPECT_EQ(amcl.start_patience, 30.0);
+  EXPECT_FALSE(amcl.real_time);
 }
 
 TEST_F(ManifestFile, NamesTheLineOfEachKey) {
@@ -202,6 +205,14 @@ TEST_F(ManifestFile, MissesWhatMustBeThere) {
                           "m.yaml:1: missing value: manifest: 'site' must be given",
                           "m.yaml:1: missing value: manifest: 'hosts' must be given",
                           "m.yaml:1: missing value: manifest: 'components' must be given"));
+}
+
+TEST_F(ManifestFile, SaysOnceThatAKeySaysNothing) {
+  EXPECT_THAT(
+      findings("robot: ''\nsite: s\nhosts: {nuc: {}}\n"
+               "components: {amcl: {host: ''}}\n"),
+      ElementsAre("m.yaml:1: wrong value: manifest: 'robot' must be a word, got \"\"",
+                  "m.yaml:4: wrong value: component 'amcl': 'host' must be a word, got \"\""));
 }
 
 TEST_F(ManifestFile, FindsEveryUnknownKey) {

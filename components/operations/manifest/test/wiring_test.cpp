@@ -288,6 +288,9 @@ TEST_F(Wiring, KeepsAGroupTogether) {
               ElementsAre(HasSubstr("must have one restart and restart_budget")))
       << "one process has one policy; the first component's would silently win";
   EXPECT_THAT(with("host: nuc, restart_budget: 2"), ElementsAre(HasSubstr("split group")));
+  EXPECT_THAT(with("host: nuc, real_time: true"),
+              ElementsAre("m.yaml:6: split group: group 'depth' must have one real_time: those of "
+                          "'kinect' and 'depth_pipeline' differ"));
   EXPECT_THAT(findings("  kinect: {host: nuc, group: depth_pipeline}\n"
                        "  depth_pipeline: {host: nuc}\n"),
               ElementsAre("m.yaml:5: split group: group 'depth_pipeline' has the name of a "

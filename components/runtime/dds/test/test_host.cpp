@@ -1,5 +1,6 @@
 // DdsHost: a component with real participants around it, in this process.
 #include <gmock/gmock.h>
+#include <sched.h>
 
 #include <atomic>
 #include <thread>
@@ -264,6 +265,29 @@ TEST(DdsHost, RunsJobsBesideTheHandlersAndTheirEndAsHandler) {
   worker.end();
   EXPECT_NE(job_thread, done_thread);
   EXPECT_EQ(done_thread, timer_thread);
+}
+
+TEST(DdsHost, RunsJobsOutsideOfRealTime) {
+  std::atomic<bool> done{false};
+  int handlers = -1, jobs = -1;
+  bool permitted = false;
+  std::thread([&] {  // a host takes after who makes it
+    const sched_param wanted{.sched_priority = 1};
+    permitted = sched_setscheduler(0, SCHED_FIFO, &wanted) == 0;
+    Running worker(file("worker"), Scripted::factory([&](Host& host) {
+                     host.timer("once", 10ms, [&, started = false](std::uint64_t) mutable {
+                       if (std::exchange(started, true)) return;
+                       handlers = sched_getscheduler(0);
+                       host.offload(
+                           1ms, [&] { jobs = sched_getscheduler(0); }, [&] { done = true; });
+                     });
+                   }));
+    while (!done) std::this_thread::sleep_for(1ms);
+  })
+      .join();
+  if (!permitted) GTEST_SKIP() << "real time is not permitted here";
+  EXPECT_EQ(handlers, SCHED_FIFO);
+  EXPECT_EQ(jobs, SCHED_OTHER);
 }
 
 TEST(DdsHost, KeepsValuesOverItsLife) {
