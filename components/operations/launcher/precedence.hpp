@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -29,11 +29,11 @@ void go_before_all();
 /// What `make` returns, made in a thread that goes before all, and so whatever threads it starts;
 /// for who measures the robot, whose clock would else wait for what it measures.
 template <class Make>
-auto made_before_all(Make&& make) {
-  std::optional<decltype(make())> made;
+auto made_before_all(Make make) {
+  std::unique_ptr<decltype(make())> made;
   std::thread([&] {
     go_before_all();
-    made.emplace(std::forward<Make>(make)());
+    made = std::make_unique<decltype(make())>(make());
   }).join();
   return std::move(*made);
 }
