@@ -40,11 +40,13 @@ class RollOut {
                         std::chrono::nanoseconds called) {
     const std::chrono::nanoseconds now = passed(called);
     const bool known = measured && measured->finite();
-    if (!stops_) {
+    // Who begins while the base rolls, after a restart, knows that from the measurement alone, the
+    // first that he hears.
+    const bool learns = known && !rolled_at_;
+    if (!stops_ || learns) {
       stops_ = true;
-      // Who begins while the base rolls, after a restart, knows that from the measurement alone.
-      if (!rolled_at_) rolled_at_ = now;
-      measured_at_ = known ? now : *rolled_at_;
+      if (learns) rolled_at_ = now;
+      measured_at_ = known ? now : rolled_at_.value_or(now);
       onset_ = known ? *measured : geometry::Twist2{rolls_, driven_w_};
       onset_.w = std::clamp(onset_.w, least_turn_ - kTurnSlack, most_turn_ + kTurnSlack);
       if (std::abs(onset_.w) < kStraight) onset_.w = 0.0;
@@ -56,8 +58,8 @@ class RollOut {
       share_ = rolls ? std::min(1.0, measured->v / onset_.v) : 0.0;
     }
     const std::chrono::nanoseconds most = longest(onset_.v);
-    if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || now - *rolled_at_ >= most ||
-        now - measured_at_ >= kBlind)
+    if (!(std::abs(onset_.v) > kStanding) || share_ == 0.0 || !rolled_at_ ||
+        now - *rolled_at_ >= most || now - measured_at_ >= kBlind)
       return tell({}, now);
     return tell({0.0, onset_.w * share_}, now);
   }

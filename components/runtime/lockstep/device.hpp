@@ -18,6 +18,8 @@ class LockstepDevice {
   virtual Bytes answer(std::span<const std::uint8_t> bytes) = 0;
   /// What it says by itself; asked every 10 ms while the line is open.
   virtual Bytes speak(Time now) = 0;
+  /// What the component leaves its guard to say; there is none here to say it.
+  virtual void last_will(std::span<const std::uint8_t> /*message*/, Duration /*lasts*/) {}
 
   /// False: the line is closed, and opened again a second after this is true again.
   bool plugged = true;

@@ -57,6 +57,9 @@ class LockstepHost::LiveStream final : public Stream {
     open_at_ = now_() + delay;
     if (was_open) later_(kWay, [this] { sink_.closed("reopened by the component"); });
   }
+  void last_will(std::span<const std::uint8_t> message, Duration lasts) override {
+    device_.last_will(message, lasts);
+  }
 
  private:
   static constexpr auto kAsk = std::chrono::milliseconds(10);

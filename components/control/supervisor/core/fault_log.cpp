@@ -20,6 +20,8 @@ std::string_view text(Cause cause) {
       return "base unheard";
     case Cause::kNotKept:
       return "a restart would forget";
+    case Cause::kMovesWhileStopped:
+      return "moves though it is stopped";
   }
   return "unknown cause";
 }

@@ -12,20 +12,22 @@ namespace usher::supervisor {
 using drive::Time;
 
 enum class Cause : std::uint8_t {
-  kComponentLost = 0,   ///< ends by itself when the component is back
-  kBaseFallsShort = 1,  ///< ends by itself when the base follows again
-  kForeignWriter = 2,   ///< latched
-  kDisobeyingBase = 3,  ///< latched
-  kEmergencyStop = 4,   ///< latched
-  kBaseUnheard = 5,     ///< ends by itself when the base reports again
-  kNotKept = 6,         ///< ends by itself when the memory is on the disk again
+  kComponentLost = 0,      ///< ends by itself when the component is back
+  kBaseFallsShort = 1,     ///< ends by itself when the base follows again
+  kForeignWriter = 2,      ///< latched
+  kDisobeyingBase = 3,     ///< latched
+  kEmergencyStop = 4,      ///< latched
+  kBaseUnheard = 5,        ///< ends by itself when the base reports again
+  kNotKept = 6,            ///< ends by itself when the memory is on the disk again
+  kMovesWhileStopped = 7,  ///< latched
 };
 
 std::string_view text(Cause cause);
 
 /// Whether only an operator ends it.
 constexpr bool latches(Cause cause) {
-  return cause >= Cause::kForeignWriter && cause <= Cause::kEmergencyStop;
+  return (cause >= Cause::kForeignWriter && cause <= Cause::kEmergencyStop) ||
+         cause == Cause::kMovesWhileStopped;
 }
 
 struct Fault {

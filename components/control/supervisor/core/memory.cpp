@@ -82,7 +82,7 @@ Result<Memory> memory_from_text(std::span<const std::uint8_t> bytes) {
                          read(take(rest, '\t'), at) && read(take(rest, '\t'), cause);
     const auto component = numbers ? take(rest, '\t') : std::nullopt;
     const auto detail = component ? take(rest, '\n') : std::nullopt;
-    const auto last = static_cast<int>(Cause::kEmergencyStop);
+    const auto last = static_cast<int>(Cause::kMovesWhileStopped);
     if (!detail || cause < 0 || cause > last || !latches(static_cast<Cause>(cause))) {
       return refuse(line, "manual, stop, or fault, id, time, latching cause, component and detail");
     }

@@ -260,14 +260,19 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       behavior_.navigation_end();
       return {};
     case Command::kEmergencyStop:
-      faults_.raise(Cause::kEmergencyStop, request.client.empty() ? "operator" : request.client,
-                    "an emergency stop was requested", now);
+      if (!request.own_name || !is_operator(request.client)) {
+        stop(request.client);
+        return "stopped; only an operator may switch the motors off";
+      }
+      faults_.raise(Cause::kEmergencyStop, request.client, "an emergency stop was requested", now);
       return {};
     case Command::kClear:
       if (!is_operator(request.client)) return "only an operator may clear faults";
       if (const Watched* watched = invaded()) {
         return "'" + watched->right.foreign()->participant + "' still writes " + watched->topic;
       }
+      if (base_heard(now) && watch_.verdict() == drive::ResponseWatch::Verdict::kDisobeys)
+        return "the base still moves other than commanded";
       faults_.clear(request.client, now);
       watch_.reset();
       runs_away_ = false;
@@ -296,7 +301,30 @@ void Supervisor::note_faults(Time now) {
                       " on host '" + foreign->host + "'",
                   now);
   }
+  note_movement(now);
   note_base(now);
+}
+
+void Supervisor::note_movement(Time now) {
+  const bool stands = !commanded_ || decision_.enables.movement ||
+                      decision_.grant.writer == drive::kNobody ||
+                      now - commanded_->at >= parameters_.command_expiry;
+  const auto lasts = [&](double commanded, std::optional<Time>& since, Time patience) {
+    if (stands || commanded == 0.0) {
+      since.reset();
+    } else if (!since) {
+      since = now;
+    }
+    return since && now - *since >= patience;
+  };
+  const geometry::Twist2 twist = commanded_ ? commanded_->twist : geometry::Twist2{};
+  const bool drives = lasts(twist.v, drives_since_, parameters_.stop_patience);
+  const bool turns = lasts(twist.w, turns_since_, parameters_.roll_out_patience);
+  if (!drives && !turns) return;
+  faults_.raise(Cause::kMovesWhileStopped, parameters_.names.movement,
+                "commands " + std::to_string(twist.v) + " m/s, " + std::to_string(twist.w) +
+                    " rad/s while movement is off",
+                now);
 }
 
 void Supervisor::note_base(Time now) {

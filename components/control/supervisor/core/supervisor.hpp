@@ -61,7 +61,10 @@ struct Parameters {
   Time barred_patience = std::chrono::milliseconds(500);  ///< so long it may stand and not say why
   Time base_age = std::chrono::milliseconds(150);         ///< {> 0} nobody drives an older report
   Time reset_patience = std::chrono::seconds(5);          ///< for a base that leaves its emergency
-  bool emergency_stop_when_disobeying = true;             ///< see ResponseWatch::runs_away
+  /// So long the holder of the right to drive may go on driving, and turning on its arc, after
+  /// movement was switched off.
+  Time stop_patience = std::chrono::milliseconds(400), roll_out_patience = std::chrono::seconds(3);
+  bool emergency_stop_when_disobeying = true;  ///< see ResponseWatch::runs_away
   drive::ResponseWatch::Parameters response;
   double process_rate = 50.0;                             ///< [Hz] reported only
   double camera_angle_default = 0.0;                      ///< [rad] up is positive
@@ -79,11 +82,12 @@ enum class Command : std::uint8_t {
   kNavigationStart = 5,  ///< a goal is chosen
   kNavigationGo = 6,     ///< the visitor is ready
   kNavigationEnd = 7,    ///< given up
-  kEmergencyStop = 8,    ///< motors off, latched
+  kEmergencyStop = 8,    ///< motors off, latched; of others than operators kStop, since it drops
+                         ///< a balancing robot among people
   kClear = 9,            ///< ends latched faults whose cause is gone; operators only
 };
 
-/// Of what anybody may ask in anybody's name.
+/// What stops the robot, by whomever, in whose name ever, it is asked.
 constexpr bool stops(Command command) {
   return command == Command::kStop || command == Command::kEmergencyStop;
 }
@@ -177,7 +181,8 @@ struct SupervisorStatus {
 /// latched fault is active. Everything else is withheld at once; each new grant has a higher epoch.
 ///
 /// Latched, until an operator clears them: a foreign writer on a watched topic, a disobeying base,
-/// an emergency stop. The loss of a component ends by itself.
+/// a holder of the right to drive who does not stand when movement is off, an emergency stop. The
+/// loss of a component ends by itself.
 ///
 /// Feed it what is heard, then call step(). `now` must not go back.
 class Supervisor {
@@ -259,6 +264,7 @@ class Supervisor {
   void tell(const Handled& handled, Time now);
   void note_faults(Time now);
   void note_base(Time now);
+  void note_movement(Time now);
   bool base_heard(Time now) const { return base_ && now - base_at_ < parameters_.base_age; }
   /// [%] Of the base's battery, as of the last step; NaN while nobody tells.
   double charge() const;
@@ -285,7 +291,8 @@ class Supervisor {
   std::optional<Time> barred_since_;   ///< while it should navigate
   std::optional<Time> refused_since_;  ///< the base refuses though somebody has the right
   std::optional<Commanded> commanded_;
-  bool runs_away_ = false;           ///< the base, until an operator clears
+  std::optional<Time> drives_since_, turns_since_;  ///< commanded though movement is off
+  bool runs_away_ = false;                          ///< the base, until an operator clears
   std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
 
   std::string goal_;

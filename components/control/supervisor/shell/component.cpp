@@ -266,11 +266,13 @@ const std::string& SupervisorComponent::asker(const runtime::Guid& writer) {
 void SupervisorComponent::take_request(const usher_msgs::msg::SupervisorRequest& message,
                                        const runtime::Guid& writer) {
   const std::string& asks = asker(writer);
-  const Request request{message.id(), message.client(), static_cast<Command>(message.command()),
-                        message.goal(), asks.empty() || asks == message.client()};
   // A sample may come before discovery tells who its writer is: who asks for more than a stop is
   // answered when that is known. Requests are repeated.
-  if (asks.empty() && !stops(request.command)) return;
+  const bool known = !asks.empty();
+  const auto command = static_cast<Command>(message.command());
+  const Request request{message.id(), message.client(), command, message.goal(),
+                        known ? asks == message.client() : command == Command::kStop};
+  if (!known && !stops(command)) return;
   core_.request(request, now());
   if (!request.own_name && !stops(request.command)) return;
   // The first one acts and is answered at once; a flood of them must not become one of answers.

@@ -73,7 +73,12 @@ TEST_F(Component, WhoseMemoryCannotBeReadGrantsNothing) {
 }
 
 TEST_F(Component, InAnothersNameOneMayStopTheRobotAndNothingElse) {
-  ask("operator", COMMAND_EMERGENCY_STOP, "stranger");
+  EXPECT_TRUE(ask("operator", COMMAND_EMERGENCY_STOP, "stranger").faults().empty())
+      << "which leaves the motors on: a balancing robot would fall";
+  EXPECT_EQ(host.last(topics::kSupervisorStatus)->stopped_by(),
+            std::vector<std::string>{"operator"});
+  EXPECT_TRUE(ask("operator", COMMAND_MOVEMENT_ON).stopped_by().empty());
+  ask("operator", COMMAND_EMERGENCY_STOP);
   EXPECT_EQ(ask("tablet", COMMAND_STOP, "stranger").stopped_by(),
             std::vector<std::string>{"tablet"});
   const auto untouched = ask("operator", COMMAND_CLEAR, "stranger");

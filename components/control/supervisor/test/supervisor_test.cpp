@@ -335,7 +335,7 @@ TEST(Supervisor, LatchesUntilAnOperatorClears) {
        [](Robot& r) {
          r.base.measured = {1.0, 0.0}, r.run(2000);
        },
-       [](Robot& r) { r.base.measured = {}; }, Cause::kDisobeyingBase, "segway_rmp", true, true},
+       [](Robot& r) { r.base.measured = {}; }, Cause::kDisobeyingBase, "segway_rmp", true, false},
   };
   for (const Latched& test : cases) {
     SCOPED_TRACE(test.name);
@@ -472,6 +472,55 @@ TEST(Supervisor, OnlyAnOperatorClears) {
   EXPECT_FALSE(fault.active);
   EXPECT_EQ(fault.ended, robot.now());
   EXPECT_EQ(fault.ended_by, "operator");
+}
+
+TEST(Supervisor, SwitchesTheMotorsOffForOperatorsOnly) {
+  const Request requests[] = {{1, "tablet", Command::kEmergencyStop, ""},
+                              {2, "operator", Command::kEmergencyStop, "", false}};
+  for (const Request& request : requests) {
+    SCOPED_TRACE(request.client);
+    Robot robot = guiding();
+    const Answer answer = robot.supervisor.request(request, robot.now());
+    EXPECT_FALSE(answer.done);
+    EXPECT_EQ(answer.reason, "stopped; only an operator may switch the motors off");
+    robot.run(100);
+    EXPECT_FALSE(robot.supervisor.decision().emergency_stop);
+    EXPECT_FALSE(robot.supervisor.decision().enables.movement);
+    EXPECT_EQ(robot.reason(), "stopped by " + request.client);
+    EXPECT_TRUE(robot.supervisor.status().faults.empty());
+  }
+}
+
+TEST(Supervisor, WithdrawsTheRightFromAHolderWhoDrivesOnWhileStopped) {
+  Robot robot = guiding();
+  robot.command = {0.5, 0.1};
+  robot.run(1000);
+  robot.ask(Command::kStop);
+  robot.run(380);
+  EXPECT_TRUE(robot.granted()) << "he may not have heard of it";
+  robot.run(60);
+  EXPECT_FALSE(robot.granted());
+  EXPECT_EQ(robot.state(), State::kFault);
+  EXPECT_FALSE(robot.supervisor.decision().emergency_stop) << "a base that stands needs none";
+  const Fault fault = robot.supervisor.status().faults.back();
+  EXPECT_EQ(fault.cause, Cause::kMovesWhileStopped);
+  EXPECT_EQ(fault.component, "movement_control");
+  EXPECT_TRUE(fault.latched());
+  robot.command = {};
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  robot.ask(Command::kMovementOn);
+  robot.run(600);
+  EXPECT_TRUE(robot.granted()) << robot.reason();
+}
+
+TEST(Supervisor, LetsARobotThatIsStoppedRollOutOnItsArc) {
+  Robot robot = guiding();
+  robot.command = {0.0, 0.4};
+  robot.ask(Command::kStop);
+  robot.run(2500);
+  EXPECT_TRUE(robot.granted());
+  robot.run(1000);
+  EXPECT_FALSE(robot.granted()) << "it stands for long, and turns";
 }
 
 TEST(Supervisor, SaysWhoStoppedTheRobot) {

@@ -67,8 +67,8 @@ ObedientBase::ObedientBase(runtime::Host& host, BaseDevice device, double wheel_
       topics::kDriveGrant, {.max_age = kSilence, .on_loss = kOnLoss},
       [this](const auto& message, const auto& info) {
         if (!may_grant(info.writer, info.effective)) return;
-        const auto valid_for = std::chrono::duration<double>(
-            std::isfinite(message.valid_for()) ? static_cast<double>(message.valid_for()) : 0.0);
+        const double told = std::isfinite(message.valid_for()) ? message.valid_for() : 0.0;
+        const std::chrono::duration<double> valid_for(std::clamp(told, 0.0, 1.0));
         obedience_.grant(
             {message.granted() ? message.writer() : kNobody, message.epoch(), info.writer,
              host_.now() - info.effective, std::chrono::duration_cast<Time>(valid_for)},

@@ -56,7 +56,7 @@ void FeedbackAssembler::reopened() {
 }
 
 Mode FeedbackAssembler::mode() const {
-  if (status_heard_) {
+  if (status_at_) {
     const StatusReport status = report(feedback_.status_1, feedback_.status_2);
     if (status.emergency_stop_open) return Mode::kEmergency;
     return status.balancing ? Mode::kBalancing : Mode::kStandby;
@@ -120,6 +120,7 @@ std::optional<SegwayFeedback> FeedbackAssembler::take(const Packet& packet, Time
       break;
     case kIdMode: {
       operational_mode_ = packet.slots[0];
+      mode_at_ = now;
       const double volts = packet.slots[3] / 4.0;
       const double range = calibration_.battery_full - calibration_.battery_empty;
       feedback_.battery_percent =
@@ -129,10 +130,10 @@ std::optional<SegwayFeedback> FeedbackAssembler::take(const Packet& packet, Time
     case kIdStatus:
       feedback_.status_1 = packet.slots[1];
       feedback_.status_2 = packet.slots[2];
-      status_heard_ = true;
+      status_at_ = now;
       break;
     case kIdEcho: {
-      const bool whole = has_ == kHasAll && mode_known();
+      const bool whole = has_ == kHasAll && mode_known(now);
       has_ = 0;
       if (!whole) {
         ++incomplete_cycles_;

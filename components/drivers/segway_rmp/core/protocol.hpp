@@ -53,8 +53,9 @@ class FeedbackAssembler {
   explicit FeedbackAssembler(const Calibration& calibration) : calibration_(calibration) {}
 
   /// A packet arrived at `now`. The feedback, when it completes a cycle in which pitch, velocities
-  /// and wheels were all heard, and the base has said since its line was opened what it does. One
-  /// of the two channels is followed; the other one takes over when this one falls silent.
+  /// and wheels were all heard, and the base has said within kModeAge whether it balances: by its
+  /// status, or by its mode where it never told a status since its line was opened. One of the two
+  /// channels is followed; the other one takes over when this one falls silent.
   std::optional<SegwayFeedback> take(const Packet& packet, Time now);
 
   /// The connection was opened anew: the counters have counted on, nothing else is known.
@@ -62,6 +63,8 @@ class FeedbackAssembler {
 
   /// The operational mode that the base reports, if it was heard.
   std::optional<std::uint16_t> operational_mode() const { return operational_mode_; }
+  /// Both are told in every cycle of 10 ms.
+  static constexpr Time kModeAge = std::chrono::milliseconds(100);
   std::uint64_t incomplete_cycles() const { return incomplete_cycles_; }
   std::uint64_t counter_jumps() const { return counter_jumps_; }  ///< resets of the odometers
 
@@ -71,7 +74,10 @@ class FeedbackAssembler {
 
   void travel(const Packet& packet);
   Mode mode() const;
-  bool mode_known() const { return status_heard_ || operational_mode_.has_value(); }
+  bool mode_known(Time now) const {
+    const auto& told_at = status_at_ ? status_at_ : mode_at_;
+    return told_at && now - *told_at < kModeAge;
+  }
 
   Calibration calibration_;
   SegwayFeedback feedback_;
@@ -81,7 +87,7 @@ class FeedbackAssembler {
   bool counters_known_ = false;
   std::int32_t left_counter_ = 0;
   std::int32_t right_counter_ = 0;
-  bool status_heard_ = false;
+  std::optional<Time> status_at_, mode_at_;  ///< when they were last heard
   std::optional<std::uint16_t> operational_mode_;
   std::uint64_t incomplete_cycles_ = 0;
   std::uint64_t counter_jumps_ = 0;

@@ -6,7 +6,7 @@ namespace {
 /// The base holds a command for 0.4 s; it is told at its own rate.
 constexpr auto kCycle = std::chrono::milliseconds(10);
 constexpr const char* kEmergencyKey = "emergency";
-constexpr const char* kBalancedKey = "session.balanced";  // a boot starts with a base that is off
+constexpr const char* kBalancedKey = "balanced";  // also over a boot: the base has its own supply
 
 Calibration read_calibration(runtime::Parameters& parameters) {
   Calibration c;

@@ -48,6 +48,14 @@ class Device final : public runtime::LockstepDevice {
     return bytes;
   }
 
+  void last_will(std::span<const std::uint8_t> message, runtime::Duration lasts) override {
+    EmulatedBase guarded{Calibration{}};
+    guarded.received(message, [&](const EmulatedBase::Order& order) {
+      will = order.wish == Wish::kDrive ? order.twist : geometry::Twist2{9.0, 9.0};
+    });
+    will_lasts = lasts;
+  }
+
   /// As it does while nobody hears it, until it stands.
   void roll_out(double way) {
     state_.left_travel += way;
@@ -57,6 +65,8 @@ class Device final : public runtime::LockstepDevice {
   void switch_off() { state_.mode = Mode::kStandby, twist = {}; }
 
   geometry::Twist2 twist;  ///< last ordered
+  geometry::Twist2 will;   ///< what the guard would order
+  runtime::Duration will_lasts{};
   int shutdowns = 0, balances = 0;
   bool silent = false;
   bool damaged = false;  ///< one frame of each cycle
@@ -261,6 +271,29 @@ TEST_F(DeviceReal, ABaseThatWentOffWhileNoDriverRanStaysOff) {
   right.run(1000);
   EXPECT_EQ(state(), STATE_BALANCING);
   EXPECT_NEAR(device->twist.v, 0.5, 0.01);
+}
+
+TEST_F(DeviceReal, LeavesItsGuardTheArcOnWhichTheBaseRollsOut) {
+  right.run(1000);
+  EXPECT_EQ(device->will_lasts, runtime::Duration::zero()) << "it stands";
+  right.v = 0.5;
+  right.w = 0.4;
+  right.run(2000);
+  EXPECT_EQ(device->will.v, 0.0);
+  EXPECT_NEAR(device->will.w, 0.4, 0.01);
+  EXPECT_GE(device->will_lasts, milliseconds(500));
+  EXPECT_LE(device->will_lasts, milliseconds(1000));
+  right.w = -0.4;
+  right.run(1000);
+  EXPECT_NEAR(device->will.w, -0.4, 0.01);
+  right.w = 0.0;
+  right.run(1000);
+  EXPECT_EQ(device->will_lasts, runtime::Duration::zero()) << "straight on it needs none";
+  right.w = 0.4;
+  right.run(1000);
+  request(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+  right.run(100);
+  EXPECT_EQ(device->will_lasts, runtime::Duration::zero()) << "without motors it keeps no arc";
 }
 
 TEST_F(DeviceReal, ADriverWhoseMemoryCannotBeReadTouchesNoBase) {

@@ -451,6 +451,21 @@ TEST(Link, ABaseThatStillRollsKeepsItsArcWhileItIsConfigured) {
   EXPECT_EQ(bench.base.speed, 0);
 }
 
+TEST(Link, ABaseThatNoLongerSaysWhetherItBalancesIsNotHeard) {
+  Bench bench;
+  bench.run(500);
+  bench.damaged = {kIdStatus};
+  bench.run(90);
+  const int before = bench.feedbacks;
+  bench.run(1100);
+  EXPECT_EQ(bench.feedbacks, before) << "its mode alone is not believed: it told a status before";
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kDisconnected);
+  bench.base.off = true;
+  bench.damaged = {};
+  bench.run(50);
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kEmergency) << "it fell meanwhile";
+}
+
 TEST(Link, DamagedFramesAfterOpeningAreNoFall) {
   Bench bench;
   bench.link.balanced_before();

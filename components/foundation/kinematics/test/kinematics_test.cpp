@@ -182,7 +182,8 @@ TEST(RollOut, IsZeroForARobotThatStandsTurnsBackOrIsUnknown) {
   EXPECT_EQ(stop(arc, geometry::Twist2{0.05, 0.4}, 100), zero);
   EXPECT_EQ(stop(arc, geometry::Twist2{-0.3, 0.4}, 100), zero) << "it sways back";
   EXPECT_EQ(stop({0.05, 0.8}, geometry::Twist2{0.05, 0.8}, 100), zero) << "it turned on the spot";
-  EXPECT_EQ(stop({kNaN, 0.4}, arc, 100), zero) << "nobody knows how it moved";
+  EXPECT_EQ(stop({kNaN, 0.4}, geometry::Twist2{kNaN, 0.4}, 100), zero)
+      << "nobody knows how it moves";
   EXPECT_NE(stop(arc, arc, 1600), zero);
   EXPECT_EQ(stop(arc, arc, 1700), zero) << "measurements that hang turn it no longer";
   EXPECT_EQ(stop({0.3, 0.4}, geometry::Twist2{0.3, 0.4}, 900), zero) << "a slow one stands sooner";
@@ -234,6 +235,14 @@ TEST(RollOut, GoesOnTurningForASecondWhereNothingMeasures) {
   EXPECT_EQ(led.stop(std::nullopt, milliseconds(3600)), (geometry::Twist2{0.0, 0.3}));
   EXPECT_EQ(stop_until(led, 3620, 4000, std::nullopt), zero);
   EXPECT_EQ(RollOut().stop(std::nullopt, milliseconds(0)), zero);
+}
+
+TEST(RollOut, LearnsTheArcFromTheFirstMeasurementAfterARestart) {
+  RollOut anew;  // a process that starts hears of the base later than it decides
+  EXPECT_EQ(stop_until(anew, 0, 200, std::nullopt), geometry::Twist2{});
+  EXPECT_EQ(anew.stop(geometry::Twist2{0.8, 0.4}, milliseconds(220)).w, 0.4);
+  EXPECT_NEAR(anew.stop(geometry::Twist2{0.4, 0.4}, milliseconds(240)).w, 0.2, 1e-12);
+  EXPECT_EQ(anew.stop(geometry::Twist2{0.0, 0.0}, milliseconds(260)), geometry::Twist2{});
 }
 
 TEST(RollOut, KeepsTheArcWhereTheClockJumps) {
