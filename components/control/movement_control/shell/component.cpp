@@ -28,6 +28,7 @@ constexpr auto kLocalizationAge = milliseconds(1000);
 constexpr auto kPersonAge = milliseconds(500);
 constexpr auto kLeaning = milliseconds(2500);  // at a start
 constexpr double kLeans = 0.02;                // [rad]
+constexpr double kSpeedsUp = 0.05;             // [m/s] slower than it is told
 constexpr double kStanding = 0.01;             // [m/s]
 constexpr double kReported = 1.4;              // [m/s] the status tells of what would stop this
 
@@ -225,7 +226,7 @@ std::optional<geometry::Twist2> MovementControlComponent::measured() const {
 }
 
 /// While MARVIN leans forward to speed up, most beams that look ahead may end on the floor; what is
-/// near they still meet. Whoever does not lean forward has no excuse.
+/// near they still meet. Whoever does not lean forward, or is as fast as he is told, has no excuse.
 bool MovementControlComponent::sees() const {
   const Time now = host_.now().time_since_epoch();
   const bool leans = leaned_at_ && now - *leaned_at_ < kLeanedAge;
@@ -279,7 +280,8 @@ Inputs MovementControlComponent::gather() {
   if (const auto* base = base_.fresh()) {
     inputs.low_battery = base->battery_percent() < low_battery_;  // NaN, unknown, is not low
     inputs.motors_off = base->state() == usher_msgs::msg::BaseStatus_Constants::STATE_EMERGENCY;
-    if (base->pitch() > kLeans) leaned_at_ = host_.now().time_since_epoch();
+    const bool speeds_up = core_.status().current.v - base->v() > kSpeedsUp;
+    if (base->pitch() > kLeans && speeds_up) leaned_at_ = host_.now().time_since_epoch();
   }
   inputs.measured = measured();
   double fastest = 0.0;  // what is not finite reaches nowhere, and does not move the robot

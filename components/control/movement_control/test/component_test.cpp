@@ -429,6 +429,14 @@ TEST_F(Component, AnOperatorCreepsOnceTheScansHaveToldNothingForLongerThanAStart
     run(200);
     EXPECT_NEAR(commanded(), 0.1, 1e-6) << "it does not lean forward by " << no_excuse;
   }
+  floor = false;
+  run(2000);
+  pitch = 0.03;
+  measured_v = 0.8;
+  run(400);
+  floor = true;
+  run(400);
+  EXPECT_NEAR(commanded(), 0.1, 1e-6) << "it leans, as a load makes it, and speeds up no more";
 }
 
 TEST_F(Component, TheStatusTellsWhatIsAhead) {
