@@ -348,7 +348,8 @@ void Supervisor::note_base(Time now) {
   }
   if (base_ && base_->emergency && !resetting(now)) {
     faults_.raise(Cause::kEmergencyStop, parameters_.names.base,
-                  "the base's motors are off after an emergency stop", now);
+                  "its motors are off: an emergency stop, a fall, or somebody switched it off",
+                  now);
   }
 }
 
