@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
+
+#include "foundation/kinematics/roll_out.hpp"
 
 namespace usher::supervisor {
 
@@ -97,7 +100,10 @@ void Supervisor::writer_gone(std::string_view topic, const WriterId& writer) {
 
 void Supervisor::drive_command(const WriterId& writer, const geometry::Twist2& twist, Time now) {
   watched_.front().right.alive(writer, now);
-  if (holder() == writer && twist.finite()) commanded_ = Commanded{twist, now};
+  if (holder() != writer || !twist.finite()) return;
+  commanded_ = Commanded{twist, now};
+  drove_ = drove_ || twist.v != 0.0;
+  turned_ = turned_ || twist.w != 0.0;
 }
 
 void Supervisor::base(const BaseReport& report, Time now) {
@@ -110,9 +116,10 @@ void Supervisor::base(const BaseReport& report, Time now) {
   const bool refuses = !report.refusal.empty() && decision_.grant.writer != drive::kNobody;
   if (!refuses) refused_since_.reset();
   if (refuses && !refused_since_) refused_since_ = now;
+  const bool stands_up = report.ready && !report.emergency;
+  if (stands_up || (base_ && base_->emergency != report.emergency)) reset_until_.reset();
   base_ = report;
   base_at_ = now - report.age;
-  if (!report.emergency) reset_until_.reset();
   if (report.ready) {
     const bool driven = decision_.grant.writer != drive::kNobody && commanded_ &&
                         now - commanded_->at < parameters_.command_expiry;
@@ -271,12 +278,16 @@ std::string Supervisor::carry_out(const Request& request, Time now) {
       if (const Watched* watched = invaded()) {
         return "'" + watched->right.foreign()->participant + "' still writes " + watched->topic;
       }
-      if (base_heard(now) && watch_.verdict() == drive::ResponseWatch::Verdict::kDisobeys)
+      if (watch_.verdict() == drive::ResponseWatch::Verdict::kDisobeys)
         return "the base still moves other than commanded";
+      if (faults_.active(Cause::kMovesWhileStopped) && commanded_ &&
+          now - commanded_->at < parameters_.command_expiry && commanded_->twist.v != 0.0)
+        return parameters_.names.movement + " still commands to drive";
       faults_.clear(request.client, now);
       watch_.reset();
       runs_away_ = false;
-      if (base_ && base_->emergency) reset_until_ = now + parameters_.reset_patience;
+      if (base_ && (base_->emergency || !base_->ready))
+        reset_until_ = now + parameters_.reset_patience;
       return {};
     case Command::kNone:
       break;
@@ -305,25 +316,33 @@ void Supervisor::note_faults(Time now) {
   note_base(now);
 }
 
+Time Supervisor::Lasting::see(bool there, Time now) {
+  constexpr Time kGap = std::chrono::milliseconds(250);
+  if (there) {
+    if (!since) since = now;
+    last = now;
+  } else if (now - last >= kGap) {
+    since.reset();
+  }
+  return since ? now - *since : Time::zero();
+}
+
 void Supervisor::note_movement(Time now) {
-  const bool stands = !commanded_ || decision_.enables.movement ||
-                      decision_.grant.writer == drive::kNobody ||
-                      now - commanded_->at >= parameters_.command_expiry;
-  const auto lasts = [&](double commanded, std::optional<Time>& since, Time patience) {
-    if (stands || commanded == 0.0) {
-      since.reset();
-    } else if (!since) {
-      since = now;
-    }
-    return since && now - *since >= patience;
-  };
-  const geometry::Twist2 twist = commanded_ ? commanded_->twist : geometry::Twist2{};
-  const bool drives = lasts(twist.v, drives_since_, parameters_.stop_patience);
-  const bool turns = lasts(twist.w, turns_since_, parameters_.roll_out_patience);
-  if (!drives && !turns) return;
+  const bool drove = std::exchange(drove_, false), turned = std::exchange(turned_, false);
+  if (decision_.enables.movement || decision_.grant.writer == drive::kNobody) {
+    drives_ = turns_ = spins_ = {};
+    return;
+  }
+  const bool stands =
+      base_heard(now) && std::abs(base_->measured.v) < kinematics::RollOut::kStanding;
+  const Time drives = drives_.see(drove, now), turns = turns_.see(turned, now),
+             spins = spins_.see(turned && stands, now);
+  if (drives < parameters_.stop_patience && spins < parameters_.stop_patience &&
+      turns < parameters_.roll_out_patience)
+    return;
   faults_.raise(Cause::kMovesWhileStopped, parameters_.names.movement,
-                "commands " + std::to_string(twist.v) + " m/s, " + std::to_string(twist.w) +
-                    " rad/s while movement is off",
+                drives > Time::zero() ? "commands to drive while movement is off"
+                                      : "commands to turn while movement is off",
                 now);
 }
 

@@ -61,8 +61,8 @@ struct Parameters {
   Time barred_patience = std::chrono::milliseconds(500);  ///< so long it may stand and not say why
   Time base_age = std::chrono::milliseconds(150);         ///< {> 0} nobody drives an older report
   Time reset_patience = std::chrono::seconds(5);          ///< for a base that leaves its emergency
-  /// So long the holder of the right to drive may go on driving, and turning on its arc, after
-  /// movement was switched off.
+  /// So long the holder of the right to drive may go on driving, or turning a base that stands,
+  /// after movement was switched off, and so long turning one that rolls, on its arc.
   Time stop_patience = std::chrono::milliseconds(400), roll_out_patience = std::chrono::seconds(3);
   bool emergency_stop_when_disobeying = true;  ///< see ResponseWatch::runs_away
   drive::ResponseWatch::Parameters response;
@@ -242,6 +242,13 @@ class Supervisor {
     geometry::Twist2 twist;
     Time at{};
   };
+  /// What comes again and again, though not at every look.
+  struct Lasting {
+    std::optional<Time> since;
+    Time last{};
+
+    Time see(bool there, Time now);  ///< how long it has lasted
+  };
   struct Watched {
     std::string topic;
     bool moves = true;
@@ -291,9 +298,10 @@ class Supervisor {
   std::optional<Time> barred_since_;   ///< while it should navigate
   std::optional<Time> refused_since_;  ///< the base refuses though somebody has the right
   std::optional<Commanded> commanded_;
-  std::optional<Time> drives_since_, turns_since_;  ///< commanded though movement is off
-  bool runs_away_ = false;                          ///< the base, until an operator clears
-  std::optional<Time> reset_until_;  ///< an operator cleared an emergency of the base
+  Lasting drives_, turns_, spins_;       ///< commanded though movement is off
+  bool drove_ = false, turned_ = false;  ///< was commanded since the last step
+  bool runs_away_ = false;               ///< the base, until an operator clears
+  std::optional<Time> reset_until_;      ///< an operator cleared an emergency of the base
 
   std::string goal_;
   std::uint64_t navigation_id_ = 0;

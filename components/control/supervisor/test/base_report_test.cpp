@@ -56,6 +56,23 @@ TEST(Supervisor, ClearsABaseOutOfItsEmergency) {
   EXPECT_TRUE(robot.granted());
 }
 
+TEST(Supervisor, AsksABaseThatIsOffAgainToStandUp) {
+  Robot robot = ready();
+  robot.base.ready = false;
+  robot.run(100);
+  EXPECT_FALSE(robot.supervisor.decision().reset_base) << "not by itself";
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  robot.run(6000);  // it lies
+  EXPECT_FALSE(robot.supervisor.decision().reset_base);
+  EXPECT_TRUE(robot.ask(Command::kClear).done);
+  EXPECT_TRUE(robot.supervisor.decision().reset_base);
+  robot.base.ready = true;
+  robot.run(300);
+  EXPECT_FALSE(robot.supervisor.decision().reset_base);
+  EXPECT_TRUE(robot.granted()) << robot.reason();
+}
+
 TEST(Supervisor, LatchesAnewWhenTheBaseStaysInItsEmergency) {
   Robot robot = ready();
   robot.base.emergency = true;

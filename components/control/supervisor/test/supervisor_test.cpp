@@ -507,20 +507,51 @@ TEST(Supervisor, WithdrawsTheRightFromAHolderWhoDrivesOnWhileStopped) {
   EXPECT_EQ(fault.component, "movement_control");
   EXPECT_TRUE(fault.latched());
   robot.command = {};
+  robot.run(40);
   EXPECT_TRUE(robot.ask(Command::kClear).done);
   robot.ask(Command::kMovementOn);
   robot.run(600);
   EXPECT_TRUE(robot.granted()) << robot.reason();
 }
 
+TEST(Supervisor, SeesCommandsToDriveBetweenZeros) {
+  Robot robot = guiding();
+  robot.ask(Command::kStop);
+  for (int i = 0; i < 5 && robot.granted(); ++i) {
+    robot.command = {0.5, 0.0};
+    robot.run(20);
+    robot.command = {};
+    robot.run(140);
+  }
+  EXPECT_FALSE(robot.granted());
+}
+
+TEST(Supervisor, ClearsNoHolderWhoStillDrives) {
+  Robot robot = guiding();
+  robot.command = {0.5, 0.0};
+  robot.ask(Command::kStop);
+  robot.run(500);
+  EXPECT_EQ(robot.ask(Command::kClear).reason, "movement_control still commands to drive");
+  robot.run(100);
+  EXPECT_FALSE(robot.granted());
+}
+
 TEST(Supervisor, LetsARobotThatIsStoppedRollOutOnItsArc) {
   Robot robot = guiding();
-  robot.command = {0.0, 0.4};
+  robot.command = robot.base.measured = {0.6, 0.4};
+  robot.run(3000);
   robot.ask(Command::kStop);
-  robot.run(2500);
-  EXPECT_TRUE(robot.granted());
+  robot.command = {0.0, 0.4};
+  robot.run(2400);
+  EXPECT_TRUE(robot.granted()) << robot.reason();
+  robot.base.measured = {};
+  robot.run(40);
+  robot.command = {};
   robot.run(1000);
-  EXPECT_FALSE(robot.granted()) << "it stands for long, and turns";
+  EXPECT_TRUE(robot.granted()) << robot.reason();
+  robot.command = {0.0, 0.4};
+  robot.run(500);
+  EXPECT_FALSE(robot.granted()) << "it stands, and is turned";
 }
 
 TEST(Supervisor, SaysWhoStoppedTheRobot) {

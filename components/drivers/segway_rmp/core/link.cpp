@@ -28,7 +28,7 @@ void Link::closed() {
 }
 
 void Link::reset() {
-  if (!emergency_ && reported_ == Mode::kBalancing) return;
+  if (!emergency_ && reported_ != Mode::kStandby) return;
   emergency_ = balanced_ = false;
   step_ = 0;  // a base that was switched off may have forgotten its settings
 }
@@ -38,6 +38,7 @@ std::optional<SegwayFeedback> Link::take(const Packet& packet, Time now) {
   if (!feedback) return std::nullopt;
   // A base that was away may have been switched off and have forgotten its settings.
   if (feedback_at_ && now - *feedback_at_ >= parameters_.lost) step_ = 0;
+  off_ = feedback->mode != Mode::kBalancing;
   const bool fell = balanced_ && feedback->mode == Mode::kStandby;
   if (feedback->mode == Mode::kBalancing) balanced_ = true;
   if (fell) emergency_ = true;
@@ -65,7 +66,8 @@ std::span<const std::uint8_t> Link::cycle(const geometry::Twist2& wanted, Time n
   if (!open_) return {};
   if (mode(now) == Mode::kDisconnected && feedback_at_) reason_ = "no feedback from the base";
   if (emergency_) {
-    output_ = shutdown();
+    // One that is off is told so no longer: what switches it on may be about to.
+    output_ = feedback_at_ && off_ ? velocity({}) : shutdown();
     return output_;
   }
   if (asks_first()) {

@@ -58,7 +58,8 @@ class Link {
   void balanced_before() { balanced_ = true; }
   /// Motors off until reset().
   void emergency_stop() { emergency_ = true; }
-  /// An operator asks to balance again: configures the base anew. No effect while it balances.
+  /// An operator asks to balance again: configures the base anew. No effect on one that is neither
+  /// off nor in emergency.
   void reset();
 
   /// The settings were all sent.
@@ -91,6 +92,7 @@ class Link {
   int step_ = 0;
   bool emergency_ = false;
   bool balanced_ = false;  ///< it did since it was last told to
+  bool off_ = false;       ///< its motors are, by its last feedback
   std::optional<Time> feedback_at_;
   Mode reported_ = Mode::kDisconnected;
   std::uint16_t status_1_ = 0;

@@ -92,6 +92,8 @@ std::optional<SegwayFeedback> FeedbackAssembler::take(const Packet& packet, Time
     if (++of_other_channel_ < kOtherChannelTakesOver) return std::nullopt;
     channel_b_ = packet.channel_b;
     has_ = 0;
+    status_at_.reset();
+    mode_at_.reset();
   }
   of_other_channel_ = 0;
 

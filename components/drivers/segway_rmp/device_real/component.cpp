@@ -76,7 +76,7 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
 }
 
 void SegwayRmpComponent::emergency(bool on) {
-  if (on == line_.link().emergency()) return;
+  if (on && line_.link().emergency()) return;
   if (on) {
     line_.link().emergency_stop();
   } else {

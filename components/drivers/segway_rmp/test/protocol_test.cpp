@@ -303,6 +303,8 @@ struct Base {
   std::map<std::uint16_t, std::uint16_t> settings;
   std::int16_t speed = 0, turn = 0;
   bool off = false;
+  bool lies = false;  ///< and does not balance, whatever it is told
+  int shutdowns = 0;
   Cycle cycle;
 
   void hear(std::span<const std::uint8_t> bytes) {
@@ -311,12 +313,12 @@ struct Base {
     const auto word = [&](std::size_t i) {
       return static_cast<std::uint16_t>((bytes[i] << 8) | bytes[i + 1]);
     };
-    if (word(6) == kIdShutdown) off = true;
+    if (word(6) == kIdShutdown) off = true, ++shutdowns;
     if (word(6) != kIdCommand) return;
     speed = static_cast<std::int16_t>(word(9));
     turn = static_cast<std::int16_t>(word(11));
     if (word(13) != 0) settings[word(13)] = word(15);
-    if (word(13) == 16 && word(15) == kModeBalance) off = false;
+    if (word(13) == 16 && word(15) == kModeBalance && !lies) off = false;
     cycle.status_1 = off ? 0 : kMotorsEnabled | kBalanceMode;
   }
   Bytes speak(const std::vector<std::uint16_t>& damaged = {}) const {
@@ -416,6 +418,26 @@ TEST(Link, ABaseThatWentOffWhileItsLineWasOutStaysOff) {
   bench.link.reset();
   bench.run(500, {0.5, 0.0});
   EXPECT_FALSE(bench.base.off);
+  EXPECT_EQ(bench.base.speed, 164);
+}
+
+TEST(Link, ABaseThatWasNotUprightYetIsAskedAgainToBalance) {
+  Bench bench;
+  bench.link.balanced_before();
+  bench.base.off = true;
+  bench.run(400);  // switched on in the morning
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kEmergency);
+  EXPECT_EQ(bench.base.shutdowns, 0) << "who is off is not switched off";
+  bench.base.lies = true;
+  bench.link.reset();
+  bench.run(1000);
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kStandby);
+  bench.base.lies = false;
+  bench.run(1000);
+  EXPECT_TRUE(bench.base.off) << "not by itself";
+  bench.link.reset();
+  bench.run(500, {0.5, 0.0});
+  EXPECT_EQ(bench.link.mode(bench.now()), Mode::kBalancing);
   EXPECT_EQ(bench.base.speed, 164);
 }
 
