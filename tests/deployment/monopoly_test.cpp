@@ -122,7 +122,7 @@ TEST(Monopoly, NoSampleOfAForeignWriterReachesTheWheels) {
   const Folder folder;
   Process attacks({usher_program(), "experiment", "monopoly", "--seeds", "82", "--domain",
                    std::to_string(test_domain()), "--out", folder.path()});
-  attacks.wait(std::chrono::minutes(4));
+  attacks.wait(std::chrono::minutes(12));
   ASSERT_EQ(attacks.pid(), -1) << attacks.output();
   const auto result = YAML::Load(content_of(folder.path() + "/result.json"));
   ASSERT_TRUE(result["metrics"]) << attacks.output() << attacks.errors();
