@@ -23,9 +23,14 @@ std::string components(std::uint32_t domain, const std::string& more) {
          "\"}}\n" + more;
 }
 
-bool has_latched(const SupervisorStatus& status) {
-  return std::any_of(status.faults().begin(), status.faults().end(),
-                     [](const auto& fault) { return fault.latched() && fault.active(); });
+/// A line for each fault that holds until it is cleared.
+std::string latched(const SupervisorStatus& status) {
+  std::string lines;
+  for (const auto& fault : status.faults()) {
+    if (fault.latched() && fault.active())
+      lines += fault.component_name() + ": " + fault.cause() + "\n";
+  }
+  return lines;
 }
 
 template <class Made, class Port>
@@ -101,8 +106,11 @@ bool DrivenRobot::is_ready() {
   const auto until = Clock::now() + std::chrono::seconds(90);
   while (Clock::now() < until) {
     if (robot_->wait_for([&] { return may_drive(); }, Seconds(1))) return true;
-    if (const auto status = robot_->status(); status && has_latched(*status))
+    const auto status = robot_->status();
+    if (const std::string faults = status ? latched(*status) : ""; !faults.empty()) {
+      if (!cleared_.ends_with(faults)) cleared_ += faults;
       ask(SupervisorRequest_Constants::COMMAND_CLEAR);
+    }
   }
   return false;
 }

@@ -28,6 +28,8 @@ class DrivenRobot {
   bool may_drive() const;
   /// Waits until it may, clearing faults as an operator would.
   bool is_ready();
+  /// A line for each fault that had to be cleared.
+  const std::string& cleared() const { return cleared_; }
   /// Sends it there; it drives when this returns true.
   bool sets_out(const std::string& place);
   /// The errand's exit code, -1 when it does not end within `limit`.
@@ -60,6 +62,7 @@ class DrivenRobot {
 
   std::unique_ptr<RunningRobot> robot_;
   std::unique_ptr<Process> errand_;
+  std::string cleared_;
 
   mutable std::mutex mutex_;
   double speed_ = 0.0;

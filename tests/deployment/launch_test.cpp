@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "deployment/running_robot.hpp"
+#include "support/service_manager.hpp"
 #include "support/terminal.hpp"
 #include "support/test_domain.hpp"
 
@@ -191,6 +192,35 @@ TEST_F(Launch, RestartsWhatEndsThoughItsTerminalIsPaused) {
   EXPECT_EQ(launch.wait(), 0) << launch.errors();
   terminal.type("\x11");
   EXPECT_TRUE(contains(terminal.text(), "tablet: started")) << terminal.text();
+}
+
+TEST_F(Launch, SaysThatItLivesAndWhatItLaunchedEndsWhenItHangs) {
+  constexpr std::chrono::seconds kWatchdog(1);
+  constexpr Seconds kAborted(3);  // TimeoutAbortSec= of the unit
+  const ServiceManager manager(kWatchdog);
+  Process launch({usher_program(), "launch", manifest(), "--host", "tablet"});
+  const auto hears = [&](const std::string& word, Seconds limit) {
+    const auto until = std::chrono::steady_clock::now() + limit;
+    for (;;) {
+      const auto words = manager.heard();
+      if (std::ranges::count(words, word) > 0) return true;
+      if (std::chrono::steady_clock::now() > until) return false;
+      launch.wait(std::chrono::milliseconds(10));
+    }
+  };
+  ASSERT_TRUE(hears("READY=1", Seconds(40))) << launch.errors();
+  for (int i = 0; i < 10; ++i)
+    ASSERT_TRUE(hears("WATCHDOG=1", Seconds(kWatchdog) * slowdown())) << i << launch.errors();
+  ASSERT_FALSE(components_from(folder_.path()).empty());
+
+  launch.signal(SIGSTOP);
+  manager.heard();
+  EXPECT_FALSE(hears("WATCHDOG=1", Seconds(kWatchdog)));
+  for (const auto& [name, process] : components_from(folder_.path())) ::kill(process, SIGTERM);
+  const auto until = std::chrono::steady_clock::now() + kAborted * slowdown();
+  while (!components_from(folder_.path()).empty() && std::chrono::steady_clock::now() < until)
+    launch.wait(std::chrono::milliseconds(20));
+  EXPECT_TRUE(components_from(folder_.path()).empty());
 }
 
 TEST(SecondLaunch, IsRefusedAndTheFirstGoesOn) {

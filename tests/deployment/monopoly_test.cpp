@@ -1,11 +1,13 @@
-// A foreign writer of drive/command in the domain of the running robot.
+// Foreign writers in the domain of the running robot.
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "deployment/running_robot.hpp"
+#include "support/folder.hpp"
 #include "wire/conversions.hpp"
 
 namespace usher::test {
@@ -14,6 +16,7 @@ namespace {
 using namespace usher_msgs::msg;
 
 constexpr double kIntruderSpeed = 0.4;  // [m/s]
+constexpr double kNamed = 1.0;          // [s] on a busy machine; the experiment judges it
 
 /// The fault that names the intruder, if there is one now.
 std::optional<Fault> fault_of(const RunningRobot& robot, const std::string& name) {
@@ -112,6 +115,23 @@ TEST(Monopoly, AForeignWriterStopsTheRobotUntilItLeavesAndAnOperatorClears) {
   EXPECT_FALSE(fault_of(robot, "intruder"));
   EXPECT_GT(robot.status()->epoch(), epoch) << "commands of the old grant are worth nothing";
   EXPECT_EQ(executed, 0U);
+}
+
+// Each topic that moves the robot, in each way: the experiment, with few samples.
+TEST(Monopoly, NoSampleOfAForeignWriterReachesTheWheels) {
+  const Folder folder;
+  Process attacks({usher_program(), "experiment", "monopoly", "--seeds", "82", "--domain",
+                   std::to_string(test_domain()), "--out", folder.path()});
+  attacks.wait(std::chrono::minutes(12));
+  ASSERT_EQ(attacks.pid(), -1) << attacks.output();
+  const auto result = YAML::Load(content_of(folder.path() + "/result.json"));
+  ASSERT_TRUE(result["metrics"]) << attacks.output() << attacks.errors();
+  const auto metric = [&](const char* name) { return result["metrics"][name].as<double>(); };
+  std::printf("%s", attacks.output().c_str());
+  EXPECT_EQ(metric("executed"), 0.0) << attacks.output();
+  EXPECT_EQ(metric("samples"), 82'000.0);
+  EXPECT_GE(metric("samples_with_the_right_least"), 1.0) << attacks.output();
+  EXPECT_LT(metric("named_ms_max"), kNamed * slowdown() * 1e3) << attacks.output();
 }
 
 }  // namespace

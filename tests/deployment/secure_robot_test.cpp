@@ -74,11 +74,19 @@ class SecureRobot : public testing::Test {
     }
     return printed;
   }
-  static runtime::Guid command_writer() {
+  template <class Message>
+  static runtime::Guid writer_of(const topics::Topic<Message>& topic) {
     for (const auto& endpoint : robot_->observer().endpoints()) {
-      if (endpoint.writer && endpoint.topic == "rt/drive/command") return endpoint.guid;
+      if (endpoint.writer && endpoint.topic == "rt/" + std::string(topic.name))
+        return endpoint.guid;
     }
     return {};
+  }
+  template <class Message>
+  static runtime::Bytes bytes_of(const Message& message) {
+    runtime::Bytes bytes;
+    EXPECT_TRUE(runtime::message_type<Message>().serialize(&message, bytes));
+    return bytes;
   }
 
   static RunningRobot* robot_;
@@ -120,7 +128,7 @@ TEST_F(SecureRobot, DrivesOnBesideAForeignParticipantAndReportsIt) {
 TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
   auto tap = PacketTap::open(robot_->domain());
   if (!tap) GTEST_SKIP() << tap.error();
-  const auto writer = command_writer();
+  const auto writer = writer_of(topics::kDriveCommand);
   std::vector<Datagram> heard;  // commands of a moving robot, as they went to the base and others
   drive({"4.5", "5.3", "1.5708"}, [&] {
     while (auto packet = tap->next_of(writer)) {
@@ -153,8 +161,7 @@ TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
     for (const auto forgery : kForgeries) {
       wanted.stamp(wire::to_message(robot_->observer().now()));
       wanted.number(1'000'000'000 + ++tries);
-      runtime::Bytes payload;
-      ASSERT_TRUE(runtime::message_type<DriveCommand>().serialize(&wanted, payload));
+      const runtime::Bytes payload = bytes_of(wanted);
       const Datagram& packet = heard[tries % heard.size()];
       sender.send(packet.to, forge(forgery, packet, writer, payload, 1'000'000 + tries));
     }
@@ -168,8 +175,7 @@ TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
   EXPECT_TRUE(robot_->wait_for([] { return robot_->may_drive(); }, Seconds(10)))
       << robot_->complaints();
   // The launcher tells of what came to it; here is its share.
-  runtime::Bytes payload;
-  ASSERT_TRUE(runtime::message_type<DriveCommand>().serialize(&wanted, payload));
+  const runtime::Bytes payload = bytes_of(wanted);
   sockaddr_in everybody = heard[0].to;
   for (std::uint32_t port = 10; port < 250; ++port) {
     everybody.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * robot_->domain() + port));
@@ -182,6 +188,73 @@ TEST_F(SecureRobot, ExecutesNoPacketThatItsMovementControlDidNotSend) {
       },
       Seconds(15)))
       << robot_->launcher().output();
+}
+
+// A planner's speeds, an end of the right to drive, an order to switch the motors off.
+TEST_F(SecureRobot, ObeysNoForgedSpeedNorRightNorRequest) {
+  auto speeds = PacketTap::open(robot_->domain());
+  auto rights = PacketTap::open(robot_->domain());
+  if (!speeds || !rights) GTEST_SKIP() << "no packets are heard";
+  const auto planner = writer_of(topics::kCmdVelNavigation);
+  const auto grantor = writer_of(topics::kDriveGrant);
+  const auto requester = writer_of(topics::kBaseRequest);
+  std::vector<Datagram> speeds_heard, rights_heard;
+  drive({"4.5", "3.6", "0.0"}, [&] {
+    while (auto packet = speeds->next_of(planner)) speeds_heard.push_back(std::move(*packet));
+    while (auto packet = rights->next_of(grantor)) rights_heard.push_back(std::move(*packet));
+  });
+  ASSERT_GT(speeds_heard.size(), 50U);
+  ASSERT_GT(rights_heard.size(), 50U);
+  std::atomic<std::uint64_t> commands{0}, executed{0}, no_right{0};
+  const auto wheels =
+      robot_->observer().reader(topics::kSimBaseCommand, [&](const auto& message, const auto&) {
+        ++commands;
+        if (message.v() != 0.0 || message.w() != 0.0 ||
+            message.mode() == usher_sim_msgs::msg::BaseCommand_Constants::MODE_EMERGENCY_STOP)
+          ++executed;
+      });
+  const auto base =
+      robot_->observer().reader(topics::kBaseStatus, [&](const auto& message, const auto&) {
+        if (message.obedience() != 0) ++no_right;
+      });
+  ASSERT_TRUE(wheels && base);
+  ASSERT_TRUE(robot_->wait_for([&] { return commands > 50; }, Seconds(20)));
+  ASSERT_EQ(executed, 0U) << "it stands before the attack";
+  no_right = 0;
+
+  const PacketSender sender;
+  std::uint64_t tries = 0;
+  for (int round = 0; round < 100; ++round) {
+    const auto now = robot_->observer().now();
+    const auto epoch = robot_->status()->epoch();
+    geometry_msgs::msg::TwistStamped speed;
+    speed.header(wire::header(now, "base_link"));
+    speed.twist().linear().x(0.4);
+    usher_msgs::msg::DriveGrant right;
+    right.stamp(wire::to_message(now));
+    right.epoch(epoch + 1);
+    usher_msgs::msg::BaseRequest request;
+    request.client("supervisor");
+    request.command(usher_msgs::msg::BaseRequest_Constants::COMMAND_EMERGENCY_STOP);
+    for (const auto forgery : kForgeries) {
+      const std::uint64_t number = 1'000'000 + ++tries;
+      request.id(1'000'000'000 + number);
+      const auto send = [&](const std::vector<Datagram>& heard, const runtime::Guid& writer,
+                            const runtime::Bytes& payload) {
+        const Datagram& packet = heard[tries % heard.size()];
+        sender.send(packet.to, forge(forgery, packet, writer, payload, number));
+      };
+      send(speeds_heard, planner, bytes_of(speed));
+      send(rights_heard, grantor, bytes_of(right));
+      send(rights_heard, requester, bytes_of(request));
+    }
+    const auto until = commands + 2;
+    robot_->wait_for([&] { return commands >= until; }, Seconds(1));
+  }
+  EXPECT_EQ(executed, 0U) << "of " << commands;
+  EXPECT_EQ(no_right, 0U);
+  EXPECT_TRUE(robot_->wait_for([] { return robot_->may_drive(); }, Seconds(10)))
+      << robot_->complaints();
 }
 
 TEST_F(SecureRobot, HearsAgainWhoStoodStillForLongerThanItsLease) {

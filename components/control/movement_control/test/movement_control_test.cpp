@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "foundation/random/random.hpp"
+#include "control/movement_control/test/inputs.hpp"
 
 namespace usher::movement_control {
 namespace {
@@ -16,19 +16,6 @@ using geometry::Twist2;
 using std::chrono::milliseconds;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Everything is well, wide and enabled for navigation.
-Inputs all_well() {
-  Inputs inputs;
-  inputs.enables = Enables{true, true, true, true, 1.0};
-  inputs.whiskers = Whiskers{};
-  inputs.person_ahead = false;
-  inputs.situation = Situation::kOpen;
-  inputs.localization = Localization::kGood;
-  inputs.measured = Twist2{};
-  inputs.view.sees = true;
-  return inputs;
-}
 
 /// The command that is reached when the inputs stay as they are for five seconds.
 Decision settled(const Inputs& inputs, const Parameters& parameters = {}) {
@@ -725,12 +712,6 @@ TEST(MovementControl, SpeedsUpWithinTheAccelerationAndStopsAtOnce) {
 }
 
 /// For an operator.
-Parameters with_jerk() {
-  Parameters parameters;
-  parameters.jerk = {1.0, 4.0};
-  return parameters;
-}
-
 TEST(Jerk, BoundsHowFastTheAccelerationChanges) {
   MovementControl control(with_jerk());
   Inputs inputs = all_well();
@@ -880,81 +861,6 @@ TEST(MovementControl, CountsNonsense) {
   control.decide(inputs, milliseconds(0));
   control.decide(inputs, milliseconds(20));
   EXPECT_EQ(control.rejected(), 2U);
-}
-
-// Whatever comes in: what goes out is finite, within the limit in force plus what slowing down
-// still needs, never against a whisker (but creeping in place beside what the laser saw), and zero
-// without an enabled source.
-TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
-  Random random(3);
-  const auto chance = [&random](std::uint64_t n) { return random.below(n) == 0; };
-  bool in_place = false;
-  const auto twist = [&]() -> std::optional<Twist2> {
-    if (chance(3)) return std::nullopt;
-    if (chance(30)) return Twist2{kNan, 1.0};
-    return Twist2{in_place ? 0.0 : random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
-  };
-  int beside_what_was_seen = 0;
-  for (int run = 0; run < 200; ++run) {
-    in_place = run % 8 == 7;
-    Parameters parameters = run % 2 == 0 ? Parameters{} : with_jerk();
-    parameters.guarded = run % 4 >= 2;
-    MovementControl control(parameters);
-    const kinematics::WhiskerRods rods(parameters.guard.outline, parameters.whiskers);
-    const double slowest =
-        0.5 * parameters.touched / parameters.guard.outline.circumscribed_radius();
-    std::vector<geometry::Point2> things;
-    Time now{};
-    double last = 0.0;
-    for (int i = 0; i < 200; ++i) {
-      Inputs inputs = all_well();
-      inputs.enables = Enables{!chance(5), chance(2), chance(2), chance(2), random.uniform()};
-      if (chance(20)) inputs.enables.reset();
-      inputs.manual = twist();
-      inputs.interaction = twist();
-      inputs.navigation = twist();
-      if (chance(4)) inputs.whiskers = Whiskers{chance(2), chance(2), chance(2), chance(2)};
-      if (chance(20)) inputs.whiskers.reset();
-      inputs.situation = static_cast<Situation>(random.below(3));
-      inputs.localization = static_cast<Localization>(random.below(3));
-      things.clear();
-      for (auto n = random.below(4); n > 0; --n)
-        things.emplace_back(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
-      if (chance(2)) {  // a wall along the whiskers of the left side
-        for (int k = -10; k <= 10; ++k) things.emplace_back(0.07 * k, 0.4);
-      }
-      inputs.view = {.points = things, .sees = !chance(5), .guessed = 0, .cells = things};
-      now += milliseconds(random.below(50));
-      const Decision decision = control.decide(inputs, now);
-      const Twist2& out = decision.twist;
-      ASSERT_TRUE(out.finite());
-      const double bound = control.status().max_current.linear;
-      ASSERT_LE(std::abs(out.v), std::max(bound, std::abs(last)) + 1e-9);
-      const Enables enables = inputs.enables.value_or(Enables{});
-      const bool any = (enables.manual && inputs.manual) ||
-                       (enables.interaction && inputs.interaction) ||
-                       (enables.navigation && inputs.navigation);
-      if (!enables.movement || !any || !inputs.whiskers) {
-        ASSERT_EQ(out, Twist2{});
-      }
-      if (inputs.whiskers) {
-        const bool against =
-            kinematics::whisker_reflex(out, *inputs.whiskers, Parameters{}.touched) != out;
-        if (against) {
-          ++beside_what_was_seen;
-          const Whiskers unseen =
-              kinematics::without(*inputs.whiskers, rods.at(inputs.view.points, 2));
-          ASSERT_EQ(kinematics::whisker_reflex(out, unseen, Parameters{}.touched), out);
-          ASSERT_TRUE(parameters.guarded && inputs.measured);
-          ASSERT_LT(std::abs(inputs.measured->v), kinematics::RollOut::kStanding);
-          ASSERT_EQ(out.v, 0.0);
-          ASSERT_LE(std::abs(out.w), slowest + 1e-12);
-        }
-      }
-      last = out.v;
-    }
-  }
-  EXPECT_GT(beside_what_was_seen, 50);
 }
 
 }  // namespace

@@ -1,11 +1,7 @@
 #include <gmock/gmock.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstring>
-#include <fstream>
 #include <thread>
 
 #include "foundation/kinematics/roll_out.hpp"
@@ -13,6 +9,7 @@
 #include "operations/host/service.hpp"
 #include "support/folder.hpp"
 #include "support/process.hpp"
+#include "support/service_manager.hpp"
 
 namespace usher::operations {
 namespace {
@@ -75,55 +72,34 @@ TEST(ServiceUnit, IsAcceptedBySystemd) {
   EXPECT_THAT(verify.errors(), Not(HasSubstr(unit.name))) << "not even a warning";
 }
 
-/// Stands for systemd: the socket that a service notifies.
-class Notify : public testing::Test {
- protected:
-  Notify() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, path().c_str(), sizeof(address.sun_path) - 1);
-    EXPECT_EQ(::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-    ::setenv("NOTIFY_SOCKET", path().c_str(), 1);
-    ::setenv("WATCHDOG_USEC", "60000", 1);
-  }
-  ~Notify() override { ::close(socket_); }
-  std::string path() const { return folder_.path() + "/notify"; }
-  std::vector<std::string> heard() const {
-    std::vector<std::string> all;
-    char text[512];
-    for (ssize_t size = 0; (size = ::recv(socket_, text, sizeof(text), 0)) > 0;)
-      all.emplace_back(text, static_cast<std::size_t>(size));
-    return all;
-  }
+constexpr std::chrono::milliseconds kWatchdog(60);
 
-  test::Folder folder_;
-  int socket_;
-};
-
-TEST_F(Notify, TellsTheWatchdogOnlyWhileHealthy) {
+TEST(Notify, TellsTheWatchdogOnlyWhileHealthy) {
+  const test::ServiceManager manager(kWatchdog);
   ServiceNotifier service;
   EXPECT_EQ(::getenv("NOTIFY_SOCKET"), nullptr) << "components must not speak for the launcher";
   service.ready();
   service.alive(true, "3 of 3 processes run");
-  EXPECT_THAT(heard(),
+  EXPECT_THAT(manager.heard(),
               testing::ElementsAre("READY=1", "STATUS=3 of 3 processes run", "WATCHDOG=1"));
   service.alive(true, "3 of 3 processes run");
-  EXPECT_TRUE(heard().empty()) << "not more often than it must";
+  EXPECT_TRUE(manager.heard().empty()) << "not more often than it must";
   std::this_thread::sleep_for(std::chrono::milliseconds(25));
   service.alive(false, "2 of 3 processes run: amcl is given up");
-  EXPECT_THAT(heard(), testing::ElementsAre("STATUS=2 of 3 processes run: amcl is given up"));
+  EXPECT_THAT(manager.heard(), testing::ElementsAre("STATUS=2 of 3 processes run: amcl is given up"));
   service.alive(true, "2 of 3 processes run: amcl is given up");
-  EXPECT_THAT(heard(), testing::ElementsAre("WATCHDOG=1"));
+  EXPECT_THAT(manager.heard(), testing::ElementsAre("WATCHDOG=1"));
   service.stopping();
-  EXPECT_THAT(heard(), testing::ElementsAre("STOPPING=1"));
+  EXPECT_THAT(manager.heard(), testing::ElementsAre("STOPPING=1"));
 }
 
-TEST_F(Notify, IsSilentWithoutAServiceManager) {
+TEST(Notify, IsSilentWithoutAServiceManager) {
+  const test::ServiceManager manager(kWatchdog);
   ::unsetenv("NOTIFY_SOCKET");
   ServiceNotifier service;
   service.ready();
   service.alive(true, "well");
-  EXPECT_TRUE(heard().empty());
+  EXPECT_TRUE(manager.heard().empty());
 }
 
 TEST(Doctor, ExaminesThisMachine) {
