@@ -183,8 +183,7 @@ TEST_F(Restarts, AtRandomTimesEndOnTheWayOrInAStopWithAReason) {
   const double slow = slowdown();
   int failed = 0, hung = 0, killed = 0;
   auto victims = everybody();
-  for (std::size_t i = victims.size(); i > 1; --i)
-    std::swap(victims[i - 1], victims[random() % i]);
+  for (std::size_t i = victims.size(); i > 1; --i) std::swap(victims[i - 1], victims[random() % i]);
   std::string kills;
   for (const auto& victim : victims) {
     const double pause = draw(0.1, 2.0);

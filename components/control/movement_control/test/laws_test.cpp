@@ -103,8 +103,7 @@ class Rolls {
     const double part = std::chrono::duration<double>(step).count() / 0.3;
     does_.v += std::min(1.0, part) * (told.v - does_.v);
     does_.w += std::min(1.0, part) * (told.w - does_.w);
-    if (random_.below(100) == 0)
-      does_ = {random_.uniform(-1.4, 1.4), random_.uniform(-1.4, 1.4)};
+    if (random_.below(100) == 0) does_ = {random_.uniform(-1.4, 1.4), random_.uniform(-1.4, 1.4)};
     return does_;
   }
 
@@ -114,8 +113,8 @@ class Rolls {
 };
 
 // Of a base that is not at rest: no more than the limits in force, what it was told before and what
-// it does, of a turn lately: it may be the arc that it rolls out on; and where nothing may be passed on, no speed, and no turn but the one of the arc that it
-// rolls out on.
+// it does, of a turn lately: it may be the arc that it rolls out on; and where nothing may be
+// passed on, no speed, and no turn but the one of the arc that it rolls out on.
 TEST(MovementControl, KeepsItsLawsOfABaseThatRolls) {
   Random random(4);
   const auto chance = [&random](std::uint64_t n) { return random.below(n) == 0; };
@@ -169,8 +168,8 @@ TEST(MovementControl, KeepsItsLawsOfABaseThatRolls) {
       while (now - turns.front().first > RollOut::longest(10.0)) turns.pop_front();
       const double turned = std::ranges::max(turns, {}, &std::pair<Time, double>::second).second;
       const VelocityLimit& most = control.status().max_current;
-      ASSERT_LE(std::abs(told.v), std::max({most.linear, std::abs(before.v), std::abs(does.v)}) +
-                                      1e-9);
+      ASSERT_LE(std::abs(told.v),
+                std::max({most.linear, std::abs(before.v), std::abs(does.v)}) + 1e-9);
       ASSERT_LE(std::abs(told.w), std::max(most.angular, turned) + RollOut::kTurnSlack + 1e-9);
       const Enables enables = inputs.enables.value_or(Enables{});
       const bool passes_on =

@@ -86,7 +86,8 @@ TEST(Notify, TellsTheWatchdogOnlyWhileHealthy) {
   EXPECT_TRUE(manager.heard().empty()) << "not more often than it must";
   std::this_thread::sleep_for(std::chrono::milliseconds(25));
   service.alive(false, "2 of 3 processes run: amcl is given up");
-  EXPECT_THAT(manager.heard(), testing::ElementsAre("STATUS=2 of 3 processes run: amcl is given up"));
+  EXPECT_THAT(manager.heard(),
+              testing::ElementsAre("STATUS=2 of 3 processes run: amcl is given up"));
   service.alive(true, "2 of 3 processes run: amcl is given up");
   EXPECT_THAT(manager.heard(), testing::ElementsAre("WATCHDOG=1"));
   service.stopping();
