@@ -27,6 +27,8 @@ constexpr std::size_t kRtpsHeader = 20;
 constexpr std::size_t kPrefixAt = 8;
 constexpr std::size_t kPrefix = 12;
 constexpr std::uint8_t kLittleEndian = 0x01;
+constexpr std::size_t kNumberAt = 16;   // in a data submessage
+constexpr std::size_t kPayloadAt = 24;  // the same
 
 /// Where the data submessage of a writer's entity begins in a message, with its header.
 std::optional<std::size_t> find_data(View message, const runtime::Guid& writer) {
@@ -160,6 +162,19 @@ std::optional<Datagram> PacketTap::next_of(const runtime::Guid& writer) {
   return std::nullopt;
 }
 
+std::optional<std::uint64_t> number_of(const Datagram& heard, const runtime::Guid& writer) {
+  const auto data = find_data(heard.bytes, writer);
+  if (!data || *data + kPayloadAt > heard.bytes.size()) return std::nullopt;
+  std::uint64_t number = 0;
+  for (const std::size_t word : {std::size_t{0}, std::size_t{4}}) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      value |= static_cast<std::uint32_t>(heard.bytes[*data + kNumberAt + word + i]) << (8 * i);
+    number = number << 32U | value;
+  }
+  return number;
+}
+
 const char* to_string(Forgery forgery) {
   switch (forgery) {
     case Forgery::kReplay:
@@ -184,8 +199,6 @@ const char* to_string(Forgery forgery) {
 
 std::vector<std::uint8_t> forge(Forgery forgery, const Datagram& heard, const runtime::Guid& writer,
                                 std::span<const std::uint8_t> payload, std::uint64_t number) {
-  constexpr std::size_t kNumberAt = 16;   // in a data submessage
-  constexpr std::size_t kPayloadAt = 24;  // the same
   Bytes bytes = heard.bytes;
   const auto data = find_data(bytes, writer);
   const auto overwrite = [&](std::size_t at, View with) {

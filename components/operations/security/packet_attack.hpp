@@ -43,6 +43,9 @@ class PacketTap {
   std::uint32_t domain_;
 };
 
+/// The sequence number of the writer's sample in a datagram; nothing where there is none.
+std::optional<std::uint64_t> number_of(const Datagram& heard, const runtime::Guid& writer);
+
 /// Ways to make a reader take a sample that its writer did not send, or no longer means.
 enum class Forgery {
   kReplay,      ///< the same packet again
