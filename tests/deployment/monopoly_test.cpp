@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 
 #include "deployment/running_robot.hpp"
 #include "support/folder.hpp"
@@ -120,6 +121,8 @@ TEST(Monopoly, AForeignWriterStopsTheRobotUntilItLeavesAndAnOperatorClears) {
 // Each topic that moves the robot, in each way: the experiment, with few samples.
 TEST(Monopoly, NoSampleOfAForeignWriterReachesTheWheels) {
   const Folder folder;
+  ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+  ::setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
   Process attacks({usher_program(), "experiment", "monopoly", "--seeds", "82", "--domain",
                    std::to_string(test_domain()), "--out", folder.path()});
   attacks.wait(std::chrono::minutes(12));
