@@ -26,28 +26,32 @@ struct Way {
   const char* place;
   const char* goal;
   double v;           ///< [m/s] that the planner wants
-  const char* world;  ///< instead of the site's, where not null
+  const char* thing;  ///< in a hall of its own instead of the site, where not null
   double ahead;       ///< [m] from the place to the obstacle
   bool glass;         ///< not even a beam at a right angle sees it; whiskers feel this one only
 };
 
 constexpr double kLaserX = 0.28;  // [m] of MARVIN's laser ahead of the axle
 constexpr double kPaneX = 4.5;    // [m] of the pane across the glass corridor, up to y = 1.2 m
-constexpr const char* kLowBox = R"(name: hall
+constexpr const char* kHall = R"(name: hall
 ceiling: 2.7
 rooms:
   - {name: hall, title: Hall, area: [0.0, 0.0, 12.0, 6.0]}
 walls:
   - {name: around, thickness: 0.2, points: [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]}
 obstacles:
-  - {name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}
-)";
+  - )";
+constexpr const char* kLowBox = "{name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}";
+constexpr const char* kBelt = "{name: belt, box: [6.0, 3.0, 0.0, 0.1, 1.6], height: [0.8, 0.9]}";
 
-// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees.
+// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees, low
+// and of a barrier, which leaves its image while the robot rolls up to it.
 const Way kWays[] = {
     {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7, false},
     {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49, true},
     {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8, false},
+    {"Belt", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kBelt, 4.95, false},
+    {"SlowlyABelt", "obstacle-course.yaml", "[3.0, 3.0, 0.0]", "goal", 0.3, kBelt, 2.95, false},
 };
 
 // 0.07 m before the ultrasonic sensors, which tell of 0.15 m then; the planner stands.
@@ -84,8 +88,9 @@ Outcome drive_blindly(const Way& way, bool guard) {
   EXPECT_TRUE(deployment.ok()) << deployment.error();
   set_site_value(*deployment, "site.initial_pose", way.place);
   const test::Folder folder;
-  if (way.world != nullptr)
-    set_site_value(*deployment, "site.world", folder.file("world.yaml", way.world));
+  if (way.thing != nullptr)
+    set_site_value(*deployment, "site.world",
+                   folder.file("world.yaml", std::string(kHall) + way.thing + "\n"));
   Outcome outcome;
   geometry::Pose2 odom_T_base;
   const auto robot = lockstep_robot(*deployment, 1, [&](LockstepRun& run) {
@@ -113,8 +118,9 @@ Outcome drive_blindly(const Way& way, bool guard) {
       return true;
     });
     world.observe(topics::kMovementStatus, [&](const auto& status, const auto&) {
-      outcome.held = outcome.held || (status.limit_reason() == "something is in the way" &&
-                                      status.velocity_measured_linear() > 0.5F);
+      outcome.held =
+          outcome.held || (status.limit_reason() == "something is in the way" &&
+                           static_cast<double>(status.velocity_measured_linear()) > 0.5 * way.v);
     });
     world.observe(topics::kOdom, [&](const auto& odom, const auto&) {
       if (const auto pose = wire::to_planar(odom.pose().pose())) odom_T_base = *pose;

@@ -135,7 +135,10 @@ Status run(const ExperimentOptions& options, const Setup& setup, Measured& measu
                                     options.installation, {});
   if (!deployment) return Error{deployment.error()};
   keep_only(setup.only, *deployment);
-  if (!setup.rear_camera) set_value(*deployment, "world", "robot.rear_camera.fitted", "false");
+  if (!setup.rear_camera) {
+    for (const char* one : {"world", "depth_pipeline"})
+      set_value(*deployment, one, "robot.rear_camera.fitted", "false");
+  }
   deployment->manifest.domain = options.domain;
   for (auto& file : deployment->files) file.domain = options.domain;
   auto launcher =

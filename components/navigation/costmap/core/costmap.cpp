@@ -197,7 +197,7 @@ void Costmap::forget(double blind) {
     kept = {low.x, low.y, high.x + 1, high.y + 1};
   }
   for (ObstacleLayer& layer : layers_) {
-    if (layer.config().min_raytrace_range <= 0.0) touch(layer.forget(kept));
+    if (!layer.config().lasting) touch(layer.forget(kept));
   }
 }
 

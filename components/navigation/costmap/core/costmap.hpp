@@ -78,8 +78,7 @@ class Costmap {
   /// Who gets room, in the costmap's frame, in the place of those before.
   void set_people(std::span<const geometry::Point2> people);
   /// Forgets what the sensors saw and would see again (a recovery). People stay, obstacles nearer
-  /// to the robot than `blind` [m] (in x and y of the costmap), and layers that are not cleared
-  /// nearby (min_raytrace_range): their sensor looks over what lies there.
+  /// to the robot than `blind` [m] (in x and y of the costmap), and layers that are `lasting`.
   void forget(double blind = 0.0);
 
   /// Whether a layer has two obstacles within `reach` [m] of a point (in x and y) that are not of

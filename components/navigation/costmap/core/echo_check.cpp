@@ -8,7 +8,8 @@
 namespace usher::costmap {
 
 namespace {
-constexpr float kArc = 0.9F;  // [m] nearer, the axis alone: arcs beside a door post bar the door
+constexpr float kArc = 0.9F;     // [m] nearer, the axis alone: arcs beside a door post bar the door
+constexpr double kAside = 0.25;  // [m] from a cone's axis
 constexpr double kBehind = 0.15;  // [m] both sensors' errors: glass may stand before a wall
 constexpr double kBody = 0.6;     // [m] from where somebody is, and the width of a cone
 constexpr int kNeighbours = 3;    // beams that agree; glass sends back one now and then
@@ -93,11 +94,10 @@ void spread_echoes(std::span<const float> echoes, std::span<const geometry::Poin
     const bool person = std::any_of(people.begin(), people.end(), [&](const auto& each) {
       return (each - there).norm() <= kBody;
     });
-    if (std::isfinite(echoes[i]) && (person || echoes[i] < kArc)) {
-      ranges[i * beams + beams / 2] = echoes[i];
-    } else {
-      std::fill_n(ranges.begin() + static_cast<std::ptrdiff_t>(i * beams), beams, echoes[i]);
-    }
+    const bool alone = person || echoes[i] < kArc;
+    const double reach = std::isfinite(echoes[i]) ? (alone ? 0.0 : kAside / echoes[i]) : 2.0;
+    for (std::size_t k = i * beams; k < (i + 1) * beams; ++k)
+      if ((rays[k] - axis).norm() <= reach) ranges[k] = echoes[i];
   }
 }
 

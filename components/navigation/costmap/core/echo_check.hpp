@@ -42,9 +42,11 @@ void drop_remembered_echoes(const ObstacleLayer& laser, const Raster& raster,
 /// sensors' frame, in the order of `spread_echoes`.
 std::vector<geometry::Point2> cone_directions(double angle_min, double angle_increment,
                                               std::size_t sensors, double cone, int beams);
-/// Each echo once for every ray of its cone. On the axis alone, and NaN on the others, is what is
-/// near, where the arc is as wide as a cell or two, and what comes from where one of the `people`
-/// [m, in the frame of window_T_sonar] is: who walks on would leave the rest of the arc behind.
+/// Each echo once for every ray of its cone, up to 0.25 m beside its axis: farther the arc's ends
+/// are too far from each other to be one thing's. On the axis alone, and NaN on the others, is what
+/// is near, where the arc is as wide as a cell or two, and what comes from where one of the
+/// `people` [m, in the frame of window_T_sonar] is: who walks on would leave the rest of the arc
+/// behind.
 void spread_echoes(std::span<const float> echoes, std::span<const geometry::Point2> rays,
                    const geometry::Pose2& window_T_sonar, std::span<const geometry::Point2> people,
                    std::vector<float>& ranges);

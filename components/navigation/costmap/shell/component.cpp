@@ -127,7 +127,7 @@ void CostmapComponent::read_settings(runtime::Parameters& parameters) {
   local_persistence_ = parameters.number("local_persistence", "s", {0, 600}, 60.0,
                                          "The same in the window around the robot.");
   blind_range_ = parameters.number(
-      "blind_range", "m", {0, 2}, 0.6,
+      "blind_range", "m", {0, 2}, 0.8,
       "Nearer than this to the axle no sensor may see again what it saw: a recovery keeps it.");
   ultrasonic_settings_.name = "ultrasonic";
   ultrasonic_settings_.max_obstacle_range = parameters.number(
@@ -210,9 +210,10 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
       parameters.number("depth_clear_range", "m", {0.5, 8}, 4.5, "Depth cameras clear no farther.");
   depth_settings_.overrules_static_map = false;
   depth_settings_.persistence = laser_settings_.persistence;
-  depth_blind_range_ = parameters.number(
-      "depth_blind_range", "m", {0, 4}, 1.8,
-      "Nearer than this the Kinect looks over low things: what is marked there stays.");
+  depth_near_range_ = parameters.number(
+      "depth_near_range", "m", {0, 2}, 0.6,
+      "Nearer than this the Kinect measures nothing: what is marked there stays.");
+  low_blind_range_ = wire::read_kinect_blind_range(parameters);
   rear_blind_range_ = parameters.number(
       "rear_blind_range", "m", {0, 4}, 1.2,
       "Nearer than this the rear camera looks over low things: what is marked there stays.");
@@ -267,16 +268,18 @@ void CostmapComponent::add_layers(Map& map) {
   if (&map == &local_) laser.persistence = local_persistence_;
   map.laser = add(laser);
   map.ultrasonic = add(ultrasonic_settings_);
-  // What leaves the Kinect's image near the robot is kept in a layer that is cleared from afar
-  // only.
+  // What is too near to be measured, or leaves a camera's image near the robot, is kept in layers
+  // that are cleared from afar only.
   ObstacleLayerConfig depth = depth_settings_;
   if (&map == &local_) depth.persistence = local_persistence_;
+  depth.min_raytrace_range = depth_near_range_;
   map.depth = add(depth);
+  depth.lasting = true;
   depth.name = "rear";
   depth.min_raytrace_range = rear_blind_range_;
   map.rear = add(depth);
   depth.name = "low";
-  depth.min_raytrace_range = depth_blind_range_;
+  depth.min_raytrace_range = low_blind_range_;
   depth.persistence = low_persistence_;
   depth.thickness = low_thickness_;
   depth.negative_clears = true;
@@ -369,6 +372,8 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::low) {
     lasting_ranges_ = scan.ranges();
     drop_what_people_hide(beams.directions, odom_T_sensor, maybe_there_, lasting_ranges_);
+    for (std::size_t i = 0; i < lasting_ranges_.size(); ++i)
+      if (wire::is_drop_behind_floor(scan, i)) lasting_ranges_[i] = scan.ranges()[i];
   }
   const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
                         const geometry::Pose2& window_T_sensor) {
@@ -381,8 +386,8 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       seen.clears = false;
     }
     if (!(layer == &Map::low ? take_low(map, scan, seen) : observe(map, map.*layer, seen))) return;
-    if (layer == &Map::rear)
-      forget_who_left(map, seen, window_T_base * geometry::inverse(*odom_T_base));
+    if (layer == &Map::rear || layer == &Map::depth)
+      forget_who_left(map, map.*layer, seen, window_T_base * geometry::inverse(*odom_T_base));
     if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
     if (&map == &local_ && layer == &Map::laser && effective >= map.newest) laser_stamp_ = stamp;
     // The local costs are as old as their laser scan, whatever else was seen since.
@@ -412,13 +417,14 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
   return observe(map, map.low, seen);
 }
 
-/// Near the robot the rear camera looks over what it saw, so that it stays there: but not where
-/// somebody is or was a moment ago, once the camera looks beyond that place. He walks on.
-void CostmapComponent::forget_who_left(Map& map, const RangeObservation& seen,
+/// What a camera saw stays where it is too near to be seen again: but not where somebody is or was
+/// a moment ago, once the camera looks beyond that place. He walks on.
+void CostmapComponent::forget_who_left(Map& map, Costmap::LayerId layer,
+                                       const RangeObservation& seen,
                                        const geometry::Pose2& window_T_odom) {
   places_.clear();
   for (const geometry::Point2& person : maybe_there_) places_.push_back(window_T_odom * person);
-  map.costs->forget_passed(map.rear, seen, places_, kFoot);
+  map.costs->forget_passed(layer, seen, places_, kFoot);
 }
 
 /// What the ultrasonic sensors hear and the laser does not see, over their whole cones, and what

@@ -60,7 +60,7 @@ class CostmapComponent final : public runtime::Component {
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
   bool take_low(Map& map, const sensor_msgs::msg::LaserScan& scan, RangeObservation seen);
-  void forget_who_left(Map& map, const RangeObservation& seen,
+  void forget_who_left(Map& map, Costmap::LayerId layer, const RangeObservation& seen,
                        const geometry::Pose2& window_T_odom);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
@@ -78,7 +78,8 @@ class CostmapComponent final : public runtime::Component {
   geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
-  double blind_range_ = 0.0, depth_blind_range_ = 0.0, rear_blind_range_ = 0.0;
+  double blind_range_ = 0.0, depth_near_range_ = 0.0, low_blind_range_ = 0.0,
+         rear_blind_range_ = 0.0;
   double low_thickness_ = 0.0, low_persistence_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;

@@ -81,6 +81,16 @@ class Component : public testing::Test {
     host.publish(topics::kWhiskers, whiskers);
     run(ms);
   }
+  /// Somebody is there, or was as many seconds ago.
+  void tell_of(double x, double y, float unseen = 0.0F) {
+    usher_msgs::msg::People people;
+    people.header(wire::header(host.now(), frames::kOdom));
+    auto& somebody = people.people().emplace_back();
+    somebody.x(x);
+    somebody.y(y);
+    somebody.unseen(unseen);
+    host.publish(topics::kPeople, people);
+  }
   std::string reason() const { return host.heartbeat().reason(); }
   /// The highest cost within a cell's width: points lie on the borders of cells.
   int local_cost(double x, double y) const {
@@ -104,6 +114,7 @@ class Component : public testing::Test {
   geometry::Pose2 base;  // in odom
   geometry::Pose2 odom;  // in map
   float laser_range = 2.0F;
+  static constexpr float kNothing = std::numeric_limits<float>::infinity();
 };
 
 TEST_F(Component, MarksWhatTheLaserSees) {
@@ -289,17 +300,13 @@ TEST_F(Component, RemembersNoFloorThatSomebodyHides) {
   give_map();
   laser_range = 3.5F;
   run(200);
-  const auto see = [&](double aside, float unseen) {
+  const auto see = [&](double aside, float unseen, float intensity = wire::kDrop) {
     for (int i = 0; i < 5; ++i) {
-      usher_msgs::msg::People people;
-      people.header(wire::header(host.now(), frames::kOdom));
-      auto& somebody = people.people().emplace_back();
-      somebody.x(0.6);
-      somebody.y(aside);
-      somebody.unseen(unseen);
-      host.publish(topics::kPeople, people);
+      tell_of(0.6, aside, unseen);
       run(20);
-      host.publish(topics::kKinectScanLow, scan("laser", 2.2F));
+      auto low = scan("laser", 2.2F);
+      low.intensities().assign(low.ranges().size(), intensity);
+      host.publish(topics::kKinectScanLow, low);
       run(20);
     }
   };
@@ -307,8 +314,55 @@ TEST_F(Component, RemembersNoFloorThatSomebodyHides) {
   EXPECT_LT(local_cost(2.22, 0.0), kLethalCost);
   see(0.2, 1.5F);
   EXPECT_LT(local_cost(2.22, 0.0), kLethalCost) << "too near to be detected";
-  see(1.0, 0.0F);
+  see(0.2, 0.0F, wire::kDropBehindFloor);
+  EXPECT_EQ(local_cost(2.22, 0.0), kLethalCost) << "the floor before it is seen: nobody hides it";
+}
+
+TEST_F(Component, RemembersFloorThatIsMissingBesideTheLineToSomebody) {
+  give_map();
+  laser_range = 3.5F;
+  run(200);
+  for (int i = 0; i < 5; ++i) {
+    tell_of(0.6, 1.0);
+    host.publish(topics::kKinectScanLow, scan("laser", 2.2F));
+    run(20);
+  }
   EXPECT_EQ(local_cost(2.22, 0.0), kLethalCost) << "he is not in the line of sight";
+}
+
+TEST_F(Component, KeepsWhatIsTooNearForTheKinectToMeasure) {
+  laser_range = 3.5F;
+  give_map();
+  run(200);
+  for (; base.x < 1.0; base.x += 0.02) {  // a belt at 1.4 m, over the laser
+    const auto gap = static_cast<float>(1.4 - base.x);
+    host.publish(topics::kKinectScan, scan("laser", gap > 0.5F ? gap : kNothing));
+    run(40);
+  }
+  EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "0.4 m ahead";
+  base.x = 0.4;
+  for (int i = 0; i < 5; ++i) host.publish(topics::kKinectScan, scan("laser", kNothing)), run(40);
+  EXPECT_LT(local_cost(1.4, 0.0), kLethalCost) << "gone, as is seen from afar";
+}
+
+TEST_F(Component, ForgetsWhereSomebodyStoodBeforeTheKinectWhoWalksOn) {
+  laser_range = 3.5F;
+  give_map();
+  run(200);
+  const auto see = [&](double place, float range) {
+    for (int i = 0; i < 5; ++i) {
+      tell_of(place, 0.0);
+      host.publish(topics::kKinectScan, scan("laser", range));
+      run(40);
+    }
+  };
+  see(0.65, 0.52F);
+  EXPECT_EQ(local_cost(0.54, 0.0), kLethalCost);
+  see(0.65, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(local_cost(0.54, 0.0), kLethalCost) << "too near to be measured, perhaps";
+  see(0.95, 0.82F);
+  EXPECT_LT(local_cost(0.54, 0.0), kLethalCost) << "he stepped back";
+  EXPECT_EQ(local_cost(0.84, 0.0), kLethalCost);
 }
 
 TEST_F(Component, PlansAroundWhatASlowCameraSeesBetweenTheScansOfAFastLaser) {
@@ -340,14 +394,10 @@ class LooksBack : public Component {
   /// Somebody is told of there, and the camera sees that far.
   void follow(double x, float range, int times) {
     for (int i = 0; i < times; ++i) {
-      usher_msgs::msg::People people;
-      people.header(wire::header(last_scan, frames::kOdom));
-      people.people().emplace_back().x(x);
-      host.publish(topics::kPeople, people);
+      tell_of(x, 0.0);
       see(range);
     }
   }
-  static constexpr float kNothing = std::numeric_limits<float>::infinity();
 };
 
 TEST_F(LooksBack, AndKeepsTheLowBoxThatItBacksUpTo) {

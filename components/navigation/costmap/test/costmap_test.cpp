@@ -261,6 +261,7 @@ TEST(Costmap, ForgetsNothingThatNoSensorWouldSeeAgain) {
   const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
   ObstacleLayerConfig config = layer_config("low");
   config.min_raytrace_range = 1.8;
+  config.lasting = true;
   const auto low = costmap.add_obstacle_layer(config).value();
   see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
   see(costmap, low, {0.02, 0.02, 0.0}, 1.5F);

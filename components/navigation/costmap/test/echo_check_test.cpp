@@ -131,6 +131,19 @@ TEST(Cones, AnEchoIsOnAllOfItsArcButANearOneOnTheAxis) {
   for (std::size_t i = 9; i < 12; ++i) EXPECT_TRUE(std::isnan(ranges[i]));
 }
 
+TEST(Cones, AFarEchoIsOnNoMoreThanHalfAMeter) {
+  std::vector<float> ranges;
+  const auto rays = cone_directions(-0.14, 0.28, 1, 0.28, 13);
+  spread_echoes(std::vector<float>{2.5F}, rays, {}, {}, ranges);
+  const auto marked =
+      std::count_if(ranges.begin(), ranges.end(), [](float r) { return r == 2.5F; });
+  EXPECT_EQ(marked, 9) << "of rays 0.058 m apart";
+  EXPECT_TRUE(std::isnan(ranges.front()) && std::isnan(ranges.back()));
+  EXPECT_EQ(ranges[6], 2.5F);
+  spread_echoes(std::vector<float>{kInfinity}, rays, {}, {}, ranges);
+  EXPECT_EQ(ranges.front(), kInfinity);
+}
+
 TEST(Cones, TellNothingAtTheirEdges) {
   const auto rays = cone_directions(-0.25, 0.5, 2, 0.28, 5);
   std::vector<float> ranges(10, 1.0F);

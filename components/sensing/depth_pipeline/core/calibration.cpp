@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "foundation/random/random.hpp"
 
@@ -19,6 +20,9 @@ constexpr double kReach = 5.0;       // [m] floor farther away is not used
 constexpr int kLeastSamples = 400;
 constexpr double kLeastShare = 0.15;
 constexpr double kMostResidual = 0.012;  // [m]
+constexpr double kNearFloor = 0.15;      // [m] of height; what is higher or lower is none
+constexpr double kSteepest = 0.5;        // slope of a floor; what is steeper is a wall's foot
+constexpr std::size_t kSlopeRows = 3;    // to either side, for the slope
 constexpr std::size_t kLeastPositions = 5;
 constexpr double kLeastSweep = 0.1745;  // [rad] 10 deg
 constexpr double kAngleBand = 0.006;    // [rad] off the line of angles
@@ -84,6 +88,39 @@ double height_over(const Line& line, const Point& p) {
   return (p.y - line.a - line.b * p.x) / (p.y * std::hypot(line.a, line.b));
 }
 
+/// Way along the floor's line to below or above that pixel.
+double way_along(const Line& line, const Point& p) {
+  return (line.b - line.a * p.x) / (p.y * std::hypot(line.a, line.b));
+}
+
+/// [m] Root mean square height of all that could be floor: near the line, and not as steep as the
+/// foot of a wall. What the line was fitted to is even by choice. Of each row the middle pixel
+/// counts, so that neither noise nor the leg of a chair does. `points` come row by row from the
+/// top.
+double unevenness(const Line& line, std::vector<Point> points) {
+  std::vector<Point> profile;  // way along the floor, height over it
+  for (auto row = points.begin(); row != points.end();) {
+    const auto end =
+        std::find_if(row, points.end(), [y = row->x](const Point& p) { return p.x != y; });
+    const auto middle = row + (end - row) / 2;
+    std::nth_element(row, middle, end, [](const Point& p, const Point& q) { return p.y < q.y; });
+    profile.push_back({way_along(line, *middle), height_over(line, *middle)});
+    row = end;
+  }
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = kSlopeRows; i + kSlopeRows < profile.size(); ++i) {
+    const Point& beyond = profile[i - kSlopeRows];
+    const Point& before = profile[i + kSlopeRows];
+    const double height = profile[i].y;
+    const bool steep = std::abs(beyond.y - before.y) > kSteepest * (beyond.x - before.x);
+    if (steep || std::abs(height) > kNearFloor) continue;
+    squares += height * height;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
 std::string degrees(double angle) { return std::to_string(angle * 180.0 / geometry::kPi) + " deg"; }
 
 }  // namespace
@@ -120,15 +157,13 @@ Result<FloorLine> find_floor_line(const DepthImage& image, const Intrinsics& int
     if (!line || line->b <= 0.2) return Error{"no floor in the central columns"};
   }
   FloorLine floor = floor_of(*line);
-  double squares = 0.0;
-  for (const Point& p : on) squares += height_over(*line, p) * height_over(*line, p);
   floor.samples = static_cast<int>(on.size());
   floor.share = static_cast<double>(on.size()) / static_cast<double>(points.size());
-  floor.residual = std::sqrt(squares / static_cast<double>(on.size()));
   if (floor.samples < kLeastSamples || floor.share < kLeastShare) {
     return Error{"only " + std::to_string(floor.samples) + " of " + std::to_string(points.size()) +
                  " pixels lie on one floor: clear the space before the robot"};
   }
+  floor.residual = unevenness(*line, std::move(points));
   if (floor.residual > kMostResidual)
     return Error{"the floor is uneven by " + std::to_string(floor.residual) + " m"};
   return floor;

@@ -16,12 +16,12 @@ struct FloorLine {
   double height = 0.0;    ///< [m] of the camera over the floor, 4.24
   int samples = 0;        ///< pixels on the line
   double share = 0.0;     ///< of the valid pixels of the lower image that are on it
-  double residual = 0.0;  ///< [m] root mean square of their heights
+  double residual = 0.0;  ///< [m] root mean square height of all that could be floor
 };
 
 /// Finds the floor in the central columns by RANSAC and least squares (thesis 4.4.2). The fit is
 /// one of inverse depth over the row, whose error does not grow with the distance. An error says
-/// why the image shows no floor that one could measure by.
+/// why the image shows no floor that one could measure by; one that is uneven is none.
 Result<FloorLine> find_floor_line(const DepthImage& image, const Intrinsics& intrinsics);
 
 /// One tilt position of the sweep.

@@ -67,6 +67,7 @@ Status check(const PipelineConfig& config) {
                             {"confidence_threshold", config.confidence_threshold, 0.01, 10.0},
                             {"least_confidence", config.least_confidence, 0.0, 1.0},
                             {"lasting_confidence", config.lasting_confidence, 0.0, 1.0},
+                            {"low_from", config.low_from, 0.0, 8.0},
                             {"least_measured", config.least_measured, 0.0, 1.0}});
       !status)
     return status;
@@ -106,6 +107,8 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
   seen_low_.resize(geometry_.count);
   tall_.resize(geometry_.count);
   fallen_.resize(geometry_.count);
+  fallen_behind_floor_.resize(geometry_.count);
+  behind_floor_.resize(column_stride_);
   low_drops_.resize(geometry_.count);
   looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
@@ -150,7 +153,7 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.lasting_confidence, low_.intensities);
   tell_drops();
-  tell_what_hides_low();
+  tell_where_nothing_low_is(view.pose);
   view.processed = processed_;
   view.scan = &scan_;
   view.low = &low_;
@@ -212,6 +215,7 @@ void DepthPipeline::clear_bearings() {
   std::fill(seen_low_.begin(), seen_low_.end(), kUnknown);
   std::fill(tall_.begin(), tall_.end(), kUnknown);
   std::fill(fallen_.begin(), fallen_.end(), kUnknown);
+  std::fill(fallen_behind_floor_.begin(), fallen_behind_floor_.end(), kUnknown);
   std::fill(looked_.begin(), looked_.end(), std::uint8_t{0});
 }
 
@@ -348,7 +352,8 @@ void DepthPipeline::add_low() {
 
 /// Floor is missing only where the camera sees: a column that measured nearly nothing is not known,
 /// unless it saw floor up to where it ends; and where something stands before that end, it hides
-/// the floor: who is too near to be measured below the chest, for example.
+/// the floor: who is too near to be measured below the chest, for example. Floor that is missing
+/// behind floor is hidden by nobody; but right before what is high, dark trousers may stand there.
 void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
   const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
   const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
@@ -360,6 +365,12 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
       const int enough = fall[column] > nearest ? kLeastFloor : kLeastValid;
       const bool hidden = kHalfMillimeter * high[column] < 1e-3 * fall[column];
       if (hidden || valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
+      const bool floor_before =
+          nearest > 0 && fall[column] >= nearest + millimeters(config_.drop_length);
+      const bool before_somebody =
+          high[column] != kernels::kNothing &&
+          kHalfMillimeter * high[column] <= 1e-3 * fall[column] + config_.low_gap;
+      behind_floor_[column] = floor_before && !before_somebody ? 1 : 0;
     }
   }
 }
@@ -400,12 +411,14 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
         if (seen_above(image, pose, column, row_of_floor(pose, forward))) {
           mark(low_.ranges, column, forward, side_per_pixel(forward));
           mark(fallen_, column, forward, side_per_pixel(forward));
+          if (behind_floor_[column] != 0)
+            mark(fallen_behind_floor_, column, forward, side_per_pixel(forward));
         } else {
           const std::size_t bearing =
               bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel(forward));
           const std::size_t last = std::min(bearing + 1, geometry_.count - 1);  // as mark_seen
           for (std::size_t i = bearing; i <= last; ++i) {
-            low_.ranges[i] = fallen_[i] = kUnknown;
+            low_.ranges[i] = fallen_[i] = fallen_behind_floor_[i] = kUnknown;
             looked_[i] = 0;
           }
         }
@@ -419,16 +432,32 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
 
 /// Where a thing stands before the missing floor, the range is that of the thing.
 void DepthPipeline::tell_drops() {
-  for (std::size_t i = 0; i < low_.ranges.size(); ++i)
-    low_drops_[i] = std::isfinite(fallen_[i]) && low_.ranges[i] == fallen_[i] ? 1 : 0;
+  for (std::size_t i = 0; i < low_.ranges.size(); ++i) {
+    const float range = low_.ranges[i];
+    const bool falls = std::isfinite(range) && range == fallen_[i];
+    low_drops_[i] = !falls                             ? Drop::kNone
+                    : range == fallen_behind_floor_[i] ? Drop::kBehindFloor
+                                                       : Drop::kMissing;
+  }
+}
+
+/// [m] From the scan's origin to the floor at the image's lower edge; infinity when it shows none.
+double DepthPipeline::nearest_floor(const CameraPose& pose) const {
+  const double below =
+      pose.down + std::atan((intrinsics_.height - 1.0 - intrinsics_.cy) / intrinsics_.fy);
+  return below > 0.0 ? pose.height / std::tan(below) + shift_ : INFINITY;
 }
 
 /// What stands high hides what is low behind it: up to there nothing low is.
-void DepthPipeline::tell_what_hides_low() {
+void DepthPipeline::tell_where_nothing_low_is(const CameraPose& pose) {
+  const bool tells = nearest_floor(pose) <= config_.low_from;
   for (std::size_t i = 0; i < low_.ranges.size(); ++i) {
     const float range = scan_.ranges[i];
-    if (looked_[i] == 0 || !std::isnan(low_.ranges[i]) || std::isnan(range)) continue;
-    low_.ranges[i] = std::isinf(range) ? kFree : -range;
+    if (!tells) {
+      if (std::isinf(low_.ranges[i])) low_.ranges[i] = kUnknown;
+    } else if (looked_[i] != 0 && std::isnan(low_.ranges[i]) && !std::isnan(range)) {
+      low_.ranges[i] = std::isinf(range) ? kFree : -range;
+    }
   }
 }
 

@@ -40,8 +40,11 @@ struct PipelineConfig {
   double confidence_threshold = 0.5;  ///< [m] {0.01..10} deviation with confidence 0
   double least_confidence = 0.2;      ///< {0..1} ranges with less become NaN
   double lasting_confidence = 0.8;    ///< {0..1} the same in `low`, which others remember
-  double least_measured = 0.02;       ///< {0..1} a smaller share of pixels is a blind camera's
-  bool refit = false;  ///< fit the floor in each frame; then floor_margin may be small
+  /// [m] {0..8} only an image that shows the floor from there on tells that nothing low is there: a
+  /// camera that looks elsewhere sees nothing of it.
+  double low_from = 1.8;
+  double least_measured = 0.02;  ///< {0..1} a smaller share of pixels is a blind camera's
+  bool refit = false;            ///< fit the floor in each frame; then floor_margin may be small
   FloorFitConfig fit;
   FloorModel refitted{.floor_margin = 0.003, .angle_margin = 0.0006, .noise_grazing = 1e-4};
   cpu::Simd simd = cpu::best_simd();
@@ -58,6 +61,13 @@ struct ScanGeometry {
   std::size_t count = 0;
 };
 
+/// What a range of a low scan ends at.
+enum class Drop : std::uint8_t {
+  kNone,         ///< a thing
+  kMissing,      ///< missing floor; what hides it may be too near to be measured
+  kBehindFloor,  ///< missing floor behind floor that the same column shows: nothing hides it
+};
+
 struct DepthScan {
   std::vector<float> ranges;       ///< [m] horizontal, from the scan's origin
   std::vector<float> intensities;  ///< {0..1} confidence
@@ -70,9 +80,8 @@ struct DepthView {
   /// Only what is lower than low_height, and drops; -r: nothing low up to r [m], where something
   /// high hides it.
   const DepthScan* low = nullptr;
-  /// Of each bearing of `low`: 1 where its range ends at missing floor and not at a thing.
-  std::span<const std::uint8_t> low_drops;
-  CameraPose pose;  ///< as used: refitted when `refitted`
+  std::span<const Drop> low_drops;  ///< of each bearing of `low`
+  CameraPose pose;                  ///< as used: refitted when `refitted`
   bool refitted = false;
   int drops = 0;          ///< columns that end at missing floor
   double measured = 0.0;  ///< {0..1} share of the pixels that measured something
@@ -115,9 +124,10 @@ class DepthPipeline {
   bool seen_above(const DepthImage& image, const CameraPose& pose, int column, double row) const;
   double row_of_high(const CameraPose& pose, double depth) const;
   double row_of_floor(const CameraPose& pose, double forward) const;
+  double nearest_floor(const CameraPose& pose) const;
   void add_low();
   void tell_drops();
-  void tell_what_hides_low();
+  void tell_where_nothing_low_is(const CameraPose& pose);
   void drop_unsupported(std::vector<float>& ranges) const;
   void mark(std::vector<float>& ranges, int column, double forward, double side_per_pixel);
   std::size_t bearing_of(double forward, double left) const;
@@ -138,7 +148,9 @@ class DepthPipeline {
   /// not always at one bearing, where the camera looks down: at the image's edge the foot alone is.
   std::vector<float> tall_;
   std::vector<float> fallen_;  // [m] of each bearing: where floor is missing that low_ tells of
-  std::vector<std::uint8_t> low_drops_;
+  std::vector<float> fallen_behind_floor_;  // [m] of each bearing: the same, nothing hides it
+  std::vector<Drop> low_drops_;
+  std::vector<std::uint8_t> behind_floor_;  // of each column: floor is missing behind floor
   std::vector<std::uint8_t> looked_;  // of each bearing, whether its columns measured something
   mutable std::vector<float> spare_;
   Confidence confidence_, low_confidence_;

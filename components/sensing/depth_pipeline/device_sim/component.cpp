@@ -19,6 +19,8 @@ DepthPipelineSimComponent::DepthPipelineSimComponent(runtime::Host& host)
   const double axle = read_axle(host.parameters());
   const Mount mount = read_kinect_mount(host.parameters(), axle);
   const RearMount rear = read_rear_mount(host.parameters(), axle);
+  kinect_.least_confidence = rear_.least_confidence = config_.least_confidence;
+  low_.least_confidence = config_.lasting_confidence;
   const ScanOutput::Frame kinect_level{kKinectLevel, mount.x, false};
   const ScanOutput::Frame rear_level{kRearLevel, -rear.mount.x, true};
   kinect_.output.emplace(host, topics::kKinectScan, kinect_level, config_.max_range);
@@ -32,11 +34,20 @@ DepthPipelineSimComponent::DepthPipelineSimComponent(runtime::Host& host)
       host.input(topics::kSimKinectScanLow,
                  {.max_age = kScanAge, .on_loss = "publishes no low scans", .optional = true},
                  [this](const auto& scan, const auto&) { take(low_, scan); });
-  rear_.input = host.input(topics::kSimRearScan,
-                           {.max_age = kScanAge,
-                            .on_loss = "goes on with the Kinect alone; degraded when there was one",
-                            .optional = true},
-                           [this](const auto& scan, const auto&) { take(rear_, scan); });
+  rear_.input = host.input(
+      topics::kSimRearScan,
+      {.max_age = kScanAge,
+       .on_loss = "goes on with the Kinect alone; degraded when the robot has "
+                  "one",
+       .optional = true},
+      [this](const auto& scan, const auto&) {
+        rear_missing_ = false;
+        take(rear_, scan);
+      },
+      [this, fitted = rear.fitted] {
+        rear_missing_ = fitted || rear_.confidence;
+        report();
+      });
 }
 
 void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::LaserScan& scan) {
@@ -54,7 +65,7 @@ void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::L
   const runtime::Time stamp = wire::from_message(scan.header().stamp());
   if (std::chrono::abs(stamp - channel.rated) > kScanAge) channel.confidence->forget();
   channel.rated = stamp;
-  channel.confidence->rate(channel.ranges, config_.least_confidence, channel.intensities);
+  channel.confidence->rate(channel.ranges, channel.least_confidence, channel.intensities);
   if (&channel != &low_) {  // which is seen from where the Kinect's scan is
     tf2_msgs::msg::TFMessage place;
     place.transforms().push_back(channel.output->place(stamp));
@@ -69,7 +80,7 @@ void DepthPipelineSimComponent::take(Channel& channel, const sensor_msgs::msg::L
 void DepthPipelineSimComponent::report() {
   if (kinect_.input.fresh() == nullptr) {
     host_.health().set(without_kinect_, "no depth scan");
-  } else if (rear_.confidence && rear_.input.fresh() == nullptr) {
+  } else if (rear_missing_) {
     host_.health().set(HealthState::kDegraded, "rear camera: no depth scan");
   } else {
     host_.health().set(HealthState::kOk);

@@ -20,6 +20,7 @@ class DepthPipelineSimComponent final : public runtime::Component {
   struct Channel {
     std::optional<Confidence> confidence;
     std::size_t bearings = 0;
+    double least_confidence = 0.0;
     runtime::Time rated{};  ///< stamp of the newest scan
     std::vector<float> ranges, intensities;
     std::optional<ScanOutput> output;
@@ -34,6 +35,7 @@ class DepthPipelineSimComponent final : public runtime::Component {
   TiltControl tilt_;
   std::uint64_t& rejected_;
   Channel kinect_, low_, rear_;
+  bool rear_missing_ = false;  ///< the robot has one, which falls silent or never spoke
   runtime::Output<tf2_msgs::msg::TFMessage> frames_;
 };
 

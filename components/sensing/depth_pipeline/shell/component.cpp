@@ -19,6 +19,7 @@ constexpr auto kFuture = milliseconds(20);
 constexpr auto kAnswer = milliseconds(200);  // an order's way to the servo, and two readings
 constexpr auto kPitchGap = milliseconds(100);
 constexpr auto kTurn = milliseconds(2000);  // no turn of the servo takes longer
+constexpr double kElsewhere = 0.05;         // [rad] off where it shall look
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
 
 /// base_footprint_T_camera of the optical frame (x right, y down, z forward).
@@ -65,6 +66,7 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
   rear_.frame = "rear_camera_depth_optical";
   rear_.mount = rear.mount;
   rear_angle_ = rear.angle;
+  rear_fitted_ = rear.fitted;
 
   const ScanOutput::Frame kinect_level{kKinectLevel, kinect_.mount.x, false};
   const ScanOutput::Frame rear_level{kRearLevel, -rear_.mount.x, true};
@@ -95,9 +97,13 @@ DepthPipelineComponent::DepthPipelineComponent(runtime::Host& host)
   rear_.images = host.input(
       topics::kRearDepth,
       {.max_age = kImageAge,
-       .on_loss = "goes on with the Kinect alone; degraded when there was one",
+       .on_loss = "goes on with the Kinect alone; degraded when the robot has one",
        .optional = true},
-      [this](const auto&, const auto&) { take_image(rear_); }, [this] { report(); });
+      [this](const auto&, const auto&) { take_image(rear_); },
+      [this] {
+        if (rear_fitted_ && !rear_.due) rear_.due = host_.now();
+        report();
+      });
 }
 
 void DepthPipelineComponent::take_info(Camera& camera, const sensor_msgs::msg::CameraInfo& info) {
@@ -129,6 +135,22 @@ void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) 
   // One from the future would make all later ones old.
   if (stamp - host_.now() > kFuture || !servo_.add(stamp.time_since_epoch(), tilt.servo()))
     ++refused_tilts_;
+  if (!servo_.reaches(host_.now().time_since_epoch())) return;
+  if (std::abs(servo_.newest() - tilt_.wanted()) <= kElsewhere) {
+    elsewhere_.reset();
+  } else if (!elsewhere_) {
+    elsewhere_ = host_.now();
+  }
+}
+
+/// Its servo is stuck or held: it sees people, low things and stairs elsewhere than where they
+/// matter. Empty when it looks where it shall, or may still be on its way there.
+std::string DepthPipelineComponent::looks_elsewhere() const {
+  if (!elsewhere_ || host_.now() - *elsewhere_ <= kTurn) return {};
+  const auto degrees = [&](double servo) {
+    return std::to_string(std::lround(geometry::degrees(tilt_.servo().angle_of(servo)))) + " deg";
+  };
+  return "Kinect: looks " + degrees(servo_.newest()) + " up, not " + degrees(tilt_.wanted());
 }
 
 /// A turn that was ordered begins before any reading shows it: after the newest of them nobody
@@ -183,7 +205,7 @@ void DepthPipelineComponent::withhold(Camera& camera, std::uint64_t& counter,
   report();
 }
 
-/// Why this camera gives no scans; empty when it does, and for a camera that was never there.
+/// Why this camera gives no scans; empty when it does, and for one that the robot does not have.
 std::string DepthPipelineComponent::trouble(const Camera& camera) const {
   if (!camera.due) return {};
   const std::string name = std::string(camera.name) + ": ";
@@ -201,6 +223,8 @@ void DepthPipelineComponent::report() {
   if (std::string reason = trouble(kinect_); !reason.empty()) {
     host_.health().set(without_kinect_, std::move(reason));
   } else if (reason = trouble(rear_); !reason.empty()) {
+    host_.health().set(HealthState::kDegraded, std::move(reason));
+  } else if (reason = looks_elsewhere(); !reason.empty()) {
     host_.health().set(HealthState::kDegraded, std::move(reason));
   } else if (kinect_.delivered) {
     host_.health().set(HealthState::kOk);

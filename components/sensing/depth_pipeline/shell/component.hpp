@@ -57,6 +57,7 @@ class DepthPipelineComponent final : public runtime::Component {
   void publish(Camera& camera, const DepthView& view, runtime::Time stamp);
   std::optional<double> angle_at(Camera& camera, runtime::Time stamp);
   bool may_turn(runtime::Time stamp) const;
+  std::string looks_elsewhere() const;
   std::string trouble(const Camera& camera) const;
   void report();
 
@@ -69,6 +70,8 @@ class DepthPipelineComponent final : public runtime::Component {
   double rear_angle_ = 0.0;
   double far_ = 12.0;
   TiltHistory servo_;
+  std::optional<runtime::Time> elsewhere_;  ///< since then the Kinect is not where it shall be
+  bool rear_fitted_ = false;
   runtime::Time pitch_came_{};
   std::uint64_t& refused_tilts_;
   std::uint64_t& rejected_;

@@ -1,5 +1,7 @@
 #include "sensing/depth_pipeline/shell/parameters.hpp"
 
+#include "wire/low_scan.hpp"
+
 namespace usher::depth_pipeline {
 
 PipelineConfig read_pipeline(runtime::Parameters& p) {
@@ -47,6 +49,7 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
                                 "Ranges with less are left out.");
   c.lasting_confidence = p.number("lasting_confidence", "-", {0, 1}, c.lasting_confidence,
                                   "The same of low things, which the costmap remembers.");
+  c.low_from = wire::read_kinect_blind_range(p);
   c.least_measured = p.number("least_measured", "-", {0, 1}, c.least_measured,
                               "A camera that measures in a smaller share of its pixels is blind.");
   return c;
@@ -85,6 +88,8 @@ RearMount read_rear_mount(runtime::Parameters& p, double axle) {
                           "Rear camera above the axle's middle.");
   rear.mount.axle = axle;
   rear.mount.backward = true;
+  rear.fitted =
+      p.flag("robot.rear_camera.fitted", rear.fitted, "Whether the robot has a rear camera.");
   rear.angle = p.number("robot.rear_camera.angle", "rad", {-0.6, 0.6}, -0.26,
                         "Of the rear camera on the body, positive up.");
   return rear;

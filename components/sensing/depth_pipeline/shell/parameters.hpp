@@ -19,6 +19,7 @@ double read_kinect_mount_slope(runtime::Parameters& parameters);
 struct RearMount {
   Mount mount;
   double angle = 0.0;  ///< [rad] on the body, positive up
+  bool fitted = true;  ///< else its silence is nobody's trouble
 };
 RearMount read_rear_mount(runtime::Parameters& parameters, double axle);
 

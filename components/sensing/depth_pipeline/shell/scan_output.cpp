@@ -20,7 +20,7 @@ ScanOutput::ScanOutput(runtime::Host& host, const topics::Topic<sensor_msgs::msg
 
 void ScanOutput::publish(runtime::Time stamp, double angle_min, double increment,
                          std::span<const float> ranges, std::span<const float> intensities,
-                         std::span<const std::uint8_t> drops) {
+                         std::span<const Drop> drops) {
   message_.header(wire::header(stamp, frame_.name));
   message_.angle_min(static_cast<float>(angle_min));
   message_.angle_increment(static_cast<float>(increment));
@@ -29,7 +29,9 @@ void ScanOutput::publish(runtime::Time stamp, double angle_min, double increment
   message_.ranges().assign(ranges.begin(), ranges.end());
   message_.intensities().assign(intensities.begin(), intensities.end());
   for (std::size_t i = 0; i < drops.size(); ++i) {
-    if (drops[i] != 0) message_.intensities()[i] = wire::kDrop;
+    if (drops[i] == Drop::kNone) continue;
+    message_.intensities()[i] =
+        drops[i] == Drop::kBehindFloor ? wire::kDropBehindFloor : wire::kDrop;
   }
   output_.publish(message_);
 }

@@ -5,6 +5,7 @@
 
 #include "idl/topics.hpp"
 #include "runtime/api/host.hpp"
+#include "sensing/depth_pipeline/core/depth_pipeline.hpp"
 
 namespace usher::depth_pipeline {
 
@@ -20,10 +21,10 @@ class ScanOutput {
   ScanOutput(runtime::Host& host, const topics::Topic<sensor_msgs::msg::LaserScan>& topic,
              const Frame& frame, double max_range);
 
-  /// `drops`: of each bearing, not 0 where it ends at missing floor; empty: nowhere.
+  /// `drops`: of each bearing; empty: none.
   void publish(runtime::Time stamp, double angle_min, double increment,
                std::span<const float> ranges, std::span<const float> intensities,
-               std::span<const std::uint8_t> drops = {});
+               std::span<const Drop> drops = {});
 
   /// Where the scan's frame is.
   geometry_msgs::msg::TransformStamped place(runtime::Time stamp) const;

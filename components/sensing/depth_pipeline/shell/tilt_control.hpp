@@ -15,6 +15,8 @@ class TiltControl {
   explicit TiltControl(runtime::Host& host);
 
   const kinematics::TiltServo& servo() const { return servo_; }
+  /// [rad] Where the servo shall be for what the robot does, whoever holds it elsewhere.
+  double wanted() const { return wanted_; }
 
   struct Order {
     double servo = 0.0;   ///< [rad] where it shall go

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sensing/depth_pipeline/test/synthetic.hpp"
@@ -39,6 +40,56 @@ TEST(FloorLine, IsRefusedWhereThereIsNone) {
   EXPECT_THAT(find_floor_line(view_of(scene.camera, nothing), scene.camera).error(),
               HasSubstr("only 0 pixels"));
   EXPECT_FALSE(find_floor_line({640, 480, wall}, scene.camera).ok());
+}
+
+TEST(FloorLine, IsNotUnevenForAWallBehindItOrATableLegOnIt) {
+  SyntheticScene scene;
+  scene.end = 3.0;
+  scene.boxes = {{-0.02, 0.02, 0.7, 2.0, 2.04}};
+  scene.noise = 0.0005;
+  for (const double down : {0.0, 0.2, 0.35}) {
+    const auto image = scene.draw({.height = 0.9, .forward = 0.2, .down = down});
+    const auto floor = find_floor_line(view_of(scene.camera, image), scene.camera);
+    ASSERT_TRUE(floor.ok()) << floor.error();
+    EXPECT_LT(floor->residual, 0.004);
+  }
+}
+
+/// An image of a floor that is `height(ahead)` high, with noise.
+template <class Height>
+std::vector<std::uint16_t> draw_floor(const Intrinsics& camera, const CameraPose& pose,
+                                      Height&& height) {
+  std::vector<std::uint16_t> image;
+  Random random(42);
+  for (int row = 0; row < camera.height; ++row) {
+    const double y = (row - camera.cy) / camera.fy;
+    const double forward = std::cos(pose.down) - y * std::sin(pose.down);
+    const double fall = std::sin(pose.down) + y * std::cos(pose.down);
+    double depth = 0.5;
+    while (depth < 8.0 && pose.height - fall * depth > height(forward * depth)) depth += 1e-3;
+    for (int column = 0; column < camera.width; ++column) {
+      const double noisy = depth + 0.0005 * depth * depth * random.gaussian();
+      image.push_back(depth < 8.0 ? static_cast<std::uint16_t>(std::lround(noisy * 1e3))
+                                  : std::uint16_t{0});
+    }
+  }
+  return image;
+}
+
+TEST(FloorLine, OfAnUnevenFloorIsRefusedThoughMostOfItLiesOnALine) {
+  const Intrinsics camera;
+  const auto complaint = [&](auto&& height) {
+    const auto image = draw_floor(camera, {.height = 0.9, .forward = 0.2, .down = 0.35}, height);
+    const auto floor = find_floor_line(view_of(camera, image), camera);
+    return floor ? std::string() : floor.error();
+  };
+  const auto uneven = HasSubstr("the floor is uneven by");
+  EXPECT_EQ(complaint([](double) { return 0.0; }), "");
+  EXPECT_EQ(complaint([](double x) { return x > 2.0 && x < 2.1 ? 0.01 : 0.0; }), "") << "a bar";
+  EXPECT_THAT(complaint([](double x) { return std::max(0.0, 0.06 * (x - 1.5)); }), uneven);
+  EXPECT_THAT(complaint([](double x) { return 0.02 * std::sin(2.0 * geometry::kPi * x); }), uneven);
+  EXPECT_THAT(complaint([](double x) { return x > 2.2 ? 0.06 : 0.0; }), uneven);
+  EXPECT_THAT(complaint([](double x) { return x > 2.2 ? -0.06 : 0.0; }), uneven);
 }
 
 std::vector<TiltSample> sweep(double gain, double offset, double z, double slope) {

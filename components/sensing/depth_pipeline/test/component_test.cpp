@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr const char* kParameters =
     "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: 0.235 m, "
-    "confidence_frames: 1}";
+    "robot.rear_camera.fitted: false, confidence_frames: 1}";
 
 /// Images are written only for who reads them.
 class Viewer final : public runtime::Component {
@@ -127,7 +127,7 @@ class RatingDepthPipelineTest : public DepthPipelineComponentTest {
   RatingDepthPipelineTest()
       : DepthPipelineComponentTest(
             "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: "
-            "0.235 m}") {
+            "0.235 m, robot.rear_camera.fitted: false}") {
     tell_camera();
     live(100);
     stream(300);
@@ -509,6 +509,21 @@ TEST_F(DepthPipelineComponentTest, GoesOnWithAServoThatDoesNotGoWhereItIsOrdered
     stream(300);
   }
   EXPECT_GE(left(), 30U);
+  EXPECT_EQ(reason(), "") << "it may be on its way";
+}
+
+TEST_F(DepthPipelineComponentTest, SaysThatTheCameraLooksElsewhere) {
+  tell_camera();
+  live(100);
+  stream(1000);
+  servo_ = 0.2;  // pushed there, and stuck
+  stream(1500);
+  EXPECT_EQ(reason(), "") << "no turn needs longer than 2 s";
+  stream(1500);
+  EXPECT_EQ(reason(), "Kinect: looks 11 deg up, not -5 deg");
+  EXPECT_GT(left(), 60U) << "of what it sees there";
+  servo_ = -0.0873;
+  stream(500);
   EXPECT_EQ(reason(), "");
 }
 
@@ -616,7 +631,7 @@ class DepthPipelineSim : public testing::Test {
 
   TestHost host{runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim"),
                 "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, "
-                "robot.wheel_radius: 0.235 m}"};
+                "robot.wheel_radius: 0.235 m, robot.rear_camera.fitted: false}"};
   sensor_msgs::msg::LaserScan scan;
 };
 
@@ -653,6 +668,64 @@ TEST_F(DepthPipelineSim, TellsTheTimeBetweenTheScansOfEachCamera) {
   host.run_for(milliseconds(20));
   EXPECT_FLOAT_EQ(host.last(topics::kKinectScan).value().scan_time(), 1.0F / 30.0F);
   EXPECT_FLOAT_EQ(host.last(topics::kRearScan).value().scan_time(), 1.0F / 15.0F);
+}
+
+TEST_F(DepthPipelineSim, RemembersNothingLowThatStandsElsewhereInEachScan) {
+  for (int i = 0; i < 6; ++i) {
+    scan.header(wire::header(host.now(), "kinect_level"));
+    scan.ranges({1.0F, i % 2 == 0 ? 2.0F : 2.3F, -3.0F});
+    host.publish(topics::kSimKinectScan, scan);
+    host.publish(topics::kSimKinectScanLow, scan);
+    host.run_for(milliseconds(33));
+  }
+  EXPECT_FALSE(std::isnan(host.last(topics::kKinectScan)->ranges()[1]));
+  const auto low = host.last(topics::kKinectScanLow).value();
+  EXPECT_EQ(low.ranges()[0], 1.0F);
+  EXPECT_TRUE(std::isnan(low.ranges()[1]));
+  EXPECT_EQ(low.ranges()[2], -3.0F) << "nothing low up to there";
+}
+
+TEST(FittedRearCamera, IsMissedFromTheStart) {
+  for (const bool simulated : {false, true}) {
+    SCOPED_TRACE(simulated);
+    constexpr const char* kFitted =
+        "{robot.kinect.mount_x: 0.2 m, robot.kinect.mount_z: 0.665 m, robot.wheel_radius: 0.235 m}";
+    TestHost host(simulated
+                      ? runtime::component_factory<DepthPipelineSimComponent>("depth_pipeline_sim")
+                      : runtime::component_factory<DepthPipelineComponent>("depth_pipeline"),
+                  kFitted);
+    SyntheticScene scene;
+    sensor_msgs::msg::LaserScan scan;
+    scan.angle_increment(0.5F);
+    scan.angle_max(0.5F);
+    scan.range_max(5.0F);
+    scan.ranges({1.0F, 2.0F});
+    auto depth = scene.draw(camera_pose({}, -0.0873, 0.0));
+    host.publish(topics::kKinectInfo,
+                 wire::to_message(host.now(), "kinect_depth_optical", scene.camera));
+    for (int i = 0; i < 100; ++i) {
+      usher_msgs::msg::BaseStatus status;
+      status.header(wire::header(host.now(), "base_link"));
+      status.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+      host.publish(topics::kBaseStatus, status);
+      if (i % 5 == 0) {
+        usher_msgs::msg::CameraTilt tilt;
+        tilt.header(wire::header(host.now(), "base_link"));
+        tilt.servo(-0.0873);
+        host.publish(topics::kKinectTilt, tilt);
+      }
+      if (i % 3 == 0) {
+        scan.header(wire::header(host.now(), "level"));
+        host.publish(topics::kSimKinectScan, scan);
+        sensor_msgs::msg::Image image;
+        ++depth.back();
+        wire::to_message(host.now(), "kinect_depth_optical", view_of(scene.camera, depth), image);
+        host.publish(topics::kKinectDepth, image);
+      }
+      host.run_for(milliseconds(10));
+    }
+    EXPECT_THAT(host.heartbeat().reason(), HasSubstr("rear camera: no depth"));
+  }
 }
 
 TEST_F(DepthPipelineSim, HealthIsThatOfBothCameras) {

@@ -270,8 +270,9 @@ TEST(DepthPipeline, TellsADropFromALowThing) {
           pipeline.geometry().angle_min + pipeline.geometry().increment * static_cast<double>(i);
       const auto forward = static_cast<double>(ranges[i]) * std::cos(bearing);
       if (!std::isfinite(ranges[i]) || ranges[i] < 0.0F) {
-        EXPECT_EQ(view.low_drops[i], 0) << pit << " " << bearing;
-      } else if (view.low_drops[i] != 0) {
+        EXPECT_EQ(view.low_drops[i], Drop::kNone) << pit << " " << bearing;
+      } else if (view.low_drops[i] != Drop::kNone) {
+        EXPECT_EQ(view.low_drops[i], Drop::kBehindFloor) << pit << " " << bearing;
         EXPECT_NEAR(forward, 2.4, 0.1) << pit << " " << bearing;
         ++drops;
       } else {
@@ -285,7 +286,45 @@ TEST(DepthPipeline, TellsADropFromALowThing) {
     scene.edge = std::numeric_limits<double>::infinity();  // and no view keeps those of the last
     const auto whole = scene.draw(kPose);
     const auto next = pipeline.process(view_of(scene.camera, whole), kPose).value();
-    EXPECT_EQ(std::count(next.low_drops.begin(), next.low_drops.end(), 1), 0) << pit;
+    EXPECT_EQ(std::ranges::count(next.low_drops, Drop::kNone),
+              static_cast<std::ptrdiff_t>(next.low_drops.size()))
+        << pit;
+  }
+}
+
+TEST(DepthPipeline, FloorThatDarkTrousersHideIsNotMissingBehindFloor) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 30.0;
+  scene.boxes = {{-0.3, 0.3, 1.8, 1.9, 2.1}};
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  for (int row = 240; row < 424; ++row) {  // what of him is lower than 0.8 m measures nothing
+    for (int column = 0; column < 512; ++column) {
+      auto& depth = image[pixel(row, column)];
+      if (depth < 2000 && std::abs(column - 256) < 70) depth = depth > 1850 ? 0 : depth;
+    }
+  }
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_EQ(std::ranges::count(view.low_drops, Drop::kBehindFloor), 0);
+}
+
+TEST(DepthPipeline, TellsNothingOfLowThingsWhereItDoesNotLook) {
+  for (const double end : {30.0, 4.0}) {  // free, and a wall that would hide what is low
+    SyntheticScene scene;
+    scene.half_width = scene.end = end;
+    scene.boxes = {{0.3, 0.7, 0.3, 3.0, 3.2}};
+    DepthPipeline pipeline = make(scene);
+    for (const bool up : {false, true}) {
+      CameraPose pose = kPose;
+      pose.down = up ? -0.17 : kPose.down;  // the floor is in the image from 2.5 m on, from 1.3 m
+      const auto image = scene.draw(pose);
+      const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
+      const auto told = [](float range) { return range < 0.0F || std::isinf(range); };
+      const auto count = std::ranges::count_if(view.low->ranges, told);
+      EXPECT_EQ(count > 400, !up) << end;
+      EXPECT_EQ(count == 0, up) << end;
+      EXPECT_NEAR(at(pipeline, view.low->ranges, -0.17), 3.05, 0.1) << "what it sees, it tells";
+    }
   }
 }
 

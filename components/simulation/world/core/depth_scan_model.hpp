@@ -27,6 +27,7 @@ struct DepthScanModelConfig {
   double low_height = 0.45;      ///< [m]
   double low_gap = 0.4;          ///< [m]
   double drop_range = 4.0;       ///< [m]
+  double low_from = 1.8;         ///< [m] the floor must be in the image from there on
   double noise = 0.004;          ///< [m] standard deviation of a range, at 0 m
   double noise_growth = 0.0015;  ///< [1/m] and its growth with the square of the range
   double body_radius = 1.0;      ///< of a person, times the disc that the crowd uses
