@@ -122,9 +122,9 @@ TEST(Cones, FanOutAroundTheAxis) {
 TEST(Cones, AnEchoIsOnAllOfItsArcButANearOneOnTheAxis) {
   std::vector<float> ranges;
   const auto rays = cone_directions(-0.75, 0.5, 4, 0.28, 3);
-  spread_echoes(std::vector<float>{2.0F, 0.4F, kInfinity, NAN}, rays, {}, {}, ranges);
+  spread_echoes(std::vector<float>{1.7F, 0.4F, kInfinity, NAN}, rays, {}, {}, ranges);
   ASSERT_EQ(ranges.size(), 12U);
-  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(ranges[static_cast<std::size_t>(i)], 2.0F);
+  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(ranges[static_cast<std::size_t>(i)], 1.7F);
   EXPECT_TRUE(std::isnan(ranges[3]) && std::isnan(ranges[5]));
   EXPECT_FLOAT_EQ(ranges[4], 0.4F);
   for (std::size_t i = 6; i < 9; ++i) EXPECT_EQ(ranges[i], kInfinity);
@@ -165,10 +165,10 @@ TEST(Cones, TheEchoOfAPersonIsOnTheAxisAlone) {
   std::vector<float> ranges;
   const auto rays = cone_directions(-0.25, 0.5, 2, 0.28, 3);
   const std::vector<geometry::Point2> people{{5.0 + 1.8, 1.0 - 0.3}};
-  spread_echoes(std::vector<float>{1.8F, 1.8F}, rays, {5.0, 1.0, 0.0}, people, ranges);
+  spread_echoes(std::vector<float>{1.7F, 1.7F}, rays, {5.0, 1.0, 0.0}, people, ranges);
   EXPECT_TRUE(std::isnan(ranges[0]) && std::isnan(ranges[2]));
-  EXPECT_FLOAT_EQ(ranges[1], 1.8F);
-  EXPECT_FLOAT_EQ(ranges[3], 1.8F) << "nobody stands before the other one";
+  EXPECT_FLOAT_EQ(ranges[1], 1.7F);
+  EXPECT_FLOAT_EQ(ranges[3], 1.7F) << "nobody stands before the other one";
 }
 
 TEST(EchoCheck, NoEchoStaysNoEcho) {

@@ -673,7 +673,7 @@ TEST_F(DepthPipelineSim, TellsTheTimeBetweenTheScansOfEachCamera) {
 TEST_F(DepthPipelineSim, RemembersNothingLowThatStandsElsewhereInEachScan) {
   for (int i = 0; i < 6; ++i) {
     scan.header(wire::header(host.now(), "kinect_level"));
-    scan.ranges({1.0F, i % 2 == 0 ? 2.0F : 2.3F, -3.0F});
+    scan.ranges({1.0F, i % 2 == 0 ? 2.0F : 2.45F, -3.0F});
     host.publish(topics::kSimKinectScan, scan);
     host.publish(topics::kSimKinectScanLow, scan);
     host.run_for(milliseconds(33));

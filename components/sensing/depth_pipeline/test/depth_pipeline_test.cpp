@@ -321,7 +321,7 @@ TEST(DepthPipeline, TellsNothingOfLowThingsWhereItDoesNotLook) {
       const auto view = pipeline.process(view_of(scene.camera, image), pose).value();
       const auto told = [](float range) { return range < 0.0F || std::isinf(range); };
       const auto count = std::ranges::count_if(view.low->ranges, told);
-      EXPECT_EQ(count > 400, !up) << end;
+      EXPECT_EQ(count > 300, !up) << end << " " << count;
       EXPECT_EQ(count == 0, up) << end;
       EXPECT_NEAR(at(pipeline, view.low->ranges, -0.17), 3.05, 0.1) << "what it sees, it tells";
     }
