@@ -77,6 +77,11 @@ std::string own_rule(const Place& from, std::string_view name, bool test) {
     return {};
   }
   if (from.layer == "shell" && name.starts_with("interaction/phrases/shell/")) return {};
+  // Who grants and who tells of it judge the base by the same parameters.
+  if (from.room.starts_with("control/") && from.layer == "shell" &&
+      name == "drivers/base_obedience/shell/read_response.hpp") {
+    return {};
+  }
   if (from.room.starts_with("drivers/") && from.layer != "core" &&
       starts_with_any(name, {"drivers/base_obedience/shell/", "drivers/laser_scanner/shell/"})) {
     return {};

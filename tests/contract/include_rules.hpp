@@ -13,8 +13,9 @@ namespace usher::contract {
 /// The rules of the house: foundation <- core <- shell -> runtime, wire; a core knows no
 /// middleware, no component knows another one (base_obedience,
 /// laser_scanner, serial_frame, phrases and rendering are libraries; the shells of drivers share
-/// the first two's), only runtime/dds knows Fast DDS, nobody but its own shell includes the
-/// simulated world. operations/ may use every core and shell.
+/// the first two's, those of control the first one's reader of parameters), only runtime/dds knows
+/// Fast DDS, nobody but its own shell includes the simulated world. operations/ may use every core
+/// and shell.
 std::string include_breach(std::string_view path, std::string_view include);
 
 /// What a core or foundation file may not even mention: clocks, threads, random devices, the

@@ -67,6 +67,8 @@ TEST(IncludeRules, AllowTheRest) {
   allowed("drivers/segway_rmp/core/base.cpp", "\"drivers/base_obedience/core/base_obedience.hpp\"");
   allowed("drivers/p3dx/shell/base_driver.hpp",
           "\"drivers/base_obedience/shell/obedient_base.hpp\"");
+  allowed("control/supervisor/shell/component.cpp",
+          "\"drivers/base_obedience/shell/read_response.hpp\"");
   allowed("drivers/lms100/device_real/component.hpp",
           "\"drivers/laser_scanner/shell/scanner_line.hpp\"");
   allowed("drivers/lms100/core/session.hpp", "\"drivers/laser_scanner/core/scan.hpp\"");

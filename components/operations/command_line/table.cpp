@@ -1,6 +1,7 @@
 #include "operations/command_line/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace usher::operations {
@@ -66,6 +67,10 @@ std::string format(const char* pattern, double value) {
   char buffer[64];
   std::snprintf(buffer, sizeof(buffer), pattern, value);
   return buffer;
+}
+
+std::string figure(const char* pattern, double value) {
+  return std::isfinite(value) ? format(pattern, value) : "-";
 }
 
 }  // namespace usher::operations

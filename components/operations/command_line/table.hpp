@@ -22,5 +22,7 @@ class Table {
 
 /// printf for one value: format("%.2f", x).
 std::string format(const char* pattern, double value);
+/// The same for a table: "-" where there is none, as the mean of nothing.
+std::string figure(const char* pattern, double value);
 
 }  // namespace usher::operations

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -78,8 +77,8 @@ Result<Sums> drive(const ExperimentOptions& options, const Series& series, int s
     sums.speed += run.summary.mean_speed;
     for (const auto& pane : run.objects) {
       ++sums.panes;
-      sums.known += CourseRun::in_time(pane) ? 1 : 0;
-      if (!std::isfinite(pane.first_seen)) continue;
+      sums.known += pane.in_time() ? 1 : 0;
+      if (!pane.seen()) continue;
       ++sums.seen;
       sums.seen_from += pane.first_seen;
     }
@@ -92,7 +91,7 @@ Result<Sums> drive(const ExperimentOptions& options, const Series& series, int s
   table.add({series.name, format("%.0f", sums.runs), format("%.0f", sums.arrived),
              format("%.0f", sums.touched), format("%.0f", sums.contacts),
              format("%.2f", sums.speed / sums.runs), format("%.0f", sums.panes),
-             format("%.0f", sums.known), format("%.2f", sums.seen_from / sums.seen)});
+             format("%.0f", sums.known), figure("%.2f", sums.seen_from / sums.seen)});
   std::vector<const CourseRun*> drawn;
   drawn.reserve(kDrawn);
   for (const CourseRun& run : runs) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -38,10 +39,8 @@ struct CourseRun {
   std::uint64_t digest = 0;
   std::string complaints;
 
-  /// Whether the object was in the costmap each time that the robot was within its stopping
-  /// distance.
-  static bool in_time(const ObstacleJudge::Verdict& object) {
-    return object.too_late <= 0.0 && object.forgotten <= 0.0;
+  bool all_in_time() const {
+    return std::ranges::all_of(objects, &ObstacleJudge::Verdict::in_time);
   }
 };
 

@@ -56,9 +56,9 @@ struct Sums {
     costmaps += static_cast<double>(run.costmaps);
     false_share += run.false_share;
     simulated += run.simulated, wall += run.wall;
-    in_time += std::all_of(run.objects.begin(), run.objects.end(), CourseRun::in_time) ? 1 : 0;
+    in_time += run.all_in_time() ? 1 : 0;
     for (const auto& object : run.objects)
-      bar_in_time += object.name == kBar && CourseRun::in_time(object) ? 1 : 0;
+      bar_in_time += object.name == kBar && object.in_time() ? 1 : 0;
   }
   double mean_speed() const { return speed / runs; }
   double deviation() const {
@@ -69,7 +69,7 @@ struct Sums {
 /// One object over the runs of a series.
 struct Seen {
   double runs = 0, in_time = 0, sum = 0, count = 0, least = INFINITY, closest = INFINITY,
-         steepest = 0;
+         steepest = -INFINITY;
 };
 
 void add_objects(const std::string& series, const std::vector<CourseRun>& runs, Table& table) {
@@ -79,18 +79,18 @@ void add_objects(const std::string& series, const std::vector<CourseRun>& runs, 
     for (const CourseRun& run : runs) {
       const auto& object = run.objects[i];
       ++seen.runs;
-      seen.in_time += CourseRun::in_time(object) ? 1 : 0;
+      seen.in_time += object.in_time() ? 1 : 0;
       seen.closest = std::min(seen.closest, object.closest);
-      if (!std::isfinite(object.first_seen)) continue;
+      if (!object.seen()) continue;
       ++seen.count;
       seen.sum += object.first_seen;
       seen.least = std::min(seen.least, object.first_seen);
       seen.steepest = std::max(seen.steepest, std::abs(object.first_pitch));
     }
     table.add({series, runs.front().objects[i].name, format("%.0f", seen.runs),
-               format("%.0f", seen.in_time), format("%.2f", seen.sum / seen.count),
-               format("%.2f", seen.least), format("%.1f", geometry::degrees(seen.steepest)),
-               format("%.2f", seen.closest)});
+               format("%.0f", seen.in_time), figure("%.2f", seen.sum / seen.count),
+               figure("%.2f", seen.least), figure("%.1f", geometry::degrees(seen.steepest)),
+               figure("%.2f", seen.closest)});
   }
 }
 
@@ -99,8 +99,10 @@ std::string report(const std::string& name, const CourseRun& run) {
                      format(", %.0f contacts ", run.summary.contacts) + run.summary.contact_with +
                      "\n";
   for (const auto& object : run.objects) {
-    if (CourseRun::in_time(object)) continue;
-    text += "  " + object.name + format(": first seen from %.2f m", object.first_seen) +
+    if (object.in_time()) continue;
+    text += "  " + object.name +
+            (object.seen() ? format(": first seen from %.2f m", object.first_seen)
+                           : std::string(": never seen")) +
             format(", not in the costmap for %.2f s", object.too_late) +
             format(" and %.2f s later\n", object.forgotten);
   }
@@ -170,9 +172,7 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
           auto run = run_course(*deployment, case_of(i));
           if (!run) return Error{run.error()};
           const std::string name = std::string(series.name) + "-" + std::to_string(i + 1);
-          const bool fine =
-              run->arrived && run->summary.contacts == 0 &&
-              std::all_of(run->objects.begin(), run->objects.end(), CourseRun::in_time);
+          const bool fine = run->arrived && run->summary.contacts == 0 && run->all_in_time();
           if (!fine || i < kTrials) {
             if (auto saved = write_file(options.out + "/" + name + ".csv", run_csv(run->record));
                 !saved)
@@ -205,7 +205,7 @@ Result<ResultSheet> run_obstacle_course_experiment(const ExperimentOptions& opti
                 format("%.1f", sums.seconds / sums.runs), format("%.2f", sums.mean_speed()),
                 format("%.2f", sums.deviation()), format("%.1f", geometry::degrees(sums.steepest)),
                 format("%.0f", sums.in_time), format("%.0f", sums.bar_in_time),
-                format("%.4f", sums.false_scans / sums.scans),
+                figure("%.4f", sums.false_scans / sums.scans),
                 format("%.0f", sums.false_costmaps) + format(" of %.0f", sums.costmaps),
                 format("%.1f", sums.simulated / sums.wall)});
     const std::string key = "_" + std::string(series.name);

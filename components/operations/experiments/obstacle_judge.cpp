@@ -95,8 +95,9 @@ void ObstacleJudge::judge(std::size_t object, const geometry::Pose2& odom_T_worl
   outline.reserve(config_.footprint.size());
   for (const auto& corner : config_.footprint) outline.push_back(world_T_base * corner);
   const auto nearest = scenes_[object].nearest(outline, config_.height, kObjectReach);
-  if (nearest.thing < 0) return;
   Verdict& verdict = verdicts_[object];
+  verdict.judged = true;
+  if (nearest.thing < 0) return;
   verdict.closest = std::min(verdict.closest, nearest.distance);
   const geometry::Point2 place = odom_T_world * nearest.point;
   const grid::Cell middle = costs.geometry().cell_at(place);
@@ -110,13 +111,15 @@ void ObstacleJudge::judge(std::size_t object, const geometry::Pose2& odom_T_worl
                       (costs.geometry().center(cell) - place).norm() <= config_.near);
     }
   }
-  const bool seen = std::isfinite(verdict.first_seen);
+  const bool seen = verdict.seen();
   if (present && !seen) {
     verdict.first_seen = nearest.distance;
     verdict.first_pitch = pitch_;
   }
   const bool behind = (geometry::inverse(world_T_base) * nearest.point).x() < 0.0;
-  if (present || behind || v_ < kMoves || nearest.distance > config_.stopping_time * v_) return;
+  if (behind || nearest.distance > config_.stopping_time * std::max(0.0, v_)) return;
+  verdict.approached = true;
+  if (present || v_ < kMoves) return;
   (seen ? verdict.forgotten : verdict.too_late) += seconds;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -49,6 +50,15 @@ class ObstacleJudge {
     /// the costmap: before it was first seen, and later.
     double too_late = 0.0, forgotten = 0.0;
     double closest = std::numeric_limits<double>::infinity();  ///< [m] of the outline
+    bool judged = false;      ///< a costmap came that it could have been in
+    bool approached = false;  ///< the robot was within its stopping distance, and it not behind
+
+    bool seen() const { return std::isfinite(first_seen); }
+    /// Whether it was in the costmap each time that the robot was within its stopping distance.
+    /// What never was in it is in time only where the robot never got so near.
+    bool in_time() const {
+      return seen() ? too_late <= 0.0 && forgotten <= 0.0 : judged && !approached;
+    }
   };
 
   ObstacleJudge(const Config& config, std::vector<JudgedObject> objects,

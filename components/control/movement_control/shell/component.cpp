@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/base_obedience/shell/read_response.hpp"
 #include "wire/conversions.hpp"
 #include "wire/footprint.hpp"
 #include "wire/frames.hpp"
@@ -145,6 +146,7 @@ Parameters MovementControlComponent::read_parameters(runtime::Host& host) {
                                "once.");
   p.jerk.w = parameters.number("angular_jerk", "rad/s3", {0, 100}, p.jerk.w,
                                "Likewise when turning; 0 = at once.");
+  p.response = drive::read_response(parameters);
   p.whiskers_required =
       parameters.flag("whiskers_required", p.whiskers_required, "Without whiskers nothing moves.");
   return p;

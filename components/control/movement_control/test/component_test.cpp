@@ -234,6 +234,24 @@ TEST_F(SlowComponent, WantsNoMoreThanItsBaseObeys) {
   EXPECT_EQ(arc.w, 0.2) << "the narrower limit";
 }
 
+class WatchfulComponent : public Component {
+ protected:
+  WatchfulComponent()
+      : Component(
+            "robot.response.linear_threshold: 0.3 m/s\n"
+            "robot.response.linear_patience: 0.7 s\n"
+            "robot.response.angular_threshold: 0.6 rad/s\n"
+            "robot.response.angular_patience: 0.8 s\n") {}
+};
+
+TEST_F(WatchfulComponent, TellsTheThresholdsOfTheRobot) {
+  run(200);
+  EXPECT_FLOAT_EQ(status().velocity_threshold_linear(), 0.3F);
+  EXPECT_FLOAT_EQ(status().velocity_threshold_linear_time(), 0.7F);
+  EXPECT_FLOAT_EQ(status().velocity_threshold_angular(), 0.6F);
+  EXPECT_FLOAT_EQ(status().velocity_threshold_angular_time(), 0.8F);
+}
+
 TEST_F(Component, HearsNobodyBesideTheOneWhoWishesAlready) {
   run(3000);
   const auto meddle = [this] {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "drivers/base_obedience/shell/read_response.hpp"
 #include "wire/conversions.hpp"
 #include "wire/manifest.hpp"
 
@@ -132,27 +133,7 @@ Parameters SupervisorComponent::read_parameters(runtime::Host& host) {
       parameters.flag("emergency_stop_when_disobeying", p.emergency_stop_when_disobeying,
                       "Switch the motors of a base off that moves otherwise than it is told by "
                       "more than the thresholds.");
-  p.response.response =
-      time_from(parameters.number("response_time", "s", {0.2, 10}, in_seconds(p.response.response),
-                                  "Within this time the base gets from any command to any other."));
-  p.response.linear.threshold =
-      parameters.number("linear_threshold", "m/s", {0.05, 2}, p.response.linear.threshold,
-                        "Velocity error above which the base disobeys.");
-  p.response.linear.patience = time_from(parameters.number("linear_patience", "s", {0.1, 10},
-                                                           in_seconds(p.response.linear.patience),
-                                                           "How long that error may last."));
-  p.response.angular.threshold =
-      parameters.number("angular_threshold", "rad/s", {0.05, 3}, p.response.angular.threshold,
-                        "Turn rate error above which the base disobeys.");
-  p.response.angular.patience = time_from(parameters.number("angular_patience", "s", {0.1, 10},
-                                                            in_seconds(p.response.angular.patience),
-                                                            "How long that error may last."));
-  p.response.standing_linear =
-      parameters.number("standing_linear_threshold", "m/s", {0.05, 2}, p.response.standing_linear,
-                        "The same where only a standstill was commanded for the response time.");
-  p.response.standing_angular =
-      parameters.number("standing_angular_threshold", "rad/s", {0.05, 3},
-                        p.response.standing_angular, "The same for the turn rate.");
+  p.response = drive::read_response(parameters);
   return p;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <set>
 #include <sstream>
@@ -208,6 +209,28 @@ TEST_F(Component, TellsOfThePowerWhatTheBaseSaysOfItsBattery) {
   EXPECT_FALSE(hear(0.0F).ok_power());
   host.run_for(milliseconds(400));
   EXPECT_FALSE(host.last(topics::kSupervisorStatus)->connected_power()) << "the base is silent";
+}
+
+TEST(RobotsResponse, DecidesWhenItsBaseDisobeys) {
+  const auto disobeys = [](const std::string& response) {
+    runtime::TestHost host{runtime::component_factory<SupervisorComponent>("supervisor"),
+                           response + kManifest};
+    usher_msgs::msg::BaseStatus base;
+    base.state(usher_msgs::msg::BaseStatus_Constants::STATE_BALANCING);
+    base.v(0.4);  // though nobody commands it
+    for (int i = 0; i < 250; ++i) {
+      base.header(wire::header(host.now(), ""));
+      host.publish(topics::kBaseStatus, base);
+      host.run_for(milliseconds(20));
+    }
+    const auto faults = host.last(topics::kSupervisorStatus)->faults();
+    return std::any_of(faults.begin(), faults.end(), [](const auto& fault) {
+      return fault.cause().find("moves other than commanded") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(disobeys(""));
+  EXPECT_FALSE(disobeys("robot.response.standing_linear_threshold: 0.5 m/s\n"));
+  EXPECT_FALSE(disobeys("robot.response.linear_patience: 10 s\n"));
 }
 
 TEST(BaseDriver, IsWhoeverWritesItsStatusInTheManifest) {

@@ -67,6 +67,7 @@ void Link::take(const Sensors& sensors, Time now) {
                  range_of);
   reading_.whiskers = corners(sensors.whisker_mask);
   reading_.tilt = geometry::radians(sensors.tilt * 0.1);
+  faults_.take(reading_);
 }
 
 bool Link::take(std::span<const std::uint8_t> content, Time now) {
@@ -93,7 +94,10 @@ bool Link::take(std::span<const std::uint8_t> content, Time now) {
 
 std::string Link::reason(Time now) const {
   const std::string reason = dialogue_.reason(now, "no readings from the board");
-  return reason.empty() ? serial_frame::describe(dialogue_.status(), kTroubles) : reason;
+  if (!reason.empty()) return reason;
+  const std::string board = serial_frame::describe(dialogue_.status(), kTroubles);
+  const std::string sensors = faults_.reason();
+  return board + (board.empty() || sensors.empty() ? "" : ", ") + sensors;
 }
 
 }  // namespace usher::sensor_board

@@ -9,6 +9,7 @@
 
 #include "drivers/sensor_board/core/device.hpp"
 #include "drivers/sensor_board/core/protocol.hpp"
+#include "drivers/sensor_board/core/sonar_faults.hpp"
 #include "drivers/serial_frame/core/dialogue.hpp"
 
 namespace usher::sensor_board {
@@ -69,6 +70,7 @@ class Link {
   bool tilt_due_ = false;
   std::uint64_t told_after_ = 0;  ///< hellos: the board knows the tilt since then
   Reading reading_;
+  SonarFaults faults_;
 };
 
 }  // namespace usher::sensor_board

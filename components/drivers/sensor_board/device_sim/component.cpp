@@ -45,8 +45,11 @@ void SensorBoardSimComponent::take(const usher_sim_msgs::msg::SensorBoardReading
     const bool steady = reading.stamp < measure_at_ + kPeriod;
     measure_at_ = (steady ? measure_at_ : reading.stamp) + kPeriod;
   }
+  faults_.take(reading);
   publisher_.publish(reading);
-  host_.health().set(runtime::HealthState::kOk);
+  const std::string reason = faults_.reason();
+  host_.health().set(reason.empty() ? runtime::HealthState::kOk : runtime::HealthState::kDegraded,
+                     reason);
 }
 
 }  // namespace usher::sensor_board

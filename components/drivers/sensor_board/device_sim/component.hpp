@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/sensor_board/core/sonar_faults.hpp"
 #include "drivers/sensor_board/shell/board_publisher.hpp"
 
 namespace usher::sensor_board {
@@ -18,6 +19,7 @@ class SensorBoardSimComponent final : public runtime::Component {
   runtime::Output<usher_sim_msgs::msg::SensorBoardCommand> command_;
   BoardPublisher publisher_;
   Time measure_at_{};  ///< ranges and tilt are taken from then on
+  SonarFaults faults_;
   std::uint64_t& rejected_;
   runtime::Input<usher_sim_msgs::msg::SensorBoardReading> input_;
 };

@@ -126,6 +126,21 @@ TEST_F(DeviceReal, SaysWhatTroublesTheBoard) {
   EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
 }
 
+TEST_F(DeviceReal, SaysWhichSensorDoesNotAnswer) {
+  host.run_for(milliseconds(4000));
+  device->sensors.ranges_mm[2] = 0;
+  host.run_for(milliseconds(800));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+  host.run_for(milliseconds(500));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kDegraded));
+  EXPECT_EQ(host.heartbeat().reason(), "ultrasonic sensor 3 does not answer");
+  EXPECT_TRUE(std::isnan(host.last(topics::kUltrasonic)->ranges()[2]));
+  EXPECT_FLOAT_EQ(host.last(topics::kUltrasonic)->ranges()[1], 2.2F);
+  device->sensors.ranges_mm[2] = 0xFFFF;
+  host.run_for(milliseconds(200));
+  EXPECT_EQ(health(), std::uint8_t(HealthState::kOk)) << host.heartbeat().reason();
+}
+
 TEST_F(DeviceReal, PublishesNoRangesOfAWhisker) {
   host.run_for(milliseconds(4000));
   host.clear();

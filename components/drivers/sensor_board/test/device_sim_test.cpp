@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "drivers/sensor_board/device_sim/component.hpp"
 #include "runtime/testing/test_host.hpp"
 #include "wire/conversions.hpp"
@@ -40,6 +42,24 @@ TEST(DeviceSim, BelievesNoEchoAlone) {
   }
   for (const auto& scan : host.written(topics::kUltrasonic))
     EXPECT_FLOAT_EQ(scan.ranges()[2], 2.2F);
+}
+
+TEST(DeviceSim, SaysWhichSensorDoesNotAnswer) {
+  runtime::TestHost host{runtime::component_factory<SensorBoardSimComponent>("sensor_board_sim"),
+                         kRing};
+  const auto reason_after = [&host](int readings, float first) {
+    for (int i = 0; i < readings; ++i) {
+      usher_sim_msgs::msg::SensorBoardReading reading;
+      reading.header(wire::header(host.now(), "base_link"));
+      reading.ranges({first, 2.0F, 2.0F, 2.0F, 2.0F});
+      host.publish(topics::kSimSensorBoard, reading);
+      host.run_for(milliseconds(20));
+    }
+    return host.heartbeat().reason();
+  };
+  EXPECT_EQ(reason_after(40, std::nanf("")), "");
+  EXPECT_EQ(reason_after(25, std::nanf("")), "ultrasonic sensor 1 does not answer");
+  EXPECT_EQ(reason_after(10, HUGE_VALF), "") << "no echo is an answer";
 }
 
 }  // namespace

@@ -141,6 +141,25 @@ TEST(Link, ReportsTheBoardsTroubles) {
   EXPECT_EQ(bench.link.reason(bench.now()), "servo off, supply low");
 }
 
+TEST(Link, NamesASensorThatDoesNotAnswer) {
+  Bench bench;
+  bench.run(3000);
+  bench.sensors.ranges_mm[2] = 0;
+  bench.run(950);
+  EXPECT_EQ(bench.link.reason(bench.now()), "") << "not yet";
+  bench.run(50);
+  EXPECT_EQ(bench.link.reason(bench.now()), "ultrasonic sensor 3 does not answer");
+  bench.sensors.status = kSupplyLow;
+  bench.sensors.ranges_mm[4] = 0;
+  bench.run(1000);
+  EXPECT_EQ(bench.link.reason(bench.now()),
+            "supply low, ultrasonic sensor 3 does not answer, ultrasonic sensor 5 does not answer");
+  bench.sensors.status = 0;
+  bench.sensors.ranges_mm[2] = bench.sensors.ranges_mm[4] = 0xFFFF;
+  bench.run(50);
+  EXPECT_EQ(bench.link.reason(bench.now()), "") << "no echo is an answer";
+}
+
 TEST(Link, CountsMessagesWithoutSense) {
   Bench bench;
   bench.run(3000);

@@ -54,6 +54,7 @@ TEST_F(ObstacleJudgeTest, IsContentWithWhatIsKnownInTime) {
   EXPECT_EQ(verdict.first_pitch, 0.05);
   EXPECT_EQ(verdict.too_late, 0.0);
   EXPECT_EQ(verdict.forgotten, 0.0);
+  EXPECT_TRUE(verdict.in_time());
   EXPECT_EQ(judge.false_costmaps(), 0U);
 }
 
@@ -69,6 +70,21 @@ TEST_F(ObstacleJudgeTest, CountsWhatIsKnownTooLateOrForgottenWithinTheStoppingDi
   EXPECT_NEAR(verdict.too_late, 0.2, 1e-6);
   EXPECT_NEAR(verdict.forgotten, 0.1, 1e-6);
   EXPECT_NEAR(verdict.first_seen, 0.4, 1e-6);
+  EXPECT_FALSE(verdict.in_time());
+}
+
+TEST_F(ObstacleJudgeTest, WhatWasNeverSeenIsInTimeOnlyWhereTheRobotNeverGotNear) {
+  ObstacleJudge judge = make();
+  EXPECT_FALSE(judge.verdicts().front().in_time()) << "nobody looked";
+  step(judge, 0.5, 0.6, {});
+  EXPECT_TRUE(judge.verdicts().front().in_time());
+  step(judge, 2.4, 0.0, {});
+  EXPECT_TRUE(judge.verdicts().front().in_time()) << "it stands before it";
+  step(judge, 2.68, 0.04, {});
+  const auto& verdict = judge.verdicts().front();
+  EXPECT_FALSE(verdict.seen());
+  EXPECT_EQ(verdict.too_late, 0.0);
+  EXPECT_FALSE(verdict.in_time()) << "it creeps up to it";
 }
 
 TEST_F(ObstacleJudgeTest, ForgivesWhatLiesBehindAndWhoStands) {
