@@ -189,15 +189,17 @@ void Costmap::set_people(std::span<const geometry::Point2> people) {
   touch(social_.set(people, raster_));
 }
 
-void Costmap::forget(double blind) {
-  CellRect kept;
-  if (base_ && blind > 0.0) {
-    const grid::Cell low = raster_.cell_at(base_->x - blind, base_->y - blind);
-    const grid::Cell high = raster_.cell_at(base_->x + blind, base_->y + blind);
-    kept = {low.x, low.y, high.x + 1, high.y + 1};
-  }
+void Costmap::forget() {
   for (ObstacleLayer& layer : layers_) {
-    if (!layer.config().lasting) touch(layer.forget(kept));
+    const double range = layer.config().kept_range;
+    if (std::isinf(range)) continue;
+    CellRect kept;
+    if (base_ && range > 0.0) {
+      const grid::Cell low = raster_.cell_at(base_->x - range, base_->y - range);
+      const grid::Cell high = raster_.cell_at(base_->x + range, base_->y + range);
+      kept = {low.x, low.y, high.x + 1, high.y + 1};
+    }
+    touch(layer.forget(kept));
   }
 }
 

@@ -77,9 +77,9 @@ class Costmap {
   Status replace(LayerId layer, std::span<const geometry::Point2> points, double stamp);
   /// Who gets room, in the costmap's frame, in the place of those before.
   void set_people(std::span<const geometry::Point2> people);
-  /// Forgets what the sensors saw and would see again (a recovery). People stay, obstacles nearer
-  /// to the robot than `blind` [m] (in x and y of the costmap), and layers that are `lasting`.
-  void forget(double blind = 0.0);
+  /// Forgets what the sensors saw and would see again (a recovery). People stay, and the obstacles
+  /// of each layer within its kept_range.
+  void forget();
 
   /// Whether a layer has two obstacles within `reach` [m] of a point (in x and y) that are not of
   /// the static map, which has none within kMapped of them: something that may walk away.

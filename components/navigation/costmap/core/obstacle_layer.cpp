@@ -59,6 +59,11 @@ Status ObstacleLayer::check(const ObstacleLayerConfig& config, double resolution
     return Error{"layer " + config.name + ": thickness must be in [0, 1] m, got " +
                  meters(config.thickness)};
   }
+  if (!(config.kept_range >= 0.0) ||
+      (std::isfinite(config.kept_range) && config.kept_range > kFarthestCoordinate)) {
+    return Error{"layer " + config.name + ": kept range must be in [0, 1e5] m or infinite, got " +
+                 meters(config.kept_range)};
+  }
   if (!(config.persistence >= 0.0 && config.persistence <= kLongestPersistence)) {
     return Error{"layer " + config.name + ": persistence must be in [0, 86400] s, got " +
                  std::to_string(config.persistence) + " s"};

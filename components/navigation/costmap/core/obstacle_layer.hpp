@@ -48,7 +48,9 @@ struct ObstacleLayerConfig {
   /// nothing of it. For a scanner with beams close together, which is blind near it: what stands
   /// there fills a part of its cell only, and the beams that miss it by a hair cross the rest.
   bool clears_only_what_all_beams_pass = false;
-  bool lasting = false;            ///< a recovery keeps it: its sensor looks over what lies near
+  /// [m] {0..1e5, infinity: all} of the robot, in x and y: a recovery keeps what is so near, since
+  /// its sensor may not see it again.
+  double kept_range = 0.0;
   bool footprint_clearing = true;  ///< where the robot stands there is no obstacle
   /// What this layer saw free hides an obstacle of the static map (thesis 5.2.1). Switch it off for
   /// a sensor that sees through mapped obstacles, for example a laser behind mapped glass.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "navigation/costmap/core/echo_check.hpp"
 #include "navigation/costmap/core/low_things.hpp"
@@ -126,14 +127,15 @@ void CostmapComponent::read_settings(runtime::Parameters& parameters) {
                         "Obstacles that are not seen again are forgotten; 0 = never.");
   local_persistence_ = parameters.number("local_persistence", "s", {0, 600}, 60.0,
                                          "The same in the window around the robot.");
-  blind_range_ = parameters.number(
-      "blind_range", "m", {0, 2}, 0.8,
+  laser_settings_.kept_range = parameters.number(
+      "blind_range", "m", {0, 2}, 0.6,
       "Nearer than this to the axle no sensor may see again what it saw: a recovery keeps it.");
   ultrasonic_settings_.name = "ultrasonic";
   ultrasonic_settings_.max_obstacle_range = parameters.number(
       "ultrasonic_obstacle_range", "m", {0.2, 6}, 2.5, "Farther ultrasonic echoes mark nothing.");
   ultrasonic_settings_.max_raytrace_range = ultrasonic_settings_.max_obstacle_range;
   ultrasonic_settings_.overrules_static_map = false;
+  ultrasonic_settings_.kept_range = laser_settings_.kept_range;
   ultrasonic_settings_.persistence = parameters.number("ultrasonic_persistence", "s", {0, 600}, 5.0,
                                                        "The same for the ultrasonic sensors.");
   read_depth_settings(parameters);
@@ -196,8 +198,8 @@ void CostmapComponent::listen() {
                          [this](const auto& request, const auto&) {
                            if (request.id() == last_request_) return;
                            last_request_ = request.id();
-                           if (local_.costs) local_.costs->forget(blind_range_);
-                           if (global_.costs) global_.costs->forget(blind_range_);
+                           if (local_.costs) local_.costs->forget();
+                           if (global_.costs) global_.costs->forget();
                          });
 }
 
@@ -213,6 +215,9 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
   depth_near_range_ = parameters.number(
       "depth_near_range", "m", {0, 2}, 0.6,
       "Nearer than this the Kinect measures nothing: what is marked there stays.");
+  depth_settings_.kept_range =
+      parameters.number("depth_kept_range", "m", {0, 2}, 0.8,
+                        "The same as blind_range for what the Kinect saw, ahead of the axle.");
   low_blind_range_ = wire::read_kinect_blind_range(parameters);
   rear_blind_range_ = parameters.number(
       "rear_blind_range", "m", {0, 4}, 1.2,
@@ -274,7 +279,7 @@ void CostmapComponent::add_layers(Map& map) {
   if (&map == &local_) depth.persistence = local_persistence_;
   depth.min_raytrace_range = depth_near_range_;
   map.depth = add(depth);
-  depth.lasting = true;
+  depth.kept_range = std::numeric_limits<double>::infinity();
   depth.name = "rear";
   depth.min_raytrace_range = rear_blind_range_;
   map.rear = add(depth);
@@ -290,6 +295,7 @@ void CostmapComponent::add_layers(Map& map) {
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
   whiskers.overrules_static_map = false;
+  whiskers.kept_range = laser_settings_.kept_range;
   map.whiskers = add(whiskers);
 }
 

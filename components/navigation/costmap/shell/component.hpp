@@ -78,8 +78,7 @@ class CostmapComponent final : public runtime::Component {
   geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
-  double blind_range_ = 0.0, depth_near_range_ = 0.0, low_blind_range_ = 0.0,
-         rear_blind_range_ = 0.0;
+  double depth_near_range_ = 0.0, low_blind_range_ = 0.0, rear_blind_range_ = 0.0;
   double low_thickness_ = 0.0, low_persistence_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;

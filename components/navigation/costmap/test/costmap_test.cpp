@@ -261,7 +261,7 @@ TEST(Costmap, ForgetsNothingThatNoSensorWouldSeeAgain) {
   const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
   ObstacleLayerConfig config = layer_config("low");
   config.min_raytrace_range = 1.8;
-  config.lasting = true;
+  config.kept_range = std::numeric_limits<double>::infinity();
   const auto low = costmap.add_obstacle_layer(config).value();
   see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
   see(costmap, low, {0.02, 0.02, 0.0}, 1.5F);
@@ -272,15 +272,17 @@ TEST(Costmap, ForgetsNothingThatNoSensorWouldSeeAgain) {
 }
 
 TEST(Costmap, ForgetsNothingThatIsTooNearToBeSeenAgain) {
+  ObstacleLayerConfig config = layer_config("laser");
+  config.kept_range = 0.6;
   Costmap costmap = Costmap::make(rolling_config()).value();
-  const auto laser = costmap.add_obstacle_layer(layer_config("laser")).value();
+  const auto laser = costmap.add_obstacle_layer(config).value();
   see(costmap, laser, {0.02, 0.02, 0.0}, 1.0F);
   ASSERT_TRUE(costmap.move_to({0.5, 0.02, 0.0}).ok());
-  costmap.forget(0.6);
+  costmap.forget();
   costmap.update(0.2);
   EXPECT_EQ(costmap.cost_at({1.02, 0.02}), kLethalCost);
   ASSERT_TRUE(costmap.move_to({0.3, 0.02, 0.0}).ok());
-  costmap.forget(0.6);
+  costmap.forget();
   costmap.update(0.3);
   EXPECT_NE(costmap.cost_at({1.02, 0.02}), kLethalCost) << "far enough away again";
 }

@@ -351,6 +351,9 @@ TEST(ObstacleLayer, RefusesAConfigThatCannotBe) {
   EXPECT_NE(error_of([](auto& c) { c.max_raytrace_range = 2000.0; }), "")
       << "longer than 32767 cells";
   EXPECT_NE(error_of([](auto& c) { c.min_raytrace_range = -0.1; }), "");
+  EXPECT_NE(error_of([](auto& c) { c.kept_range = -0.1; }), "");
+  EXPECT_NE(error_of([](auto& c) { c.kept_range = std::nan(""); }), "");
+  EXPECT_NE(error_of([](auto& c) { c.kept_range = 1e6; }), "");
   EXPECT_EQ(error_of([](auto& c) { c.persistence = -1.0; }),
             "layer laser: persistence must be in [0, 86400] s, got -1.000000 s");
 }
