@@ -68,6 +68,14 @@ Status check(const CostmapConfig& config, const geometry::Footprint& footprint) 
   return check(config.social);
 }
 
+bool has_obstacle(const grid::Grid<std::uint8_t>& states, const CellRect& cells) {
+  for (int y = cells.y0; y < cells.y1; ++y) {
+    const std::uint8_t* const row = states.row(y);
+    if (std::find(row + cells.x0, row + cells.x1, kSeenOccupied) != row + cells.x1) return true;
+  }
+  return false;
+}
+
 constexpr int kLeastCells = 2;  // of a thing: a single one may be left of what has gone
 
 void raise_to(const std::uint8_t* __restrict states, int count, std::uint8_t* __restrict combined) {
@@ -209,25 +217,28 @@ bool Costmap::unmapped_beside(LayerId layer, const geometry::Point2& point, doub
   return unmapped_beside(layers_[layer], raster_.cell_at(point.x(), point.y()), reach);
 }
 
+/// Cells within so many meters, in x and y.
+CellRect Costmap::around(grid::Cell cell, double reach) const {
+  const auto cells = static_cast<int>(std::lround(reach * raster_.cells_per_meter));
+  return CellRect{cell.x, cell.y, cell.x + 1, cell.y + 1}.grown(cells).within(raster_.all());
+}
+
+bool Costmap::beside(LayerId layer, const geometry::Point2& point, double reach) const {
+  assert(layer < layers_.size());
+  if (!reachable(point.x(), point.y())) return false;
+  const ObstacleLayer& one = layers_[layer];
+  const CellRect near = around(raster_.cell_at(point.x(), point.y()), reach).within(one.seen());
+  return has_obstacle(one.states(), near);
+}
+
 bool Costmap::unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const {
-  const auto around = [&](grid::Cell middle, double distance, const CellRect& limits) {
-    const auto cells = static_cast<int>(std::lround(distance * raster_.cells_per_meter));
-    return CellRect{middle.x, middle.y, middle.x + 1, middle.y + 1}.grown(cells).within(limits);
-  };
-  const auto mapped = [&](grid::Cell place) {
-    const CellRect near = around(place, kMapped, raster_.all());
-    for (int y = near.y0; y < near.y1; ++y) {
-      const std::uint8_t* const row = static_states_.row(y);
-      if (std::find(row + near.x0, row + near.x1, kSeenOccupied) != row + near.x1) return true;
-    }
-    return false;
-  };
-  const CellRect near = around(cell, reach, layer.seen());
+  const CellRect near = around(cell, reach).within(layer.seen());
   int found = 0;
   for (int y = near.y0; y < near.y1; ++y) {
     for (int x = near.x0; x < near.x1; ++x) {
-      if (layer.states().row(y)[x] == kSeenOccupied && !mapped({x, y})) ++found;
-      if (found == kLeastCells) return true;
+      const bool unmapped = layer.states().row(y)[x] == kSeenOccupied &&
+                            !has_obstacle(static_states_, around({x, y}, kMapped));
+      if (unmapped && ++found == kLeastCells) return true;
     }
   }
   return false;

@@ -16,19 +16,19 @@ void drop_what_people_hide(std::span<const geometry::Point2> directions,
                            const geometry::Pose2& window_T_camera,
                            std::span<const geometry::Point2> people, std::span<float> ranges);
 
-/// Splits what is low, `ranges` [m], one per direction: `is_foot(bearing, place in the sensor's
-/// frame)` says what may be somebody's foot. Feet have -r in `alone`, the others in `feet`: nothing
-/// of that kind is up to there (negative_clears).
-template <class IsFoot>
-void split_feet(std::span<const float> ranges, std::span<const geometry::Point2> directions,
-                const IsFoot& is_foot, std::vector<float>& alone, std::vector<float>& feet) {
-  alone.assign(ranges.begin(), ranges.end());
-  feet.assign(ranges.begin(), ranges.end());
+/// Splits a scan, `ranges` [m], one per direction, between two layers: `elsewhere(bearing, place in
+/// the sensor's frame)` says what is for the other one. What is for the other one is -r in each:
+/// nothing of its own is up to there (negative_clears).
+template <class Elsewhere>
+void split_ranges(std::span<const float> ranges, std::span<const geometry::Point2> directions,
+                  const Elsewhere& elsewhere, std::vector<float>& own, std::vector<float>& other) {
+  own.assign(ranges.begin(), ranges.end());
+  other.assign(ranges.begin(), ranges.end());
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const float range = ranges[i];
     if (!std::isfinite(range) || range <= 0.0F) continue;
     const geometry::Point2 place(static_cast<double>(range) * directions[i]);
-    (is_foot(i, place) ? alone : feet)[i] = -range;
+    (elsewhere(i, place) ? own : other)[i] = -range;
   }
 }
 

@@ -29,6 +29,8 @@ constexpr double kMaybeThere = 2.0;    // [s] who passes beside the cameras is n
 constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
+constexpr double kApproach = 0.6;      // [m] before it is too near to be measured, a thing is seen
+constexpr double kOfTheLaser = 0.3;    // [m] from what it sees: another part of the same
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
 constexpr auto kContactsKept = std::chrono::seconds(60);
 constexpr std::size_t kMostContacts = 64;
@@ -214,10 +216,11 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
   depth_settings_.persistence = laser_settings_.persistence;
   depth_near_range_ = parameters.number(
       "depth_near_range", "m", {0, 2}, 0.6,
-      "Nearer than this the Kinect measures nothing: what is marked there stays.");
-  depth_settings_.kept_range =
+      "Nearer than this the Kinect measures nothing: what only it saw stays there.");
+  depth_settings_.kept_range = laser_settings_.kept_range;
+  depth_kept_range_ =
       parameters.number("depth_kept_range", "m", {0, 2}, 0.8,
-                        "The same as blind_range for what the Kinect saw, ahead of the axle.");
+                        "The same as blind_range for what only the Kinect saw, ahead of the axle.");
   low_blind_range_ = wire::read_kinect_blind_range(parameters);
   rear_blind_range_ = parameters.number(
       "rear_blind_range", "m", {0, 4}, 1.2,
@@ -277,8 +280,15 @@ void CostmapComponent::add_layers(Map& map) {
   // that are cleared from afar only.
   ObstacleLayerConfig depth = depth_settings_;
   if (&map == &local_) depth.persistence = local_persistence_;
-  depth.min_raytrace_range = depth_near_range_;
   map.depth = add(depth);
+  depth.name = "above";
+  depth.min_raytrace_range = depth_near_range_;
+  depth.max_obstacle_range = depth_near_range_ + kApproach;
+  depth.kept_range = depth_kept_range_;
+  depth.negative_clears = true;
+  map.above = add(depth);
+  depth.max_obstacle_range = depth_settings_.max_obstacle_range;
+  depth.negative_clears = false;
   depth.kept_range = std::numeric_limits<double>::infinity();
   depth.name = "rear";
   depth.min_raytrace_range = rear_blind_range_;
@@ -391,9 +401,13 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       seen.ranges = cone_ranges_;
       seen.clears = false;
     }
-    if (!(layer == &Map::low ? take_low(map, scan, seen) : observe(map, map.*layer, seen))) return;
+    const bool taken = layer == &Map::low     ? take_low(map, scan, seen)
+                       : layer == &Map::depth ? take_depth(map, seen)
+                                              : observe(map, map.*layer, seen);
+    if (!taken) return;
     if (layer == &Map::rear || layer == &Map::depth)
-      forget_who_left(map, map.*layer, seen, window_T_base * geometry::inverse(*odom_T_base));
+      forget_who_left(map, layer == &Map::rear ? map.rear : map.above, seen,
+                      window_T_base * geometry::inverse(*odom_T_base));
     if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
     if (&map == &local_ && layer == &Map::laser && effective >= map.newest) laser_stamp_ = stamp;
     // The local costs are as old as their laser scan, whatever else was seen since.
@@ -407,6 +421,21 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
+/// What the Kinect alone sees, over the laser's plane, stays where it is too near to be measured.
+/// Beside what the laser sees it does not: that is in the laser's layer, and somebody's body in
+/// both goes with him.
+bool CostmapComponent::take_depth(Map& map, RangeObservation seen) {
+  if (!observe(map, map.depth, seen)) return false;
+  const double farthest = depth_near_range_ + kApproach;
+  const auto of_the_laser = [&](std::size_t bearing, const geometry::Point2& place) {
+    return static_cast<double>(seen.ranges[bearing]) > farthest ||
+           map.costs->beside(map.laser, seen.sensor * place, kOfTheLaser);
+  };
+  split_ranges(seen.ranges, seen.directions, of_the_laser, own_ranges_, other_ranges_);
+  seen.ranges = own_ranges_;
+  return observe(map, map.above, seen);
+}
+
 /// What is low beside something that the laser sees and the map has not may be a foot of it: that
 /// is remembered as long as the laser sees such a thing there. Where floor is missing is nobody's
 /// foot. False when a layer refused the scan.
@@ -416,10 +445,10 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
     return !wire::is_drop(scan, bearing) &&
            map.costs->unmapped_beside(map.laser, seen.sensor * place, kFoot);
   };
-  split_feet(lasting_ranges_, seen.directions, is_foot, alone_ranges_, feet_ranges_);
-  seen.ranges = feet_ranges_;
+  split_ranges(lasting_ranges_, seen.directions, is_foot, own_ranges_, other_ranges_);
+  seen.ranges = other_ranges_;
   if (!observe(map, map.feet, seen)) return false;
-  seen.ranges = alone_ranges_;
+  seen.ranges = own_ranges_;
   return observe(map, map.low, seen);
 }
 

@@ -23,8 +23,8 @@ class CostmapComponent final : public runtime::Component {
   struct Map {
     const char* frame = "";
     std::optional<Costmap> costs;
-    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, low = 0, feet = 0,
-                     rear = 0;
+    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, above = 0, low = 0,
+                     feet = 0, rear = 0;
     bool static_known = false;
     /// When the newest data in it was true, an observation or the map, on this host's clock:
     /// readers age the costs by it, and the layers what they remember.
@@ -59,6 +59,7 @@ class CostmapComponent final : public runtime::Component {
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
+  bool take_depth(Map& map, RangeObservation seen);
   bool take_low(Map& map, const sensor_msgs::msg::LaserScan& scan, RangeObservation seen);
   void forget_who_left(Map& map, Costmap::LayerId layer, const RangeObservation& seen,
                        const geometry::Pose2& window_T_odom);
@@ -78,7 +79,8 @@ class CostmapComponent final : public runtime::Component {
   geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
-  double depth_near_range_ = 0.0, low_blind_range_ = 0.0, rear_blind_range_ = 0.0;
+  double depth_near_range_ = 0.0, depth_kept_range_ = 0.0, low_blind_range_ = 0.0,
+         rear_blind_range_ = 0.0;
   double low_thickness_ = 0.0, low_persistence_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;
@@ -86,7 +88,7 @@ class CostmapComponent final : public runtime::Component {
 
   double echo_half_cone_, echo_tolerance_, ultrasonic_cone_, clearing_cone_;
   std::vector<float> echoes_, cone_ranges_, middle_ranges_, lasting_ranges_;
-  std::vector<float> alone_ranges_, feet_ranges_;  ///< of what is low
+  std::vector<float> own_ranges_, other_ranges_;   ///< of a scan that two layers share
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
   std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before

@@ -345,6 +345,22 @@ TEST_F(Component, KeepsWhatIsTooNearForTheKinectToMeasure) {
   EXPECT_LT(local_cost(1.4, 0.0), kLethalCost) << "gone, as is seen from afar";
 }
 
+TEST_F(Component, ForgetsWhoIsTooNearForTheKinectWithTheLaser) {
+  give_map();
+  for (int i = 0; i < 5; ++i) {
+    look(0.6F, 40);
+    host.publish(topics::kKinectScan, scan("laser", 0.52F));
+  }
+  look(0.6F, 100);
+  EXPECT_EQ(local_cost(0.54, 0.0), kLethalCost);
+  for (int i = 0; i < 5; ++i) {
+    look(3.5F, 40);
+    host.publish(topics::kKinectScan, scan("laser", kNothing));
+  }
+  look(3.5F, 100);
+  EXPECT_LT(local_cost(0.54, 0.0), kLethalCost) << "the laser saw his legs, and sees none now";
+}
+
 TEST_F(Component, ForgetsWhereSomebodyStoodBeforeTheKinectWhoWalksOn) {
   laser_range = 3.5F;
   give_map();

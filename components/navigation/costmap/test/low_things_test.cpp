@@ -35,7 +35,7 @@ TEST(LowThings, AFootIsNothingLowUpToThereAndTheOthersAreNoFeet) {
   const std::vector<float> ranges{2.0F, 1.0F, nan, infinity, -3.0F};
   std::vector<float> alone, feet;
   std::vector<std::size_t> asked;
-  split_feet(
+  split_ranges(
       ranges, directions,
       [&](std::size_t bearing, const geometry::Point2& place) {
         asked.push_back(bearing);
