@@ -15,10 +15,11 @@ inline constexpr float kDropBehindFloor = 3.0F;
 
 /// A scan without intensities tells of no drops.
 inline bool is_drop(const sensor_msgs::msg::LaserScan& low, std::size_t bearing) {
-  return bearing < low.intensities().size() && low.intensities()[bearing] >= kDrop;
+  return bearing < low.intensities().size() &&
+         (low.intensities()[bearing] == kDrop || low.intensities()[bearing] == kDropBehindFloor);
 }
 inline bool is_drop_behind_floor(const sensor_msgs::msg::LaserScan& low, std::size_t bearing) {
-  return is_drop(low, bearing) && low.intensities()[bearing] == kDropBehindFloor;
+  return bearing < low.intensities().size() && low.intensities()[bearing] == kDropBehindFloor;
 }
 
 /// [m] Nearer than this the Kinect looks over low things: an image that does not show the floor

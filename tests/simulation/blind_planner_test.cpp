@@ -42,15 +42,17 @@ walls:
 obstacles:
   - )";
 constexpr const char* kLowBox = "{name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}";
+constexpr const char* kBench = "{name: bench, box: [6.0, 3.0, 0.0, 0.4, 1.6], height: [0.4, 0.5]}";
 constexpr const char* kBelt = "{name: belt, box: [6.0, 3.0, 0.0, 0.1, 1.6], height: [0.8, 0.9]}";
 
-// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees, low
-// and of a barrier, which leaves its image while the robot rolls up to it.
+// What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees, low,
+// over the laser, of a barrier, all of which leave its image while the robot rolls up to them.
 const Way kWays[] = {
     {"Wall", "marvin-sim.yaml", "[4.5, 7.0, 1.5708]", "library", 1.4, nullptr, 3.7, false},
     {"Glass", "glass-corridor.yaml", "[1.0, 0.6, 0.0]", "goal", 1.0, nullptr, 3.49, true},
     {"LowBox", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kLowBox, 4.8, false},
     {"Belt", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kBelt, 4.95, false},
+    {"Bench", "obstacle-course.yaml", "[1.0, 3.0, 0.0]", "goal", 1.0, kBench, 4.8, false},
     {"SlowlyABelt", "obstacle-course.yaml", "[3.0, 3.0, 0.0]", "goal", 0.3, kBelt, 2.95, false},
 };
 

@@ -214,13 +214,11 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
       parameters.number("depth_clear_range", "m", {0.5, 8}, 4.5, "Depth cameras clear no farther.");
   depth_settings_.overrules_static_map = false;
   depth_settings_.persistence = laser_settings_.persistence;
-  depth_near_range_ = parameters.number(
-      "depth_near_range", "m", {0, 2}, 0.6,
-      "Nearer than this the Kinect measures nothing: what only it saw stays there.");
   depth_settings_.kept_range = laser_settings_.kept_range;
-  depth_kept_range_ =
-      parameters.number("depth_kept_range", "m", {0, 2}, 0.8,
-                        "The same as blind_range for what only the Kinect saw, ahead of the axle.");
+  depth_near_range_ = parameters.number(
+      "depth_near_range", "m", {0, 2}, 0.9,
+      "Nearer than this much leaves the Kinect's image, and below 0.5 m it measures nothing: what "
+      "it saw there stays.");
   low_blind_range_ = wire::read_kinect_blind_range(parameters);
   rear_blind_range_ = parameters.number(
       "rear_blind_range", "m", {0, 4}, 1.2,
@@ -281,26 +279,28 @@ void CostmapComponent::add_layers(Map& map) {
   ObstacleLayerConfig depth = depth_settings_;
   if (&map == &local_) depth.persistence = local_persistence_;
   map.depth = add(depth);
-  depth.name = "above";
-  depth.min_raytrace_range = depth_near_range_;
-  depth.max_obstacle_range = depth_near_range_ + kApproach;
-  depth.kept_range = depth_kept_range_;
-  depth.negative_clears = true;
-  map.above = add(depth);
-  depth.max_obstacle_range = depth_settings_.max_obstacle_range;
-  depth.negative_clears = false;
-  depth.kept_range = std::numeric_limits<double>::infinity();
-  depth.name = "rear";
-  depth.min_raytrace_range = rear_blind_range_;
-  map.rear = add(depth);
-  depth.name = "low";
-  depth.min_raytrace_range = low_blind_range_;
-  depth.persistence = low_persistence_;
-  depth.thickness = low_thickness_;
-  depth.negative_clears = true;
-  map.low = add(depth);
-  depth.name = "feet";
-  map.feet = add(depth);
+  ObstacleLayerConfig near = depth_settings_;
+  near.name = "near";
+  near.min_raytrace_range = depth_near_range_;
+  near.max_obstacle_range = depth_near_range_ + kApproach;
+  near.kept_range = depth_near_range_ + footprint_.inscribed_radius();  // no camera sticks out
+  near.persistence = low_persistence_;
+  near.negative_clears = true;
+  map.near = add(near);
+  ObstacleLayerConfig rear = depth;
+  rear.name = "rear";
+  rear.min_raytrace_range = rear_blind_range_;
+  rear.kept_range = std::numeric_limits<double>::infinity();
+  map.rear = add(rear);
+  ObstacleLayerConfig low = rear;
+  low.name = "low";
+  low.min_raytrace_range = low_blind_range_;
+  low.persistence = low_persistence_;
+  low.thickness = low_thickness_;
+  low.negative_clears = true;
+  map.low = add(low);
+  low.name = "feet";
+  map.feet = add(low);
   ObstacleLayerConfig whiskers;
   whiskers.name = "whiskers";
   whiskers.footprint_clearing = false;
@@ -391,6 +391,7 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
     for (std::size_t i = 0; i < lasting_ranges_.size(); ++i)
       if (wire::is_drop_behind_floor(scan, i)) lasting_ranges_[i] = scan.ranges()[i];
   }
+  const geometry::Pose2 base_T_odom = geometry::inverse(*odom_T_base);
   const auto take = [&](Map& map, const geometry::Pose2& window_T_base,
                         const geometry::Pose2& window_T_sensor) {
     if (!map.costs->move_to(window_T_base)) ++rejected_scans_;
@@ -401,13 +402,14 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       seen.ranges = cone_ranges_;
       seen.clears = false;
     }
+    places_.clear();  // of people, in this map
+    for (const geometry::Point2& person : maybe_there_)
+      places_.push_back(window_T_base * (base_T_odom * person));
     const bool taken = layer == &Map::low     ? take_low(map, scan, seen)
-                       : layer == &Map::depth ? take_depth(map, seen)
+                       : layer == &Map::depth ? take_depth(map, scan, seen)
+                       : layer == &Map::rear  ? take_rear(map, seen)
                                               : observe(map, map.*layer, seen);
     if (!taken) return;
-    if (layer == &Map::rear || layer == &Map::depth)
-      forget_who_left(map, layer == &Map::rear ? map.rear : map.above, seen,
-                      window_T_base * geometry::inverse(*odom_T_base));
     if (layer == &Map::laser) map.costs->keep_beside(map.feet, map.laser, kFoot);
     if (&map == &local_ && layer == &Map::laser && effective >= map.newest) laser_stamp_ = stamp;
     // The local costs are as old as their laser scan, whatever else was seen since.
@@ -421,19 +423,26 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
-/// What the Kinect alone sees, over the laser's plane, stays where it is too near to be measured.
-/// Beside what the laser sees it does not: that is in the laser's layer, and somebody's body in
-/// both goes with him.
-bool CostmapComponent::take_depth(Map& map, RangeObservation seen) {
+/// What the Kinect sees near the robot stays there when it is too near to be seen again, all but
+/// people, who walk on, and what the map has.
+bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan,
+                                  const RangeObservation& seen) {
   if (!observe(map, map.depth, seen)) return false;
   const double farthest = depth_near_range_ + kApproach;
-  const auto of_the_laser = [&](std::size_t bearing, const geometry::Point2& place) {
-    return static_cast<double>(seen.ranges[bearing]) > farthest ||
-           map.costs->beside(map.laser, seen.sensor * place, kOfTheLaser);
+  const auto& sure = scan.intensities();
+  const auto passes = [&](std::size_t bearing, const geometry::Point2& place) {
+    if (static_cast<double>(seen.ranges[bearing]) > farthest) return true;
+    if (bearing < sure.size() && sure[bearing] < kSure) return true;
+    const geometry::Point2 in_window = seen.sensor * place;
+    const auto beside = [&](const auto& person) { return (person - in_window).norm() <= kFoot; };
+    return std::ranges::any_of(places_, beside) || map.costs->mapped(in_window);
   };
-  split_ranges(seen.ranges, seen.directions, of_the_laser, own_ranges_, other_ranges_);
-  seen.ranges = own_ranges_;
-  return observe(map, map.above, seen);
+  split_ranges(seen.ranges, seen.directions, passes, own_ranges_, other_ranges_);
+  RangeObservation lasting = seen;
+  lasting.ranges = own_ranges_;
+  if (!observe(map, map.near, lasting)) return false;
+  map.costs->forget_passed(map.near, seen, places_, kFoot);
+  return true;
 }
 
 /// What is low beside something that the laser sees and the map has not may be a foot of it: that
@@ -452,14 +461,12 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
   return observe(map, map.low, seen);
 }
 
-/// What a camera saw stays where it is too near to be seen again: but not where somebody is or was
-/// a moment ago, once the camera looks beyond that place. He walks on.
-void CostmapComponent::forget_who_left(Map& map, Costmap::LayerId layer,
-                                       const RangeObservation& seen,
-                                       const geometry::Pose2& window_T_odom) {
-  places_.clear();
-  for (const geometry::Point2& person : maybe_there_) places_.push_back(window_T_odom * person);
-  map.costs->forget_passed(layer, seen, places_, kFoot);
+/// What the rear camera saw stays where it looks over it: but not where somebody is or was a moment
+/// ago, once the camera looks beyond that place. He walks on.
+bool CostmapComponent::take_rear(Map& map, const RangeObservation& seen) {
+  if (!observe(map, map.rear, seen)) return false;
+  map.costs->forget_passed(map.rear, seen, places_, kFoot);
+  return true;
 }
 
 /// What the ultrasonic sensors hear and the laser does not see, over their whole cones, and what

@@ -59,10 +59,9 @@ class CostmapComponent final : public runtime::Component {
             const geometry::Pose2& odom_T_sonar);
   void keep_unexplained(const sensor_msgs::msg::LaserScan& sonar,
                         const geometry::Pose2& odom_T_sonar);
-  bool take_depth(Map& map, RangeObservation seen);
+  bool take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan, const RangeObservation& seen);
+  bool take_rear(Map& map, const RangeObservation& seen);
   bool take_low(Map& map, const sensor_msgs::msg::LaserScan& scan, RangeObservation seen);
-  void forget_who_left(Map& map, Costmap::LayerId layer, const RangeObservation& seen,
-                       const geometry::Pose2& window_T_odom);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
                       const geometry::Pose2& odom_T_base);
@@ -79,8 +78,7 @@ class CostmapComponent final : public runtime::Component {
   geometry::Footprint footprint_;
   CostmapConfig settings_;  ///< what both maps share
   ObstacleLayerConfig laser_settings_, ultrasonic_settings_, depth_settings_;
-  double depth_near_range_ = 0.0, depth_kept_range_ = 0.0, low_blind_range_ = 0.0,
-         rear_blind_range_ = 0.0;
+  double depth_near_range_ = 0.0, low_blind_range_ = 0.0, rear_blind_range_ = 0.0;
   double low_thickness_ = 0.0, low_persistence_ = 0.0;
   double local_size_, resolution_, local_persistence_ = 0.0;
   bool static_in_local_;

@@ -259,22 +259,25 @@ void DepthPipeline::mark(std::vector<float>& ranges, int column, double forward,
   }
 }
 
+/// Whether most pixels right above a row measured something.
+bool DepthPipeline::measured_over(const DepthImage& image, int column, double row) const {
+  const int end = static_cast<int>(std::clamp<double>(row, 0.0, image.height));
+  const int begin = std::max(0, end - kRowsAbove);
+  int seen = 0;
+  for (int y = begin; y < end; ++y)
+    seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
+  return 2 * seen >= end - begin;
+}
+
 /// Whether anything is measured right above a row, at the horizon or, in most rooms the ceiling, at
 /// the top of the image. Where nothing is, an arm that is too near to be measured may hang down to
 /// the row: over the foot of a wall, which looks like a low thing, or over floor, which looks like
 /// a hole.
 bool DepthPipeline::seen_above(const DepthImage& image, const CameraPose& pose, int column,
                                double row) const {
-  const auto measured = [&](double below) {
-    const int end = static_cast<int>(std::clamp<double>(below, 0.0, image.height));
-    const int begin = std::max(0, end - kRowsAbove);
-    int seen = 0;
-    for (int y = begin; y < end; ++y)
-      seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
-    return 2 * seen >= end - begin;
-  };
-  return measured(row) || measured(intrinsics_.cy - intrinsics_.fy * std::tan(pose.down)) ||
-         measured(kRowsAbove);
+  return measured_over(image, column, row) ||
+         measured_over(image, column, intrinsics_.cy - intrinsics_.fy * std::tan(pose.down)) ||
+         measured_over(image, column, kRowsAbove);
 }
 
 /// The row where what is as far away as a pixel measured would be as high as something high.
@@ -408,10 +411,12 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
       for (int column = begin; column < end; ++column) {
         const double forward = 1e-3 * fall[column];
         mark(scan_.ranges, column, forward, side_per_pixel(forward));
-        if (seen_above(image, pose, column, row_of_floor(pose, forward))) {
+        const double row = row_of_floor(pose, forward);
+        if (seen_above(image, pose, column, row)) {
           mark(low_.ranges, column, forward, side_per_pixel(forward));
           mark(fallen_, column, forward, side_per_pixel(forward));
-          if (behind_floor_[column] != 0)
+          // An arm that is too near to be measured covers the floor as a dark pit does.
+          if (behind_floor_[column] != 0 && measured_over(image, column, row))
             mark(fallen_behind_floor_, column, forward, side_per_pixel(forward));
         } else {
           const std::size_t bearing =
@@ -441,19 +446,21 @@ void DepthPipeline::tell_drops() {
   }
 }
 
-/// [m] From the scan's origin to the floor at the image's lower edge; infinity when it shows none.
+/// [m] Ahead of the scan's origin, of the floor at the image's lower edge; infinity: it shows none.
 double DepthPipeline::nearest_floor(const CameraPose& pose) const {
   const double below =
       pose.down + std::atan((intrinsics_.height - 1.0 - intrinsics_.cy) / intrinsics_.fy);
   return below > 0.0 ? pose.height / std::tan(below) + shift_ : INFINITY;
 }
 
-/// What stands high hides what is low behind it: up to there nothing low is.
+/// What stands high hides what is low behind it: up to there nothing low is. Where the image does
+/// not show the floor from low_from on, it tells nothing of the kind.
 void DepthPipeline::tell_where_nothing_low_is(const CameraPose& pose) {
-  const bool tells = nearest_floor(pose) <= config_.low_from;
+  const double floor = nearest_floor(pose);
   for (std::size_t i = 0; i < low_.ranges.size(); ++i) {
     const float range = scan_.ranges[i];
-    if (!tells) {
+    const double bearing = geometry_.angle_min + geometry_.increment * static_cast<double>(i);
+    if (!(floor <= config_.low_from * std::cos(bearing))) {
       if (std::isinf(low_.ranges[i])) low_.ranges[i] = kUnknown;
     } else if (looked_[i] != 0 && std::isnan(low_.ranges[i]) && !std::isnan(range)) {
       low_.ranges[i] = std::isinf(range) ? kFree : -range;

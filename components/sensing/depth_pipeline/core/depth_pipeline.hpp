@@ -121,6 +121,7 @@ class DepthPipeline {
   void mark_seen(const CameraPose& pose);
   void mark_obstacles(const DepthImage& image, const CameraPose& pose,
                       const FloorPrediction& floor);
+  bool measured_over(const DepthImage& image, int column, double row) const;
   bool seen_above(const DepthImage& image, const CameraPose& pose, int column, double row) const;
   double row_of_high(const CameraPose& pose, double depth) const;
   double row_of_floor(const CameraPose& pose, double forward) const;

@@ -19,7 +19,7 @@ constexpr auto kFuture = milliseconds(20);
 constexpr auto kAnswer = milliseconds(200);  // an order's way to the servo, and two readings
 constexpr auto kPitchGap = milliseconds(100);
 constexpr auto kTurn = milliseconds(2000);  // no turn of the servo takes longer
-constexpr double kElsewhere = 0.05;         // [rad] off where it shall look
+constexpr double kElsewhere = 0.05;         // [rad] the camera is off where it shall look
 constexpr const char* kNoScans = "publishes no scans: the costmap keeps what it knows, degraded";
 
 /// base_footprint_T_camera of the optical frame (x right, y down, z forward).
@@ -136,7 +136,8 @@ void DepthPipelineComponent::take_tilt(const usher_msgs::msg::CameraTilt& tilt) 
   if (stamp - host_.now() > kFuture || !servo_.add(stamp.time_since_epoch(), tilt.servo()))
     ++refused_tilts_;
   if (!servo_.reaches(host_.now().time_since_epoch())) return;
-  if (std::abs(servo_.newest() - tilt_.wanted()) <= kElsewhere) {
+  const kinematics::TiltServo& camera = tilt_.servo();
+  if (std::abs(camera.angle_of(servo_.newest()) - camera.angle_of(tilt_.wanted())) <= kElsewhere) {
     elsewhere_.reset();
   } else if (!elsewhere_) {
     elsewhere_ = host_.now();

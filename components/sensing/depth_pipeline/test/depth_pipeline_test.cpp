@@ -301,10 +301,24 @@ TEST(DepthPipeline, FloorThatDarkTrousersHideIsNotMissingBehindFloor) {
   for (int row = 240; row < 424; ++row) {  // what of him is lower than 0.8 m measures nothing
     for (int column = 0; column < 512; ++column) {
       auto& depth = image[pixel(row, column)];
-      if (depth < 2000 && std::abs(column - 256) < 70) depth = depth > 1850 ? 0 : depth;
+      if (std::abs(column - 256) < 56 && depth > 1850) depth = 0;
     }
   }
   const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_GT(view.drops, 50);
+  EXPECT_EQ(std::ranges::count(view.low_drops, Drop::kBehindFloor), 0);
+}
+
+TEST(DepthPipeline, FloorUnderAnArmHeldLevelIsNotMissingBehindFloor) {
+  SyntheticScene scene;
+  scene.half_width = scene.end = 4.0;
+  DepthPipeline pipeline = make(scene);
+  auto image = scene.draw(kPose);
+  for (int row = 260; row < 340; ++row)  // floor below it, the room above it
+    std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(pixel(row, 200)), 112,
+                std::uint16_t{0});
+  const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+  EXPECT_GT(view.drops, 50);
   EXPECT_EQ(std::ranges::count(view.low_drops, Drop::kBehindFloor), 0);
 }
 

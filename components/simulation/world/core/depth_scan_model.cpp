@@ -187,8 +187,6 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
   const auto is_pit = [](const Thing& thing) { return thing.top <= 0.0; };
   if (std::any_of(things.begin(), things.end(), is_pit)) take(kUnderFloor, true);
 
-  // Else nothing tells that nothing low is there.
-  const bool shows_floor = in_view(config_.low_from - ahead, 0.0);
   result.angle_min = fan_.angle_min();
   result.increment = fan_.increment();
   result.ranges.resize(high_.size());
@@ -197,7 +195,11 @@ void DepthScanModel::scan(const World& world, const DepthCamera& camera, DepthSc
     const bool alone = low_[i] + static_cast<float>(config_.low_gap) < high_[i];
     result.ranges[i] = std::min(high_[i], low_[i]);
     result.low[i] = alone || (low_[i] == kFree && high_[i] == kFree) ? low_[i] : -result.ranges[i];
-    if (!shows_floor && !(result.low[i] > 0.0F && result.low[i] < kFree)) result.low[i] = kUnknown;
+    // Where the image does not show the floor from there on, nothing says that nothing low is
+    // there.
+    const double from = config_.low_from * static_cast<double>(fan_.cosines()[i]) - ahead;
+    if (!in_view(from, 0.0) && !(result.low[i] > 0.0F && result.low[i] < kFree))
+      result.low[i] = kUnknown;
     if (hidden_[i] != 0) result.ranges[i] = result.low[i] = kUnknown;
   }
   disturb(camera.burst(), result);

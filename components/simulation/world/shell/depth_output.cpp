@@ -4,6 +4,7 @@
 #include "wire/appearance.hpp"
 #include "wire/conversions.hpp"
 #include "wire/images.hpp"
+#include "wire/low_scan.hpp"
 #include "wire/tilt_servo.hpp"
 
 namespace usher::world {
@@ -89,9 +90,11 @@ DepthOutput::DepthOutput(runtime::Host& host, const World* world, std::uint64_t 
   const bool fitted = host.parameters().flag(
       "depth_refit", false,
       "The modelled depth pipeline fits the floor in every frame, as its own refit.");
+  const double low_from = wire::read_kinect_blind_range(host.parameters());
   for (auto* models : {&kinect_model_, &rear_model_}) {
     const bool rear = models == &rear_model_;
-    const auto config = model_for<DepthScanModelConfig>((rear ? rear_ : kinect_).config());
+    auto config = model_for<DepthScanModelConfig>((rear ? rear_ : kinect_).config());
+    config.low_from = low_from;
     models->emplace(fitted ? with_fitted_floor(config) : config, rear ? seed + 1 : seed);
   }
   kinect_people_model_.emplace(model_for<PeopleModelConfig>(kinect_.config()), seed);
