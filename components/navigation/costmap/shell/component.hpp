@@ -23,7 +23,7 @@ class CostmapComponent final : public runtime::Component {
   struct Map {
     const char* frame = "";
     std::optional<Costmap> costs;
-    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, above = 0, low = 0,
+    Costmap::LayerId laser = 0, ultrasonic = 0, whiskers = 0, depth = 0, near = 0, low = 0,
                      feet = 0, rear = 0;
     bool static_known = false;
     /// When the newest data in it was true, an observation or the map, on this host's clock:
