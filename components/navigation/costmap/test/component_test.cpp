@@ -346,7 +346,9 @@ TEST_F(Component, KeepsWhatIsTooNearForTheKinectToSee) {
   }
   for (int i = 0; i < 2500; ++i) see(kNothing);
   EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "0.4 m ahead, 100 s later";
-  host.publish(topics::kCostmapRequest, usher_msgs::msg::CostmapRequest().id(1));
+  usher_msgs::msg::CostmapRequest recovery;
+  recovery.id(1);
+  host.publish(topics::kCostmapRequest, recovery);
   see(kNothing);
   EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "a recovery would not see it again";
   base.x = 0.4;
