@@ -252,6 +252,12 @@ void Costmap::forget_passed(LayerId layer, const RangeObservation& observation,
   touch(layers_[layer].forget_passed(observation, places, reach, raster_));
 }
 
+void Costmap::forget_since(LayerId layer, double since, std::span<const geometry::Point2> places,
+                           double reach) {
+  assert(layer < layers_.size());
+  touch(layers_[layer].forget_since(since, places, reach, raster_));
+}
+
 void Costmap::invalidate() {
   static_stale_ = true;
   dirty_ = raster_.all();

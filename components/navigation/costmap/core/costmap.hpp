@@ -95,6 +95,11 @@ class Costmap {
   void forget_passed(LayerId layer, const RangeObservation& observation,
                      std::span<const geometry::Point2> places, double reach);
 
+  /// Forgets obstacles of a layer within `reach` [m] of the places that were marked at `since` [s]
+  /// or later: they were somebody of whom nobody knew yet.
+  void forget_since(LayerId layer, double since, std::span<const geometry::Point2> places,
+                    double reach);
+
   /// The costs after all that came since the last call. `now` [s, finite] on the clock of the
   /// observations' stamps; only persistence depends on it. The reference stays valid as long as the
   /// costmap; its content until the next call.

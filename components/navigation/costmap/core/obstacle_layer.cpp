@@ -218,12 +218,12 @@ bool ObstacleLayer::looks_at(const RangeObservation& observation, const geometry
   });
 }
 
-CellRect ObstacleLayer::forget_passed(const RangeObservation& observation,
-                                      std::span<const geometry::Point2> places, double reach,
-                                      const Raster& raster) {
+/// Obstacles beside the places that are `gone(cell)` get another state.
+template <class Gone>
+CellRect ObstacleLayer::forget_beside(std::span<const geometry::Point2> places, double reach,
+                                      const Raster& raster, std::uint8_t state, const Gone& gone) {
   CellRect touched;
   if (!has_obstacles_) return touched;
-  const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
   const int cells = static_cast<int>(std::ceil(reach * raster.cells_per_meter));
   for (const geometry::Point2& place : places) {
     if (!reachable(place.x(), place.y())) continue;
@@ -232,18 +232,35 @@ CellRect ObstacleLayer::forget_passed(const RangeObservation& observation,
         CellRect{middle.x, middle.y, middle.x + 1, middle.y + 1}.grown(cells).within(seen_);
     for (int y = near.y0; y < near.y1; ++y) {
       for (int x = near.x0; x < near.x1; ++x) {
-        std::uint8_t& state = states_.row(y)[x];
-        if (state != kSeenOccupied) continue;
-        const geometry::Point2 center = sensor_T_window * raster.center({x, y});
-        // Its own echo is no farther than the cell.
-        const double beyond = center.norm() + raster.resolution;
-        if (!looks_at(observation, center) || !passed(observation, center, beyond)) continue;
-        state = kSeenFree;
+        std::uint8_t& cell = states_.row(y)[x];
+        if (cell != kSeenOccupied || !gone(grid::Cell{x, y})) continue;
+        cell = state;
         touched = touched.united({x, y, x + 1, y + 1});
       }
     }
   }
   return touched;
+}
+
+CellRect ObstacleLayer::forget_passed(const RangeObservation& observation,
+                                      std::span<const geometry::Point2> places, double reach,
+                                      const Raster& raster) {
+  const geometry::Pose2 sensor_T_window = geometry::inverse(observation.sensor);
+  return forget_beside(places, reach, raster, kSeenFree, [&](grid::Cell cell) {
+    const geometry::Point2 center = sensor_T_window * raster.center(cell);
+    // Its own echo is no farther than the cell.
+    return looks_at(observation, center) &&
+           passed(observation, center, center.norm() + raster.resolution);
+  });
+}
+
+CellRect ObstacleLayer::forget_since(double since, std::span<const geometry::Point2> places,
+                                     double reach, const Raster& raster) {
+  assert(std::abs(since) <= kFarthestStamp);
+  const std::uint32_t time = milliseconds(since);
+  return forget_beside(places, reach, raster, kUnseen, [&](grid::Cell cell) {
+    return marked_at_.empty() || elapsed(marked_at_[states_.geometry().index(cell)], time) >= 0;
+  });
 }
 
 /// The number of the first cell of a line that is not nearer than the minimum raytrace range.

@@ -93,6 +93,11 @@ class ObstacleLayer {
   CellRect forget_passed(const RangeObservation& observation,
                          std::span<const geometry::Point2> places, double reach,
                          const Raster& raster);
+  /// Forgets obstacles within `reach` [m] of the places (as above) that were marked at `since` [s]
+  /// or later; in a layer without persistence, which keeps no times, all. Returns the changed
+  /// rectangle.
+  CellRect forget_since(double since, std::span<const geometry::Point2> places, double reach,
+                        const Raster& raster);
   /// Forgets the obstacles whose cells are not `kept`. Returns the changed rectangle.
   template <class Kept>
   CellRect keep(const Kept& kept) {
@@ -126,6 +131,9 @@ class ObstacleLayer {
   std::uint64_t sensors_outside() const { return sensors_outside_; }
 
  private:
+  template <class Gone>
+  CellRect forget_beside(std::span<const geometry::Point2> places, double reach,
+                         const Raster& raster, std::uint8_t state, const Gone& gone);
   CellRect clear_and_collect(const RangeObservation& observation, const Raster& raster);
   bool collect(grid::Cell hit);
   void restore(const RangeObservation& observation, const Raster& raster);

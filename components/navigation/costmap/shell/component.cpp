@@ -26,6 +26,7 @@ constexpr auto kWhiskerAge = milliseconds(300);
 constexpr auto kPeopleAge = milliseconds(400);
 constexpr double kSeenLately = 0.5;    // [s] who was not seen for longer gets no room
 constexpr double kMaybeThere = 2.0;    // [s] who passes beside the cameras is not seen for so long
+constexpr double kKnown = 2.0;         // [s] after somebody is seen he is known as such
 constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the robot comes
 constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
@@ -424,7 +425,8 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
 }
 
 /// What the Kinect sees near the robot stays there when it is too near to be seen again, all but
-/// people, who walk on, and what the map has.
+/// people, who walk on, and what the map has. Whom nobody told of yet when he was seen is forgotten
+/// as soon as he is told of; a belt behind which he stands was seen for longer.
 bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan,
                                   const RangeObservation& seen) {
   if (!observe(map, map.depth, seen)) return false;
@@ -441,7 +443,7 @@ bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& s
   RangeObservation lasting = seen;
   lasting.ranges = own_ranges_;
   if (!observe(map, map.near, lasting)) return false;
-  map.costs->forget_passed(map.near, seen, places_, kFoot);
+  map.costs->forget_since(map.near, seen.stamp - kKnown, places_, kFoot);
   return true;
 }
 
