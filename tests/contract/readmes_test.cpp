@@ -1,4 +1,4 @@
-// The README of every component names each port that its contract declares to read.
+// The README of every component is one, and names each port that its contract declares to read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,6 +44,16 @@ bool names(const std::string& readme, const std::string& port) {
   constexpr std::string_view kInfo = "/camera_info";
   return has(port) || (port == "tf_static" && has("tf")) ||  // never one without the other
          (port.ends_with(kInfo) && has("camera_info"));      // nor an image without it
+}
+
+/// No tool has reformatted them as if they were code.
+TEST(ContractReadmes, AreMarkdown) {
+  for (const auto& [folder, text] : readmes()) {
+    EXPECT_TRUE(text.starts_with("# ")) << folder;
+    if (text.find("\n|") != std::string::npos) {
+      EXPECT_NE(text.find("\n|---|"), std::string::npos) << folder;
+    }
+  }
 }
 
 TEST(ContractReadmes, NameEveryPortThatIsRead) {
