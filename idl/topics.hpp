@@ -110,9 +110,7 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScanLow{
     2,
     30,
     "depth_pipeline",
-    "Only what is too low to be seen from near: to be remembered there. -r: nothing of the kind up "
-    "to "
-    "r; intensity = confidence, 2 = missing floor, 3 = missing behind floor that is seen."};
+    "Only what is too low to be seen from near: to be remembered there."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kRearScan{
     "rear_camera/scan", Kind::kStream, 2, 15, "depth_pipeline", "Nearest obstacle behind."};
 inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTilt{
