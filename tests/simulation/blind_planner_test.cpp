@@ -42,7 +42,8 @@ walls:
 obstacles:
   - )";
 constexpr const char* kLowBox = "{name: box, box: [6.0, 3.0, 0.0, 0.4, 0.8], height: [0.0, 0.2]}";
-constexpr const char* kBench = "{name: bench, box: [6.0, 3.0, 0.0, 0.4, 1.6], height: [0.4, 0.5]}";
+constexpr const char* kBench =
+    "{name: bench, box: [6.0, 3.0, 0.0, 0.4, 1.6], height: [0.46, 0.56]}";
 constexpr const char* kBelt = "{name: belt, box: [6.0, 3.0, 0.0, 0.1, 1.6], height: [0.8, 0.9]}";
 
 // What the laser sees; what only the ultrasonic sensors hear; what only the depth camera sees, low,

@@ -68,6 +68,14 @@ Status check(const CostmapConfig& config, const geometry::Footprint& footprint) 
   return check(config.social);
 }
 
+bool has_obstacle(const grid::Grid<std::uint8_t>& states, const CellRect& cells) {
+  for (int y = cells.y0; y < cells.y1; ++y) {
+    const std::uint8_t* const row = states.row(y);
+    if (std::find(row + cells.x0, row + cells.x1, kSeenOccupied) != row + cells.x1) return true;
+  }
+  return false;
+}
+
 constexpr int kLeastCells = 2;  // of a thing: a single one may be left of what has gone
 
 void raise_to(const std::uint8_t* __restrict states, int count, std::uint8_t* __restrict combined) {
@@ -215,17 +223,12 @@ CellRect Costmap::around(grid::Cell cell, double reach) const {
   return CellRect{cell.x, cell.y, cell.x + 1, cell.y + 1}.grown(cells).within(raster_.all());
 }
 
-bool Costmap::mapped(const geometry::Point2& point) const {
-  return reachable(point.x(), point.y()) && mapped(raster_.cell_at(point.x(), point.y()));
-}
-
-bool Costmap::mapped(grid::Cell cell) const {
-  const CellRect near = around(cell, kMapped);
-  for (int y = near.y0; y < near.y1; ++y) {
-    const std::uint8_t* const row = static_states_.row(y);
-    if (std::find(row + near.x0, row + near.x1, kSeenOccupied) != row + near.x1) return true;
-  }
-  return false;
+bool Costmap::beside(LayerId layer, const geometry::Point2& point, double reach) const {
+  assert(layer < layers_.size());
+  if (!reachable(point.x(), point.y())) return false;
+  const ObstacleLayer& one = layers_[layer];
+  const CellRect near = around(raster_.cell_at(point.x(), point.y()), reach).within(one.seen());
+  return has_obstacle(one.states(), near);
 }
 
 bool Costmap::unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const {
@@ -233,7 +236,8 @@ bool Costmap::unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, doubl
   int found = 0;
   for (int y = near.y0; y < near.y1; ++y) {
     for (int x = near.x0; x < near.x1; ++x) {
-      const bool unmapped = layer.states().row(y)[x] == kSeenOccupied && !mapped(grid::Cell{x, y});
+      const bool unmapped = layer.states().row(y)[x] == kSeenOccupied &&
+                            !has_obstacle(static_states_, around({x, y}, kMapped));
       if (unmapped && ++found == kLeastCells) return true;
     }
   }

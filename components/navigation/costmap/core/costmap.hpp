@@ -81,8 +81,8 @@ class Costmap {
   /// of each layer within its kept_range.
   void forget();
 
-  /// Whether the static map has an obstacle within kMapped of a point.
-  bool mapped(const geometry::Point2& point) const;
+  /// Whether a layer has an obstacle within `reach` [m] of a point (in x and y).
+  bool beside(LayerId layer, const geometry::Point2& point, double reach) const;
   /// Whether a layer has two obstacles within `reach` [m] of a point (in x and y) that are not of
   /// the static map, which has none within kMapped of them: something that may walk away.
   bool unmapped_beside(LayerId layer, const geometry::Point2& point, double reach) const;
@@ -122,7 +122,6 @@ class Costmap {
   Costmap(CostmapConfig config, geometry::Footprint footprint);
   void touch(const CellRect& cells) { dirty_ = dirty_.united(cells); }
   CellRect around(grid::Cell cell, double reach) const;
-  bool mapped(grid::Cell cell) const;
   bool unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const;
   void clear_footprint();
   void sample_entered(int dx, int dy);

@@ -32,6 +32,7 @@ constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
 constexpr double kApproach = 0.6;      // [m] before it is too near to be measured, a thing is seen
 constexpr float kSure = 0.8F;          // confidence of what is remembered
+constexpr double kSamePlace = 0.1;     // [m] what two sensors see so near is one surface
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
 constexpr auto kContactsKept = std::chrono::seconds(60);
 constexpr std::size_t kMostContacts = 64;
@@ -225,8 +226,8 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
       "rear_blind_range", "m", {0, 4}, 1.2,
       "Nearer than this the rear camera looks over low things: what is marked there stays.");
   low_persistence_ = parameters.number("low_persistence", "s", {0, 600}, 300.0,
-                                       "The same for low things that the Kinect looks over: nobody "
-                                       "sees them again while it stands.");
+                                       "The same for what leaves the Kinect's image near the "
+                                       "robot: nobody sees it again while it stands.");
   low_thickness_ = parameters.number(
       "low_thickness", "m", {0, 1}, 0.3,
       "Low things are taken to be so thick: the Kinect tells of their near edges only.");
@@ -403,9 +404,9 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
       seen.ranges = cone_ranges_;
       seen.clears = false;
     }
-    places_.clear();  // of people, in this map
-    for (const geometry::Point2& person : maybe_there_)
-      places_.push_back(window_T_base * (base_T_odom * person));
+    const bool camera = layer == &Map::depth || layer == &Map::rear;
+    if (camera)
+      place_people(layer == &Map::depth ? told_ : maybe_there_, window_T_base * base_T_odom);
     const bool taken = layer == &Map::low     ? take_low(map, scan, seen)
                        : layer == &Map::depth ? take_depth(map, scan, seen)
                        : layer == &Map::rear  ? take_rear(map, seen)
@@ -424,23 +425,27 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
   if (layer == &Map::laser && host_.now() - local_published_ >= local_period_) publish_local();
 }
 
-/// What the Kinect sees near the robot stays there when it is too near to be seen again, all but
-/// people, who walk on, and what the map has. Whom nobody told of yet when he was seen is forgotten
-/// as soon as he is told of; a belt behind which he stands was seen for longer.
+/// What the Kinect alone sees near the robot stays there when it is too near to be seen again: not
+/// people, who walk on, nor what the laser sees at the same place, which its own layer has as long
+/// as it is there. Whom nobody told of yet when he was seen is forgotten when he is told of.
 bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan,
                                   const RangeObservation& seen) {
   if (!observe(map, map.depth, seen)) return false;
-  const double farthest = depth_near_range_ + kApproach;
+  if (people_heard_ && people_.fresh() == nullptr) return true;  // it could be anybody
+  RangeObservation lasting = seen;
+  lasting_ranges_ = scan.ranges();
+  drop_what_people_hide(seen.directions, seen.sensor, places_, lasting_ranges_);
+  const double farthest = map.costs->layer(map.near).config().max_obstacle_range;
   const auto& sure = scan.intensities();
   const auto passes = [&](std::size_t bearing, const geometry::Point2& place) {
-    if (static_cast<double>(seen.ranges[bearing]) > farthest) return true;
+    if (static_cast<double>(scan.ranges()[bearing]) > farthest) return true;
     if (bearing < sure.size() && sure[bearing] < kSure) return true;
     const geometry::Point2 in_window = seen.sensor * place;
     const auto beside = [&](const auto& person) { return (person - in_window).norm() <= kFoot; };
-    return std::ranges::any_of(places_, beside) || map.costs->mapped(in_window);
+    return std::ranges::any_of(places_, beside) ||
+           map.costs->beside(map.laser, in_window, kSamePlace);
   };
-  split_ranges(seen.ranges, seen.directions, passes, own_ranges_, other_ranges_);
-  RangeObservation lasting = seen;
+  split_ranges(lasting_ranges_, seen.directions, passes, own_ranges_, other_ranges_);
   lasting.ranges = own_ranges_;
   if (!observe(map, map.near, lasting)) return false;
   map.costs->forget_since(map.near, seen.stamp - kKnown, places_, kFoot);
@@ -461,6 +466,12 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
   if (!observe(map, map.feet, seen)) return false;
   seen.ranges = own_ranges_;
   return observe(map, map.low, seen);
+}
+
+void CostmapComponent::place_people(std::span<const geometry::Point2> in_odom,
+                                    const geometry::Pose2& window_T_odom) {
+  places_.clear();
+  for (const geometry::Point2& person : in_odom) places_.push_back(window_T_odom * person);
 }
 
 /// What the rear camera saw stays where it looks over it: but not where somebody is or was a moment
@@ -589,8 +600,11 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
   standing_.clear();
   bodies_.clear();
   maybe_there_.clear();
+  told_.clear();
+  people_heard_ = true;
   for (const auto& person : message.people()) {
     const geometry::Point2 place(person.x(), person.y());
+    told_.push_back(place);
     if (static_cast<double>(person.unseen()) <= kMaybeThere) maybe_there_.push_back(place);
     if (!(static_cast<double>(person.unseen()) <= kSeenLately)) continue;
     bodies_.push_back(place);
@@ -605,6 +619,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
 void CostmapComponent::forget_people() {
   bodies_.clear();
   maybe_there_.clear();
+  told_.clear();
   local_.costs->set_people({});
   if (global_.costs) global_.costs->set_people({});
 }

@@ -61,6 +61,8 @@ class CostmapComponent final : public runtime::Component {
                         const geometry::Pose2& odom_T_sonar);
   bool take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan, const RangeObservation& seen);
   bool take_rear(Map& map, const RangeObservation& seen);
+  void place_people(std::span<const geometry::Point2> in_odom,
+                    const geometry::Pose2& window_T_odom);
   bool take_low(Map& map, const sensor_msgs::msg::LaserScan& scan, RangeObservation seen);
   void take_whiskers(std::shared_ptr<const usher_msgs::msg::Whiskers> message);
   void place_whiskers(const usher_msgs::msg::Whiskers& message, runtime::Time stamp,
@@ -90,6 +92,8 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
   std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before
+  std::vector<geometry::Point2> told_;             ///< and those who are remembered
+  bool people_heard_ = false;                      ///< once
   std::vector<geometry::Point2> places_;           ///< theirs in a map's frame
 
   struct Contact {

@@ -340,18 +340,18 @@ TEST_F(Component, KeepsWhatIsTooNearForTheKinectToSee) {
     host.publish(topics::kKinectScan, message);
     run(40);
   };
-  for (; base.x < 1.0; base.x += 0.02) {  // a belt at 1.4 m, over the laser
+  for (; base.x < 0.65; base.x += 0.02) {  // a belt at 1.4 m, over the laser
     const auto gap = static_cast<float>(1.4 - base.x);
-    see(gap > 0.8F ? gap : kNothing);
+    see(gap > 0.85F ? gap : kNothing);
   }
   for (int i = 0; i < 2500; ++i) see(kNothing);
-  EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "0.4 m ahead, 100 s later";
+  EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "0.75 m ahead, 100 s later";
   usher_msgs::msg::CostmapRequest recovery;
   recovery.id(1);
   host.publish(topics::kCostmapRequest, recovery);
   see(kNothing);
   EXPECT_EQ(local_cost(1.4, 0.0), kLethalCost) << "a recovery would not see it again";
-  base.x = 0.4;
+  base.x = 0.3;
   for (int i = 0; i < 5; ++i) see(kNothing);
   EXPECT_LT(local_cost(1.4, 0.0), kLethalCost) << "gone, as is seen from afar";
 }
@@ -387,6 +387,34 @@ TEST_F(Component, RemembersNobodyWhoIsTooNearForTheKinect) {
   run(2500);
   see(kNothing, false);
   EXPECT_LT(local_cost(0.72, 0.0), kLethalCost) << "he has left, and nobody saw him go";
+}
+
+TEST_F(Component, ForgetsADoorLeafThatOpensBeforeIt) {
+  give_map();
+  for (int i = 0; i < 5; ++i) {
+    look(0.72F, 40);
+    host.publish(topics::kKinectScan, scan("laser", 0.7F));
+  }
+  look(0.72F, 100);
+  EXPECT_EQ(local_cost(0.72, 0.0), kLethalCost);
+  for (int i = 0; i < 5; ++i) {
+    look(3.5F, 40);
+    host.publish(topics::kKinectScan, scan("laser", kNothing));
+  }
+  look(3.5F, 100);
+  EXPECT_LT(local_cost(0.72, 0.0), kLethalCost) << "the laser saw it, too, and sees nothing now";
+}
+
+TEST_F(Component, RemembersNothingNearWhileNobodyTellsOfPeople) {
+  laser_range = 3.5F;
+  give_map();
+  run(200);
+  tell_of(0.0, 3.0);
+  run(1000);
+  for (int i = 0; i < 5; ++i) host.publish(topics::kKinectScan, scan("laser", 0.7F)), run(40);
+  EXPECT_EQ(local_cost(0.72, 0.0), kLethalCost);
+  for (int i = 0; i < 5; ++i) host.publish(topics::kKinectScan, scan("laser", kNothing)), run(40);
+  EXPECT_LT(local_cost(0.72, 0.0), kLethalCost) << "it may have been somebody";
 }
 
 TEST_F(Component, KnowsTheBeltBehindWhichSomebodyComesToStand) {
