@@ -424,7 +424,11 @@ TEST_F(Component, KnowsTheBeltBehindWhichSomebodyComesToStand) {
     laser_range = 3.5F;
     give_map();
     run(200);
-    for (int i = 0; i < 5; ++i) host.publish(topics::kKinectScan, scan("laser", 0.7F)), run(40);
+    for (int i = 0; i < 5; ++i) {
+      tell_of(base.x - 2.0, 0.0);  // somebody else
+      host.publish(topics::kKinectScan, scan("laser", 0.7F));
+      run(40);
+    }
     run(before);
     for (int i = 0; i < 5; ++i) {
       tell_of(base.x + 0.95, 0.0);
