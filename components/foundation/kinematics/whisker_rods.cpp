@@ -25,26 +25,14 @@ WhiskerRods::WhiskerRods(const geometry::Footprint& outline, const WhiskerMount&
   reach_ = std::hypot(std::max(front_, back_), side_) + mount.length + kNear;
 }
 
-/// [m] From the whisker of its quarter.
-double WhiskerRods::distance(const geometry::Point2& point) const {
-  const geometry::Point2 from_corner(std::abs(point.x()) - (point.x() < 0.0 ? back_ : front_),
-                                     std::abs(point.y()) - side_);
-  const double along = std::clamp(from_corner.dot(rod_) / rod_.squaredNorm(), 0.0, 1.0);
-  return (from_corner - along * rod_).norm();
-}
-
-bool WhiskerRods::beside(const geometry::Point2& point, const Whiskers& which, double reach) const {
-  const bool left = point.y() >= 0.0;
-  const bool asked = point.x() < 0.0 ? (left ? which.back_left : which.back_right)
-                                     : (left ? which.front_left : which.front_right);
-  return asked && distance(point) <= reach;
-}
-
 Whiskers WhiskerRods::at(std::span<const geometry::Point2> points, int least) const {
   std::array<int, 4> near{};  // front left, front right, back left, back right
   for (const geometry::Point2& point : points) {
     const bool behind = point.x() < 0.0, right = point.y() < 0.0;
-    if (distance(point) <= kNear)
+    const geometry::Point2 from_corner(std::abs(point.x()) - (behind ? back_ : front_),
+                                       std::abs(point.y()) - side_);
+    const double along = std::clamp(from_corner.dot(rod_) / rod_.squaredNorm(), 0.0, 1.0);
+    if ((from_corner - along * rod_).norm() <= kNear)
       ++near[2 * static_cast<std::size_t>(behind) + static_cast<std::size_t>(right)];
   }
   return {near[0] >= least, near[1] >= least, near[2] >= least, near[3] >= least};

@@ -29,12 +29,7 @@ class WhiskerRods {
   /// and the error of pose and laser. Less may be noise.
   Whiskers at(std::span<const geometry::Point2> points, int least) const;
 
-  /// Whether a point in base_footprint is within `reach` [m] of one of these whiskers.
-  bool beside(const geometry::Point2& point, const Whiskers& which, double reach) const;
-
  private:
-  double distance(const geometry::Point2& point) const;
-
   double front_ = 0.0, back_ = 0.0, side_ = 0.0;  // [m] of the corners
   geometry::Point2 rod_;                          // [m] from a corner to the tip, ahead and outward
   double reach_ = 0.0;

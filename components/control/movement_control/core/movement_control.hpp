@@ -172,7 +172,6 @@ class MovementControl {
   std::uint64_t held_back() const { return held_back_; }
 
   const Guard& guard() const { return guard_; }
-  const kinematics::WhiskerRods& rods() const { return rods_; }
 
  private:
   struct Wish {

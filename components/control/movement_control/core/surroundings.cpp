@@ -18,7 +18,6 @@ constexpr double kSurface = 0.1;    // [m] two beams' ends on one surface are no
 constexpr double kWall = 0.4;       // [m] of a wall is looked at to continue it
 constexpr double kLeastWall = 0.1;  // [m]
 constexpr double kFlat = 0.02;      // [m] a wall's points are no farther from its line, on the mean
-constexpr double kHeld = 0.5;       // [m] of a wall, from where a whisker touches it
 constexpr double kBeside = 1.0;     // [m] walls farther away are of no concern
 
 }  // namespace
@@ -58,12 +57,6 @@ void Surroundings::forget() {
   seen_ = 0;
   near_.clear();
   hidden_.clear();
-}
-
-void Surroundings::hold(const kinematics::WhiskerRods& rods, const kinematics::Whiskers& touched,
-                        Time now) {
-  for (Remembered& each : hidden_)
-    if (rods.beside(each.point, touched, kHeld)) each = {each.point, way_, turn_, now};
 }
 
 /// The scan does not tell whether it is still there.

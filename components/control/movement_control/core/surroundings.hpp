@@ -7,7 +7,6 @@
 
 #include "control/movement_control/core/situation.hpp"
 #include "foundation/geometry/pose2.hpp"
-#include "foundation/kinematics/whisker_rods.hpp"
 
 namespace usher::movement_control {
 
@@ -48,9 +47,6 @@ class Surroundings {
   void move(const std::optional<geometry::Twist2>& measured, Time now);
   /// No scan comes any more: what was seen may have gone.
   void forget();
-  /// These whiskers are touched: what was seen within 0.5 m of them is still there, however long
-  /// ago that was. Before take().
-  void hold(const kinematics::WhiskerRods& rods, const kinematics::Whiskers& touched, Time now);
   /// A new scan; `now` as in move().
   void take(const ScanView& scan, Time now);
 

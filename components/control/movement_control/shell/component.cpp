@@ -261,12 +261,6 @@ Guard::View MovementControlComponent::view(double speed) {
           cells(core_.guard().reach(speed))};
 }
 
-std::optional<Whiskers> MovementControlComponent::touches() const {
-  const auto* w = whiskers_.fresh();
-  if (w == nullptr) return std::nullopt;
-  return Whiskers{w->front_left(), w->front_right(), w->back_left(), w->back_right()};
-}
-
 Inputs MovementControlComponent::gather() {
   Inputs inputs;
   if (const auto* enable = enable_.fresh()) {
@@ -276,7 +270,9 @@ Inputs MovementControlComponent::gather() {
   inputs.manual = velocity(manual_);
   inputs.interaction = velocity(interaction_);
   inputs.navigation = velocity(navigation_);
-  inputs.whiskers = touches();
+  if (const auto* w = whiskers_.fresh()) {
+    inputs.whiskers = Whiskers{w->front_left(), w->front_right(), w->back_left(), w->back_right()};
+  }
   inputs.person_ahead = person_ahead();
   inputs.situation = situation_.situation();
   if (const auto* localization = localization_.fresh()) {
@@ -310,7 +306,6 @@ void MovementControlComponent::take_scan(const sensor_msgs::msg::LaserScan& scan
   if (wire::check(scan)) {
     space = free_space(scan.ranges(), scan.angle_min(), scan.angle_increment(), free_space_);
     surroundings_.move(measured(), now);
-    if (const auto touched = touches()) surroundings_.hold(core_.rods(), *touched, now);
     surroundings_.take({scan.ranges(), scan.angle_min(), scan.angle_increment()}, now);
   }
   if (space) seen_at_ = now;

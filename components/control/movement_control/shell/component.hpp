@@ -29,7 +29,6 @@ class MovementControlComponent final : public runtime::Component {
   bool sees() const;
   Guard::View view(double speed);
   std::span<const geometry::Point2> cells(double reach);
-  std::optional<Whiskers> touches() const;
   Inputs gather();
   std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);

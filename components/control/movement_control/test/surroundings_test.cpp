@@ -152,25 +152,6 @@ TEST_F(Walled, ForgetsWhatItHasLeftAndAfterAWhileWhatIsBehind) {
   EXPECT_TRUE(surroundings.points().empty()) << "1.8 m on";
 }
 
-TEST_F(Walled, KeepsWhatIsBehindAsLongAsAWhiskerTouchesIt) {
-  const kinematics::WhiskerRods rods(geometry::Footprint::rectangle(0.61, 0.66), {});
-  for (const bool touched : {true, false}) {
-    walls = {{0, 1, 0.5}};
-    drive({0.6, 0.0}, 1.0);
-    walls.clear();
-    for (int second = 0; second < 120; ++second) {  // it sways as it stands
-      surroundings.move(Twist2{second % 2 == 0 ? 0.02 : -0.02, 0.0}, now += seconds(1));
-      surroundings.hold(rods, {.front_left = true, .back_left = touched}, now);
-      look();
-    }
-    EXPECT_EQ(nearest({-0.1, 0.5}) < 0.05, touched);
-    EXPECT_EQ(nearest({-0.5, 0.5}) < 0.05, touched);
-    surroundings.move(Twist2{}, now += seconds(31));
-    look();
-    EXPECT_TRUE(surroundings.points().empty()) << "nothing touches it any more";
-  }
-}
-
 TEST_F(Walled, AWallThatLeavesTheViewGoesOn) {
   walls = {{0, -1, 0.3}};
   look();
