@@ -73,9 +73,11 @@ struct Outcome {
 bool barred(const usher_msgs::msg::Costmap& message, const geometry::Pose2& odom_T_base) {
   const auto costs = wire::from_message(message);
   if (!costs) return false;
-  for (double x = 0.3; x < 0.7; x += 0.025) {
-    for (double y = -0.1; y <= 0.1; y += 0.025) {
-      const grid::Cell cell = costs->geometry().cell_at(odom_T_base * geometry::Point2(x, y));
+  constexpr double kStep = 0.025;  // [m]
+  for (int i = 0; i < 16; ++i) {
+    for (int k = -4; k <= 4; ++k) {
+      const geometry::Point2 place(0.3 + i * kStep, k * kStep);
+      const grid::Cell cell = costs->geometry().cell_at(odom_T_base * place);
       if (costs->value_or(cell, 0) == grid::kLethalCost) return true;
     }
   }
