@@ -93,7 +93,7 @@ bool Link::take(std::span<const std::uint8_t> content, Time now) {
 }
 
 std::string Link::reason(Time now) const {
-  const std::string reason = dialogue_.reason(now, "no readings from the board");
+  std::string reason = dialogue_.reason(now, "no readings from the board");
   if (!reason.empty()) return reason;
   const std::string board = serial_frame::describe(dialogue_.status(), kTroubles);
   const std::string sensors = faults_.reason();

@@ -223,9 +223,11 @@ void DepthPipelineComponent::report() {
   if (!pitch_.current()) return;
   if (std::string reason = trouble(kinect_); !reason.empty()) {
     host_.health().set(without_kinect_, std::move(reason));
-  } else if (reason = trouble(rear_); !reason.empty()) {
-    host_.health().set(HealthState::kDegraded, std::move(reason));
-  } else if (reason = looks_elsewhere(); !reason.empty()) {
+    return;
+  }
+  std::string reason = trouble(rear_);
+  if (reason.empty()) reason = looks_elsewhere();
+  if (!reason.empty()) {
     host_.health().set(HealthState::kDegraded, std::move(reason));
   } else if (kinect_.delivered) {
     host_.health().set(HealthState::kOk);
