@@ -25,11 +25,16 @@ class WhiskerRods {
   /// [m] from the axle's middle: what is farther away is at no whisker.
   double reach() const { return reach_; }
 
-  /// Which whiskers lie at `least` or more of these points in base_footprint, within 8 cm: a cell,
-  /// and the error of pose and laser. Less may be noise.
-  Whiskers at(std::span<const geometry::Point2> points, int least) const;
+  /// Which whiskers lie where a laser saw something: at two of its points in base_footprint, within
+  /// 8 cm, which are a cell and the error of pose and laser. One may be noise.
+  Whiskers at_seen(std::span<const geometry::Point2> points) const { return at(points, 2); }
+  /// Which lie where costs know something: at the centers of three lethal cells. A touch marks one
+  /// itself, one of before may be the second.
+  Whiskers at_known(std::span<const geometry::Point2> cells) const { return at(cells, 3); }
 
  private:
+  Whiskers at(std::span<const geometry::Point2> points, int least) const;
+
   double front_ = 0.0, back_ = 0.0, side_ = 0.0;  // [m] of the corners
   geometry::Point2 rod_;                          // [m] from a corner to the tip, ahead and outward
   double reach_ = 0.0;
@@ -37,6 +42,11 @@ class WhiskerRods {
 
 inline bool any(const Whiskers& t) {
   return t.front_left || t.front_right || t.back_left || t.back_right;
+}
+
+inline Whiskers operator|(const Whiskers& a, const Whiskers& b) {
+  return {a.front_left || b.front_left, a.front_right || b.front_right, a.back_left || b.back_left,
+          a.back_right || b.back_right};
 }
 
 /// What of the touches is not among the known ones.

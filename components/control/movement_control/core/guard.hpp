@@ -73,7 +73,7 @@ class Guard {
   double planned_share(const geometry::Twist2& twist, const View& view,
                        const std::optional<geometry::Twist2>& measured) const;
 
-  /// [m] {> 0} from the axle's middle: so far cells count for a robot that is no faster [m/s].
+  /// [m] {> 0} from the axle's middle: so far cells bar the way of a robot that is no faster [m/s].
   double reach(double speed) const;
 
   /// Told to stand, a robot that moves so, and goes on to, comes to rest before it meets something.

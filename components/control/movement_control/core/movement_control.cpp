@@ -220,21 +220,21 @@ double MovementControl::slowed(double cut, double before, const Inputs& inputs) 
 }
 
 /// A standing base turns in place, and every touch that bars the turn is where the laser has seen
-/// something: the guard has looked at that, with the outline's own corners. The costs explain no
-/// touch: its own mark is in them. No scan has to tell what is ahead: a laser before a wall across
-/// a corridor is too near to measure it.
-bool MovementControl::turns_beside_what_was_seen(const geometry::Twist2& ramped,
+/// something, or the costs know it: the guard has looked at that, with the outline's own corners.
+/// No scan has to tell what is ahead: a laser before a wall across a corridor is too near to
+/// measure it.
+bool MovementControl::turns_beside_what_is_known(const geometry::Twist2& ramped,
                                                  const Inputs& inputs) const {
   const bool stands =
       inputs.measured && std::abs(inputs.measured->v) < kinematics::RollOut::kStanding;
   if (!parameters_.guarded || !inputs.whiskers || !stands || ramped.v != 0.0) return false;
-  constexpr int kPoints = 2;
-  const Whiskers seen = rods_.at(Guard::seen(inputs.view).points, kPoints);
-  return !kinematics::bars_turn(kinematics::without(*inputs.whiskers, seen), ramped.w);
+  const Whiskers known = rods_.at_seen(Guard::seen(inputs.view).points) |
+                         rods_.at_known(inputs.view.cells);
+  return !kinematics::bars_turn(kinematics::without(*inputs.whiskers, known), ramped.w);
 }
 
 /// A base that turns by less than half of what it was told, for a second, presses a corner against
-/// something that was not seen.
+/// something that is not known.
 bool MovementControl::presses(const geometry::Twist2& measured, Time now) {
   constexpr auto kPatience = std::chrono::seconds(1);
   if (!turned_at_ || std::abs(measured.w) >= 0.5 * std::abs(last_.w)) turned_at_ = now;
@@ -248,7 +248,7 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped, const I
   if (!kinematics::bars_turn(inputs.whiskers.value_or(Whiskers{}), ramped.w)) {
     turned_at_.reset();
     pressed_ = false;
-  } else if (turns_beside_what_was_seen(ramped, inputs) && !presses(*inputs.measured, now)) {
+  } else if (turns_beside_what_is_known(ramped, inputs) && !presses(*inputs.measured, now)) {
     const double most =
         0.5 * parameters_.touched / parameters_.guard.outline.circumscribed_radius();
     return {0.0, std::clamp(ramped.w, -most, most)};

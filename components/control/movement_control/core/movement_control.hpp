@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -172,6 +173,8 @@ class MovementControl {
   std::uint64_t held_back() const { return held_back_; }
 
   const Guard& guard() const { return guard_; }
+  /// [m] {> 0} from the axle's middle: so far cells count for a robot that is no faster [m/s].
+  double reach(double speed) const { return std::max(guard_.reach(speed), rods_.reach()); }
 
  private:
   struct Wish {
@@ -205,7 +208,7 @@ class MovementControl {
   Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
   void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);
   double slowed(double cut, double before, const Inputs& inputs) const;
-  bool turns_beside_what_was_seen(const geometry::Twist2& ramped, const Inputs& inputs) const;
+  bool turns_beside_what_is_known(const geometry::Twist2& ramped, const Inputs& inputs) const;
   bool presses(const geometry::Twist2& measured, Time now);
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);

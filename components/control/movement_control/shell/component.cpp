@@ -258,7 +258,7 @@ std::span<const geometry::Point2> MovementControlComponent::cells(double reach) 
 /// What counts for a robot that shall be, or is, so fast.
 Guard::View MovementControlComponent::view(double speed) {
   return {surroundings_.points(), sees(), surroundings_.guessed(),
-          cells(core_.guard().reach(speed))};
+          cells(core_.reach(speed))};
 }
 
 Inputs MovementControlComponent::gather() {

@@ -525,11 +525,23 @@ TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheLaserSaw) {
   EXPECT_NEAR(turn(), 0.05, 1e-9) << "slower, if that is meant";
 }
 
-TEST_F(InACorridor, TurnsIntoNothingThatTheLaserHasNotSeen) {
+TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheCostsKnow) {
+  inputs.view.points = left;
+  inputs.view.cells = right;
+  EXPECT_NEAR(turn(), creeping, 1e-9) << "the laser has forgotten the wall behind";
+  inputs.view.points = {};
+  inputs.view.cells = both;
+  EXPECT_NEAR(turn(), creeping, 1e-9);
+  EXPECT_EQ(turn(true), 0.0) << "something unknown before the wall";
+}
+
+TEST_F(InACorridor, TurnsIntoNothingThatNobodyKnows) {
   inputs.view.points = left;
   EXPECT_EQ(turn(), 0.0) << "what is at the back right corner?";
-  inputs.view.cells = both;
+  const std::vector<geometry::Point2> marks(2, {-0.4, -0.35});
+  inputs.view.cells = marks;
   EXPECT_EQ(turn(), 0.0) << "the costs have the touch's own mark";
+  inputs.view.cells = {};
   inputs.view.points = right;
   EXPECT_EQ(turn(), 0.0) << "and at the front left one?";
   inputs.view.points = both;

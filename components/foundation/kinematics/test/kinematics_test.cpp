@@ -338,13 +338,13 @@ TEST(WhiskerReflex, BarsATurnThatSwingsATouchedCornerOutward) {
   }
 }
 
-TEST(WhiskerRods, LieAtWhatCrossesThemTwice) {
+TEST(WhiskerRods, LieAtWhatWasSeenTwiceOrKnownInThreeCells) {
   const WhiskerRods rods(geometry::Footprint::rectangle(0.61, 0.66), {});
   using geometry::Point2;
   const Point2 middle(0.305 + 0.2 * std::cos(geometry::radians(20.0)),
                       0.33 + 0.2 * std::sin(geometry::radians(20.0)));
   const auto at = [&](const std::vector<Point2>& points) {
-    const Whiskers is = rods.at(points, 2);
+    const Whiskers is = rods.at_seen(points);
     return std::vector<bool>{is.front_left, is.front_right, is.back_left, is.back_right};
   };
   const std::vector<bool> none(4, false);
@@ -358,6 +358,12 @@ TEST(WhiskerRods, LieAtWhatCrossesThemTwice) {
     EXPECT_EQ(at({there, there}), one);
     EXPECT_EQ(at({there, 0.95 * there}), one);
     EXPECT_EQ(at({there, {there.x(), 1.4 * there.y()}}), none) << "one beside it";
+    const std::vector<Point2> cells(3, there);
+    const Whiskers known = rods.at_known(cells);
+    EXPECT_EQ((std::vector<bool>{known.front_left, known.front_right, known.back_left,
+                                 known.back_right}),
+              one);
+    EXPECT_FALSE(any(rods.at_known(std::span(cells).first(2)))) << "a touch's own marks";
   }
   EXPECT_EQ(at({{0.6, 0.3}, {0.6, 0.31}}), none) << "ahead of the robot, beside the whisker";
   EXPECT_EQ(at({{0.0, 0.34}, {0.01, 0.34}}), none) << "beside the robot";

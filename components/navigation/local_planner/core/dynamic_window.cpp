@@ -189,10 +189,8 @@ void DynamicWindow::stand_in_the_way(const Input& input) {
   }
 }
 
-/// What the whiskers touch beside what is lethal where they are: more than the marks of touches,
-/// which are 0.2 m apart, two to a whisker.
+/// What the whiskers touch beside what is lethal where they are.
 void DynamicWindow::explain_touches(const Input& input) {
-  constexpr int kCells = 3;
   unexplained_ = touches_;
   if (!any(touches_)) return;
   at_whiskers_.clear();
@@ -201,7 +199,7 @@ void DynamicWindow::explain_touches(const Input& input) {
     if (input.costs.at(cell) == grid::kLethalCost)
       at_whiskers_.push_back(base_T_costs * input.costs.geometry().center(cell));
   });
-  unexplained_ = kinematics::without(touches_, rods_.at(at_whiskers_, kCells));
+  unexplained_ = kinematics::without(touches_, rods_.at_known(at_whiskers_));
 }
 
 /// Frees the cells of everybody; false: there is nobody.
@@ -378,7 +376,7 @@ double DynamicWindow::creeping_turn(const Input& input) const {
 
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
 /// Touching what the costs know, corners creep, and only with half of the clearance; farther on
-/// that may be a touch's own mark. movement_control, which the costs convince of nothing, decides.
+/// that may be a touch's own mark. movement_control, which watches whether it presses, decides.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
   if (kinematics::bars_turn(unexplained_, angle)) return 0.0;
   const bool touching = kinematics::bars_turn(touches_, angle);

@@ -23,6 +23,8 @@ constexpr int kLeastValid = 10;    // a column with fewer than one in so many pi
 constexpr int kRowsAbove = 12;     // of pixels that tell whether anything was measured there
 constexpr int kLeastFloor = 50;    // one in so many is enough where the floor began and ends
 constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
+constexpr double kNoFoot = -1.0;   // [m]
+constexpr int kFootGap = 3;        // columns that a line of feet may leave out
 constexpr double kGrazing = 1.88;  // tan 62 deg: vinyl mirrors from 65 deg on, give or take a patch
 
 enum ColumnArray { kHigh = 0, kLow = 4, kValid = 8, kFallBegin, kFall };
@@ -109,6 +111,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
   fallen_.resize(geometry_.count);
   fallen_behind_floor_.resize(geometry_.count);
   behind_floor_.resize(column_stride_);
+  feet_.resize(column_stride_);
   low_drops_.resize(geometry_.count);
   looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
@@ -146,9 +149,10 @@ Result<DepthView> DepthPipeline::process(const DepthImage& image, const CameraPo
   mark_seen(view.pose);
   mark_obstacles(image, view.pose, floor);
   add_low();
+  forget_blind_falls(floor);
+  mark_feet(image, view.pose);
   drop_unsupported(scan_.ranges);
   drop_unsupported(low_.ranges);
-  forget_blind_falls(floor);
   view.drops = mark_drops(image, view.pose);
   confidence_.rate(scan_.ranges, config_.least_confidence, scan_.intensities);
   low_confidence_.rate(low_.ranges, config_.lasting_confidence, low_.intensities);
@@ -367,6 +371,7 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
     for (int column = floor.first_column(strip); column < end; ++column) {
       const int enough = fall[column] > nearest ? kLeastFloor : kLeastValid;
       const bool hidden = kHalfMillimeter * high[column] < 1e-3 * fall[column];
+      feet_[column] = fall[column];
       if (hidden || valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
       const bool floor_before =
           nearest > 0 && fall[column] >= nearest + millimeters(config_.drop_length);
@@ -376,6 +381,46 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
       behind_floor_[column] = floor_before && !before_somebody ? 1 : 0;
     }
   }
+}
+
+/// Whether hardly a pixel of a column measured anything between two rows.
+bool DepthPipeline::nothing_over(const DepthImage& image, int column, double from,
+                                 double to) const {
+  const int begin = static_cast<int>(std::clamp<double>(from, 0.0, image.height));
+  const int end = static_cast<int>(std::clamp<double>(to, 0.0, image.height));
+  int seen = 0;
+  for (int y = begin; y < end; ++y)
+    seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
+  return kLeastValid * seen <= end - begin;
+}
+
+/// A wall that is looked at along it gives no measurement; all that the image shows of it is where
+/// the floor ends, in line with where it ends before what stands in the columns beside.
+void DepthPipeline::mark_feet(const DepthImage& image, const CameraPose& pose) {
+  const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
+  const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
+  const double level = std::cos(pose.down), sunk = pose.height * std::sin(pose.down);
+  const double horizon = intrinsics_.cy - intrinsics_.fy * std::tan(pose.down);
+  const auto follow = [&](int column, int step) {
+    double foot = kNoFoot;
+    for (int gap = 0; column >= 0 && column < intrinsics_.width; column += step) {
+      const double ends = 1e-3 * feet_[column];
+      if (high[column] != kernels::kNothing) {
+        foot = feet_[column] != kernels::kNothing ? ends : kHalfMillimeter * high[column];
+      } else if (fall[column] != kernels::kNothing && std::abs(ends - foot) <= kFallGap &&
+                 nothing_over(image, column, horizon, row_of_floor(pose, ends))) {
+        foot = ends;
+        mark(scan_.ranges, column, ends, (ends * level + sunk) / intrinsics_.fx);
+      } else if (++gap <= kFootGap) {
+        continue;
+      } else {
+        foot = kNoFoot;
+      }
+      gap = 0;
+    }
+  };
+  follow(0, 1);
+  follow(intrinsics_.width - 1, -1);
 }
 
 /// A piece of floor is missing where neighbouring columns say so over a width, where it is looked
