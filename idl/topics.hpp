@@ -110,7 +110,8 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kKinectScanLow{
     2,
     30,
     "depth_pipeline",
-    "Only what is too low to be seen from near: to be remembered there."};
+    "Only what is too low to be seen from near: to be remembered there. -r: nothing low up to r; "
+    "intensity 2: floor is missing there, 3: behind floor that is seen, else the confidence."};
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kRearScan{
     "rear_camera/scan", Kind::kStream, 2, 15, "depth_pipeline", "Nearest obstacle behind."};
 inline constexpr Topic<usher_msgs::msg::CameraTilt> kKinectTilt{

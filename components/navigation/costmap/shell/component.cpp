@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "navigation/costmap/core/echo_check.hpp"
@@ -31,6 +32,7 @@ constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the 
 constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
 constexpr double kApproach = 0.6;      // [m] before it is too near to be measured, a thing is seen
+constexpr double kComes = 0.1;         // [m] before that, too: what appears nearer came by itself
 constexpr float kSure = 0.8F;          // confidence of what is remembered
 constexpr double kSamePlace = 0.1;     // [m] what two sensors see so near is one surface
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
@@ -427,7 +429,8 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
 
 /// What the Kinect alone sees near the robot stays there when it is too near to be seen again: not
 /// people, who walk on, nor what the laser sees at the same place, which its own layer has as long
-/// as it is there. Whom nobody told of yet when he was seen is forgotten when he is told of.
+/// as it is there. Whom nobody told of yet when he was seen is forgotten when he is told of. What
+/// stands was seen before it was too near; what was not has come, and goes.
 bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan,
                                   const RangeObservation& seen) {
   if (!observe(map, map.depth, seen)) return false;
@@ -435,17 +438,19 @@ bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& s
   RangeObservation lasting = seen;
   lasting_ranges_ = scan.ranges();
   drop_what_people_hide(seen.directions, seen.sensor, places_, lasting_ranges_);
-  const double farthest = map.costs->layer(map.near).config().max_obstacle_range;
+  const ObstacleLayerConfig& layer = map.costs->layer(map.near).config();
+  const double nearest = layer.min_raytrace_range + kComes, farthest = layer.max_obstacle_range;
   const auto& sure = scan.intensities();
-  const auto passes = [&](std::size_t bearing, const geometry::Point2& place) {
-    if (static_cast<double>(scan.ranges()[bearing]) > farthest) return true;
-    if (bearing < sure.size() && sure[bearing] < kSure) return true;
+  const auto stays = [&](std::size_t bearing, const geometry::Point2& place) {
+    const auto range = static_cast<double>(scan.ranges()[bearing]);
+    if (range < nearest || range > farthest) return false;
+    if (bearing < sure.size() && sure[bearing] < kSure) return false;
     const geometry::Point2 in_window = seen.sensor * place;
     const auto beside = [&](const auto& person) { return (person - in_window).norm() <= kFoot; };
-    return std::ranges::any_of(places_, beside) ||
-           map.costs->beside(map.laser, in_window, kSamePlace);
+    return std::ranges::none_of(places_, beside) &&
+           !map.costs->beside(map.laser, in_window, kSamePlace);
   };
-  split_ranges(lasting_ranges_, seen.directions, passes, own_ranges_, other_ranges_);
+  keep_own(lasting_ranges_, seen.directions, stays, own_ranges_);
   lasting.ranges = own_ranges_;
   if (!observe(map, map.near, lasting)) return false;
   map.costs->forget_since(map.near, seen.stamp - kKnown, places_, kFoot);
@@ -461,10 +466,10 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
     return !wire::is_drop(scan, bearing) &&
            map.costs->unmapped_beside(map.laser, seen.sensor * place, kFoot);
   };
-  split_ranges(lasting_ranges_, seen.directions, is_foot, own_ranges_, other_ranges_);
-  seen.ranges = other_ranges_;
-  if (!observe(map, map.feet, seen)) return false;
   seen.ranges = own_ranges_;
+  keep_own(lasting_ranges_, seen.directions, is_foot, own_ranges_);
+  if (!observe(map, map.feet, seen)) return false;
+  keep_own(lasting_ranges_, seen.directions, std::not_fn(is_foot), own_ranges_);
   return observe(map, map.low, seen);
 }
 

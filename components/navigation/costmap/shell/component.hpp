@@ -88,7 +88,7 @@ class CostmapComponent final : public runtime::Component {
 
   double echo_half_cone_, echo_tolerance_, ultrasonic_cone_, clearing_cone_;
   std::vector<float> echoes_, cone_ranges_, middle_ranges_, lasting_ranges_;
-  std::vector<float> own_ranges_, other_ranges_;   ///< of a scan that two layers share
+  std::vector<float> own_ranges_;                  ///< a layer's part of a scan that two share
   std::vector<geometry::Point2> near_, standing_;  ///< people: ahead, in odom; who stands, in map
   std::vector<geometry::Point2> bodies_;           ///< all of them, in odom
   std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before

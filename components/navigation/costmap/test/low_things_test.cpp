@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -35,15 +36,14 @@ TEST(LowThings, AFootIsNothingLowUpToThereAndTheOthersAreNoFeet) {
   const std::vector<float> ranges{2.0F, 1.0F, nan, infinity, -3.0F};
   std::vector<float> alone, feet;
   std::vector<std::size_t> asked;
-  split_ranges(
-      ranges, directions,
-      [&](std::size_t bearing, const geometry::Point2& place) {
-        asked.push_back(bearing);
-        EXPECT_NEAR(place.norm(), static_cast<double>(ranges[bearing]), 1e-6);
-        return place.norm() < 1.5;
-      },
-      alone, feet);
+  const auto is_foot = [&](std::size_t bearing, const geometry::Point2& place) {
+    asked.push_back(bearing);
+    EXPECT_NEAR(place.norm(), static_cast<double>(ranges[bearing]), 1e-6);
+    return place.norm() < 1.5;
+  };
+  keep_own(ranges, directions, is_foot, feet);
   EXPECT_EQ(asked, (std::vector<std::size_t>{0, 1})) << "what is no place is not asked for";
+  keep_own(ranges, directions, std::not_fn(is_foot), alone);
   EXPECT_EQ(alone[0], 2.0F);
   EXPECT_EQ(feet[0], -2.0F);
   EXPECT_EQ(alone[1], -1.0F);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "foundation/result/bounds.hpp"
@@ -19,12 +20,12 @@ constexpr double kHalfMillimeter = 5e-4;  // [m] unit of the columns' distances
 constexpr double kWidest = 0.85;          // least forward distance per depth that the scan covers
 constexpr int kColumnArrays = 11;
 constexpr int kBuffers = 8;
-constexpr int kLeastValid = 10;    // a column with fewer than one in so many pixels is unknown
-constexpr int kRowsAbove = 12;     // of pixels that tell whether anything was measured there
-constexpr int kLeastFloor = 50;    // one in so many is enough where the floor began and ends
-constexpr double kFallGap = 0.3;   // [m] between columns of one missing piece of floor
-constexpr double kNoFoot = -1.0;   // [m]
-constexpr int kFootGap = 3;        // columns that a line of feet may leave out
+constexpr int kLeastValid = 10;     // a column with fewer than one in so many pixels is unknown
+constexpr int kRowsAbove = 12;      // of pixels that tell whether anything was measured there
+constexpr int kLeastFloor = 50;     // one in so many is enough where the floor began and ends
+constexpr double kFallGap = 0.3;    // [m] between columns of one missing piece of floor
+constexpr int kFootGap = 3;         // columns that a line of feet may leave out
+constexpr double kHardlyAny = 0.1;  // of the pixels of what is looked at along it measure something
 constexpr double kGrazing = 1.88;  // tan 62 deg: vinyl mirrors from 65 deg on, give or take a patch
 
 enum ColumnArray { kHigh = 0, kLow = 4, kValid = 8, kFallBegin, kFall };
@@ -111,7 +112,7 @@ DepthPipeline::DepthPipeline(const Intrinsics& intrinsics, const PipelineConfig&
   fallen_.resize(geometry_.count);
   fallen_behind_floor_.resize(geometry_.count);
   behind_floor_.resize(column_stride_);
-  feet_.resize(column_stride_);
+  floor_ends_.resize(column_stride_);
   low_drops_.resize(geometry_.count);
   looked_.resize(geometry_.count);
   spare_.resize(geometry_.count);
@@ -263,14 +264,23 @@ void DepthPipeline::mark(std::vector<float>& ranges, int column, double forward,
   }
 }
 
-/// Whether most pixels right above a row measured something.
-bool DepthPipeline::measured_over(const DepthImage& image, int column, double row) const {
-  const int end = static_cast<int>(std::clamp<double>(row, 0.0, image.height));
-  const int begin = std::max(0, end - kRowsAbove);
+/// The share {0..1} of a column's pixels between two rows that measured something; 1: there are
+/// none.
+double DepthPipeline::measured_between(const DepthImage& image, int column, double from,
+                                       double to) const {
+  const int begin = static_cast<int>(std::clamp<double>(from, 0.0, image.height));
+  const int end = static_cast<int>(std::clamp<double>(to, 0.0, image.height));
+  if (begin >= end) return 1.0;
   int seen = 0;
   for (int y = begin; y < end; ++y)
     seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
-  return 2 * seen >= end - begin;
+  return static_cast<double>(seen) / (end - begin);
+}
+
+/// Whether most pixels right above a row measured something.
+bool DepthPipeline::measured_over(const DepthImage& image, int column, double row) const {
+  const double end = std::min<double>(row, image.height);
+  return measured_between(image, column, end - kRowsAbove, end) >= 0.5;
 }
 
 /// Whether anything is measured right above a row, at the horizon or, in most rooms the ceiling, at
@@ -279,8 +289,7 @@ bool DepthPipeline::measured_over(const DepthImage& image, int column, double ro
 /// a hole.
 bool DepthPipeline::seen_above(const DepthImage& image, const CameraPose& pose, int column,
                                double row) const {
-  return measured_over(image, column, row) ||
-         measured_over(image, column, intrinsics_.cy - intrinsics_.fy * std::tan(pose.down)) ||
+  return measured_over(image, column, row) || measured_over(image, column, row_of_horizon(pose)) ||
          measured_over(image, column, kRowsAbove);
 }
 
@@ -288,6 +297,10 @@ bool DepthPipeline::seen_above(const DepthImage& image, const CameraPose& pose, 
 double DepthPipeline::row_of_high(const CameraPose& pose, double depth) const {
   const double fall = (pose.height - config_.floor.low_height) / std::max(config_.min_depth, depth);
   return intrinsics_.cy + intrinsics_.fy * (fall - std::sin(pose.down)) / std::cos(pose.down);
+}
+
+double DepthPipeline::row_of_horizon(const CameraPose& pose) const {
+  return intrinsics_.cy - intrinsics_.fy * std::tan(pose.down);
 }
 
 /// The row of the floor at a distance [m] from the camera's foot.
@@ -371,7 +384,7 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
     for (int column = floor.first_column(strip); column < end; ++column) {
       const int enough = fall[column] > nearest ? kLeastFloor : kLeastValid;
       const bool hidden = kHalfMillimeter * high[column] < 1e-3 * fall[column];
-      feet_[column] = fall[column];
+      floor_ends_[column] = fall[column];
       if (hidden || valid[column] * enough < intrinsics_.height) fall[column] = kernels::kNothing;
       const bool floor_before =
           nearest > 0 && fall[column] >= nearest + millimeters(config_.drop_length);
@@ -383,40 +396,29 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
   }
 }
 
-/// Whether hardly a pixel of a column measured anything between two rows.
-bool DepthPipeline::nothing_over(const DepthImage& image, int column, double from,
-                                 double to) const {
-  const int begin = static_cast<int>(std::clamp<double>(from, 0.0, image.height));
-  const int end = static_cast<int>(std::clamp<double>(to, 0.0, image.height));
-  int seen = 0;
-  for (int y = begin; y < end; ++y)
-    seen += pixel(image, column, y) >= millimeters(config_.min_depth) ? 1 : 0;
-  return kLeastValid * seen <= end - begin;
-}
-
-/// A wall that is looked at along it gives no measurement; all that the image shows of it is where
-/// the floor ends, in line with where it ends before what stands in the columns beside.
+/// A wall that is looked at along it gives no measurement. All that the image shows of it is where
+/// the floor ends, in line with where it ends before what stands in the columns beside, and nothing
+/// from there up to the horizon. Behind a patch of floor that mirrors there is floor again.
 void DepthPipeline::mark_feet(const DepthImage& image, const CameraPose& pose) {
   const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
   const double level = std::cos(pose.down), sunk = pose.height * std::sin(pose.down);
-  const double horizon = intrinsics_.cy - intrinsics_.fy * std::tan(pose.down);
+  const double horizon = row_of_horizon(pose);
   const auto follow = [&](int column, int step) {
-    double foot = kNoFoot;
+    std::optional<double> foot;  // [m] of the last column that shows one
     for (int gap = 0; column >= 0 && column < intrinsics_.width; column += step) {
-      const double ends = 1e-3 * feet_[column];
+      const double ends = 1e-3 * floor_ends_[column];
       if (high[column] != kernels::kNothing) {
-        foot = feet_[column] != kernels::kNothing ? ends : kHalfMillimeter * high[column];
-      } else if (fall[column] != kernels::kNothing && std::abs(ends - foot) <= kFallGap &&
-                 nothing_over(image, column, horizon, row_of_floor(pose, ends))) {
+        foot = floor_ends_[column] != kernels::kNothing ? ends : kHalfMillimeter * high[column];
+        gap = 0;
+      } else if (foot && fall[column] != kernels::kNothing && std::abs(ends - *foot) <= kFallGap &&
+                 measured_between(image, column, horizon, row_of_floor(pose, ends)) <= kHardlyAny) {
         foot = ends;
+        gap = 0;
         mark(scan_.ranges, column, ends, (ends * level + sunk) / intrinsics_.fx);
-      } else if (++gap <= kFootGap) {
-        continue;
-      } else {
-        foot = kNoFoot;
+      } else if (++gap > kFootGap) {
+        foot.reset();
       }
-      gap = 0;
     }
   };
   follow(0, 1);

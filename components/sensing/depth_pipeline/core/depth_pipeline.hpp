@@ -117,15 +117,16 @@ class DepthPipeline {
   double measured_share() const;
   void clear_bearings();
   void forget_blind_falls(const FloorPrediction& floor);
-  bool nothing_over(const DepthImage& image, int column, double from, double to) const;
   void mark_feet(const DepthImage& image, const CameraPose& pose);
   int mark_drops(const DepthImage& image, const CameraPose& pose);
   void mark_seen(const CameraPose& pose);
   void mark_obstacles(const DepthImage& image, const CameraPose& pose,
                       const FloorPrediction& floor);
+  double measured_between(const DepthImage& image, int column, double from, double to) const;
   bool measured_over(const DepthImage& image, int column, double row) const;
   bool seen_above(const DepthImage& image, const CameraPose& pose, int column, double row) const;
   double row_of_high(const CameraPose& pose, double depth) const;
+  double row_of_horizon(const CameraPose& pose) const;
   double row_of_floor(const CameraPose& pose, double forward) const;
   double nearest_floor(const CameraPose& pose) const;
   void add_low();
@@ -153,7 +154,7 @@ class DepthPipeline {
   std::vector<float> fallen_;  // [m] of each bearing: where floor is missing that low_ tells of
   std::vector<float> fallen_behind_floor_;  // [m] of each bearing: the same, nothing hides it
   std::vector<Drop> low_drops_;
-  std::vector<std::uint16_t> feet_;  // [mm] of each column: where its floor ends, hidden or not
+  std::vector<std::uint16_t> floor_ends_;   // [mm] of each column, hidden or not
   std::vector<std::uint8_t> behind_floor_;  // of each column: floor is missing behind floor
   std::vector<std::uint8_t> looked_;  // of each bearing, whether its columns measured something
   mutable std::vector<float> spare_;

@@ -375,6 +375,42 @@ TEST(DepthPipeline, AHoleIsAsWideAsItIsThoughTheCameraLooksDown) {
   }
 }
 
+/// A wall 0.7 m to the left: from 2 m on it is looked at so flatly that it gives no measurement.
+TEST(DepthPipeline, AWallThatIsLookedAtAlongItStandsWhereTheFloorEnds) {
+  constexpr double kWallAt = 0.7;
+  const auto look = [&](bool floor_behind, bool wall_before) {
+    SyntheticScene scene;
+    scene.half_width = scene.end = 30.0;
+    scene.boxes = {{-2.0, -kWallAt, 2.5, 0.3, 3.2}};
+    DepthPipeline pipeline = make(scene);
+    auto image = scene.draw(kPose);
+    SyntheticScene bare = scene;
+    bare.boxes.clear();
+    const auto floor = bare.draw(kPose);
+    for (int column = 0; column < 256; ++column) {
+      const double side = (scene.camera.cx - column) / scene.camera.fx;
+      for (int row = 0; row < 424; ++row) {
+        auto& depth = image[pixel(row, column)];
+        const std::uint16_t bare_floor = floor[pixel(row, column)];
+        if (depth == bare_floor) continue;
+        if (side > kWallAt / 2.0) {  // before 2 m
+          if (!wall_before) depth = bare_floor;
+          continue;
+        }
+        const double behind = 1e-3 * bare_floor - kWallAt / side;
+        depth = floor_behind && behind > 0.4 ? bare_floor : std::uint16_t{0};
+      }
+    }
+    const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
+    EXPECT_EQ(view.drops, 0);
+    EXPECT_EQ(positive(view.low->ranges), 0U);
+    return at(pipeline, view.scan->ranges, std::atan(kWallAt / (2.5 + kPose.forward - 0.2)));
+  };
+  EXPECT_NEAR(look(false, true), std::hypot(2.5, kWallAt), 0.1);
+  EXPECT_EQ(look(true, true), kInfinity) << "a patch that mirrors: floor is seen behind it";
+  EXPECT_EQ(look(false, false), kInfinity) << "nothing stands beside it";
+}
+
 TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
   SyntheticScene scene;
   scene.half_width = scene.end = 30.0;
