@@ -28,8 +28,8 @@ class WhiskerRods {
   /// Which whiskers lie where a laser saw something: at two of its points in base_footprint, within
   /// 8 cm, which are a cell and the error of pose and laser. One may be noise.
   Whiskers at_seen(std::span<const geometry::Point2> points) const { return at(points, 2); }
-  /// Which lie where costs know something: at the centers of three lethal cells. A touch marks one
-  /// itself, one of before may be the second.
+  /// Which lie where the local costs know something: at the centers of three lethal cells, one of
+  /// which is the touch's own mark.
   Whiskers at_known(std::span<const geometry::Point2> cells) const { return at(cells, 3); }
 
  private:

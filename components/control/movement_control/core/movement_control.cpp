@@ -8,6 +8,8 @@ namespace usher::movement_control {
 
 namespace {
 
+constexpr std::size_t kMostCells = 4096;  // as lethal_cells tells
+
 /// The next value on the way from `from` to `to`, through zero when the sign changes. With a jerk
 /// the acceleration, which is kept in `acceleration`, builds up and fades no faster; a change of
 /// mind and a stop are not delayed by what was wanted before.
@@ -90,6 +92,7 @@ MovementControl::MovementControl(const Parameters& parameters)
       rods_(parameters.guard.outline, parameters.whiskers),
       watch_(parameters.response) {
   assert(parameters.longest_step > Time::zero() && parameters.reverse >= 0.0);
+  nobodys_.reserve(kMostCells);
   status_.max_human = parameters.person_ahead;
   status_.max_normal = parameters.open;
   status_.threshold_linear = parameters.response.linear;
@@ -219,18 +222,33 @@ double MovementControl::slowed(double cut, double before, const Inputs& inputs) 
   return measured * before > 0.0 && slowest > std::abs(cut) ? std::copysign(slowest, before) : cut;
 }
 
-/// A standing base turns in place, and every touch that bars the turn is where the laser has seen
-/// something, or the costs know it: the guard has looked at that, with the outline's own corners.
-/// No scan has to tell what is ahead: a laser before a wall across a corridor is too near to
-/// measure it.
+/// The whiskers that lie where the laser has seen something, or where the costs know something that
+/// stands: neither while the pose is in doubt, since they know the map's walls, nor near people.
+Whiskers MovementControl::known(const Inputs& inputs) {
+  constexpr double kPerson = 0.5;  // [m]
+  const Whiskers seen = rods_.at_seen(Guard::seen(inputs.view).points);
+  if (!inputs.people || inputs.localization != Localization::kGood) return seen;
+  nobodys_.clear();
+  for (const geometry::Point2& cell : inputs.view.cells) {
+    if (nobodys_.size() == kMostCells) break;
+    if (cell.norm() > rods_.reach()) continue;
+    const auto near = [&](const geometry::Point2& person) {
+      return (person - cell).norm() <= kPerson;
+    };
+    if (std::ranges::none_of(*inputs.people, near)) nobodys_.push_back(cell);
+  }
+  return seen | rods_.at_known(nobodys_);
+}
+
+/// A standing base turns in place, and every touch that bars the turn is of something known: the
+/// guard has looked at that, with the outline's own corners. No scan has to tell what is ahead: a
+/// laser before a wall across a corridor is too near to measure it.
 bool MovementControl::turns_beside_what_is_known(const geometry::Twist2& ramped,
-                                                 const Inputs& inputs) const {
+                                                 const Inputs& inputs) {
   const bool stands =
       inputs.measured && std::abs(inputs.measured->v) < kinematics::RollOut::kStanding;
   if (!parameters_.guarded || !inputs.whiskers || !stands || ramped.v != 0.0) return false;
-  const Whiskers known = rods_.at_seen(Guard::seen(inputs.view).points) |
-                         rods_.at_known(inputs.view.cells);
-  return !kinematics::bars_turn(kinematics::without(*inputs.whiskers, known), ramped.w);
+  return !kinematics::bars_turn(kinematics::without(*inputs.whiskers, known(inputs)), ramped.w);
 }
 
 /// A base that turns by less than half of what it was told, for a second, presses a corner against
@@ -240,6 +258,16 @@ bool MovementControl::presses(const geometry::Twist2& measured, Time now) {
   if (!turned_at_ || std::abs(measured.w) >= 0.5 * std::abs(last_.w)) turned_at_ = now;
   pressed_ = pressed_ || now - *turned_at_ >= kPatience;
   return pressed_;
+}
+
+/// What the whiskers leave of an arc is another one, which nobody has looked at: the base would
+/// meet what was seen there before it stands.
+bool MovementControl::bent_into_something(const geometry::Twist2& bent,
+                                          const geometry::Twist2& ramped,
+                                          const Inputs& inputs) const {
+  return parameters_.guarded && bent.v != 0.0 && bent.w != ramped.w &&
+         guard_.way(bent, {.points = Guard::seen(inputs.view).points}) <
+             parameters_.guard.stopping.distance(std::abs(bent.v));
 }
 
 /// While it rolls it keeps its arc where straight on it would meet something before it stands.
@@ -255,6 +283,7 @@ geometry::Twist2 MovementControl::reflex(const geometry::Twist2& ramped, const I
   }
   geometry::Twist2 twist =
       kinematics::whisker_reflex(ramped, inputs.whiskers.value_or(Whiskers{}), parameters_.touched);
+  if (bent_into_something(twist, ramped, inputs)) twist = {};
   twist.v = slowed(twist.v, ramped.v, inputs);
   const double measured = inputs.measured ? inputs.measured->v : 0.0;
   if (std::abs(measured) < kinematics::RollOut::kStanding || twist.w == ramped.w) return twist;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "control/movement_control/core/guard.hpp"
 #include "control/movement_control/core/situation.hpp"
@@ -91,6 +93,9 @@ struct Inputs {
   Localization localization = Localization::kLost;
   bool low_battery = false;
   Guard::View view;  ///< living through the decision; its cells know the map, so none when lost
+  /// Where people are or were lately, in base_footprint, living through the decision; absent:
+  /// nobody tells, and whatever the costs know may be somebody.
+  std::optional<std::span<const geometry::Point2>> people;
   std::optional<geometry::Twist2> measured;  ///< absent: the base is not connected
   bool motors_off = false;                   ///< after an emergency stop: it keeps no arc
 };
@@ -208,16 +213,20 @@ class MovementControl {
   Limited limited(const Wish& wish, const Bound& bound, const Inputs& inputs) const;
   void drive(const Wish& wish, const Inputs& inputs, Time now, Bound& bound, Decision& decision);
   double slowed(double cut, double before, const Inputs& inputs) const;
-  bool turns_beside_what_is_known(const geometry::Twist2& ramped, const Inputs& inputs) const;
+  bool turns_beside_what_is_known(const geometry::Twist2& ramped, const Inputs& inputs);
+  Whiskers known(const Inputs& inputs);
   bool presses(const geometry::Twist2& measured, Time now);
+  bool bent_into_something(const geometry::Twist2& bent, const geometry::Twist2& ramped,
+                           const Inputs& inputs) const;
   geometry::Twist2 reflex(const geometry::Twist2& ramped, const Inputs& inputs, Time now);
   void report(const Inputs& inputs, const Decision& decision, const Bound& bound, Time now);
 
   Parameters parameters_;
   Guard guard_;
   kinematics::WhiskerRods rods_;
-  std::optional<Time> turned_at_;  ///< last, as it was told, beside what it touches
-  bool pressed_ = false;           ///< until the touch ends
+  std::vector<geometry::Point2> nobodys_;  // lethal cells at the whiskers that are no person's
+  std::optional<Time> turned_at_;          ///< last, as it was told, beside what it touches
+  bool pressed_ = false;                   ///< until the touch ends
   drive::ResponseWatch watch_;
   kinematics::RollOut roll_out_;
   kinematics::RollOut kept_arc_;  ///< of a source that wants to be slower

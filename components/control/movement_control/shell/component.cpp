@@ -206,6 +206,10 @@ MovementControlComponent::MovementControlComponent(runtime::Host& host)
   person_ = host.input(
       topics::kPersonAhead,
       {.max_age = kPersonAge, .on_loss = "drives as with a person ahead", .optional = true});
+  people_ = host.input(topics::kPeople,
+                       {.max_age = kPersonAge,
+                        .on_loss = "what the costs know explains no touch: it may be somebody",
+                        .optional = true});
   command_ = host.output(topics::kDriveCommand);
   status_ = host.output(topics::kMovementStatus);
   command_timer_ = host.timer("command", milliseconds(20), [this](auto) { decide(); });
@@ -257,8 +261,22 @@ std::span<const geometry::Point2> MovementControlComponent::cells(double reach) 
 
 /// What counts for a robot that shall be, or is, so fast.
 Guard::View MovementControlComponent::view(double speed) {
-  return {surroundings_.points(), sees(), surroundings_.guessed(),
-          cells(core_.reach(speed))};
+  return {surroundings_.points(), sees(), surroundings_.guessed(), cells(core_.reach(speed))};
+}
+
+/// Where people are, or were when they were last seen.
+std::optional<std::span<const geometry::Point2>> MovementControlComponent::people() {
+  const auto* people = people_.fresh();
+  const auto* odom = odom_.fresh();
+  if (people == nullptr || odom == nullptr || people->header().frame_id() != frames::kOdom)
+    return std::nullopt;
+  const auto odom_T_base = wire::to_planar(odom->pose().pose());
+  if (!odom_T_base) return std::nullopt;
+  const geometry::Pose2 base_T_odom = geometry::inverse(*odom_T_base);
+  around_.clear();
+  for (const auto& person : people->people())
+    around_.push_back(base_T_odom * geometry::Point2(person.x(), person.y()));
+  return around_;
 }
 
 Inputs MovementControlComponent::gather() {
@@ -274,6 +292,7 @@ Inputs MovementControlComponent::gather() {
     inputs.whiskers = Whiskers{w->front_left(), w->front_right(), w->back_left(), w->back_right()};
   }
   inputs.person_ahead = person_ahead();
+  inputs.people = people();
   inputs.situation = situation_.situation();
   if (const auto* localization = localization_.fresh()) {
     const auto state = static_cast<Localization>(localization->state());

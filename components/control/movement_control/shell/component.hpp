@@ -29,6 +29,7 @@ class MovementControlComponent final : public runtime::Component {
   bool sees() const;
   Guard::View view(double speed);
   std::span<const geometry::Point2> cells(double reach);
+  std::optional<std::span<const geometry::Point2>> people();
   Inputs gather();
   std::optional<bool> person_ahead() const;
   void take_scan(const sensor_msgs::msg::LaserScan& scan);
@@ -43,6 +44,7 @@ class MovementControlComponent final : public runtime::Component {
   MovementControl core_;
   Surroundings surroundings_;
   LethalCells lethal_;
+  std::vector<geometry::Point2> around_;  ///< people, in base_footprint
   runtime::Duration scan_silence_{};
   std::optional<Time> leaned_at_;
   std::optional<Time> seen_at_;  ///< when a scan last told what is ahead; none: no scan comes
@@ -64,6 +66,7 @@ class MovementControlComponent final : public runtime::Component {
   runtime::Input<nav_msgs::msg::Odometry> odom_;
   runtime::Input<usher_msgs::msg::LocalizationStatus> localization_;
   runtime::Input<usher_msgs::msg::PersonAhead> person_;
+  runtime::Input<usher_msgs::msg::People> people_;
   runtime::Output<usher_msgs::msg::DriveCommand> command_;
   runtime::Output<usher_msgs::msg::MovementStatus> status_;
   runtime::Timer command_timer_;

@@ -48,6 +48,9 @@ class Component : public testing::Test {
 
   runtime::TestHost host;
   std::set<std::string> silent;
+  bool touched = false;  ///< its back right whisker
+  /// Where somebody is, in base_footprint; nothing: nobody tells of people.
+  std::optional<geometry::Point2> somebody;
   std::optional<bool> clear;  ///< what the people detector says; nothing: there is none
   double wanted_v = 1.0, wanted_w = 0.0;
   std::optional<geometry::Twist2> wanted_by_hand;
@@ -89,6 +92,7 @@ class Component : public testing::Test {
     if (speaks("whiskers")) {
       usher_msgs::msg::Whiskers whiskers;
       whiskers.header(header);
+      whiskers.back_right(touched);
       host.publish(topics::kWhiskers, whiskers);
     }
     if (speaks("base/status")) {
@@ -139,6 +143,14 @@ class Component : public testing::Test {
       wanted.twist().linear().x(wanted_by_hand->v);
       wanted.twist().angular().z(wanted_by_hand->w);
       host.publish(topics::kCmdVelManual, wanted, hand);
+    }
+    if (somebody && speaks("people")) {
+      usher_msgs::msg::People people;
+      people.header(wire::header(host.now(), "odom"));
+      const geometry::Point2 place = odom_T_base * *somebody;
+      auto& person = people.people().emplace_back();
+      person.x(place.x()), person.y(place.y());
+      host.publish(topics::kPeople, people, "people_detector");
     }
     if (clear && speaks("people/ahead")) {
       usher_msgs::msg::PersonAhead person;
@@ -415,6 +427,33 @@ TEST_F(Component, CostsThatTellNothingOfWhatIsAheadAreNotLookedAt) {
   run(2000);
   EXPECT_NEAR(commanded(), 0.3, 1e-6) << "in another frame";
   EXPECT_GT(host.counter("local costs: rejected"), 0U);
+}
+
+TEST_F(Component, WithoutPeopleTheCostsExplainNoTouch) {
+  measured_v = wanted_v = 0.0;
+  wanted_w = 0.5;
+  touched = true;
+  glass = -0.45;
+  somebody = geometry::Point2(2.0, 0.0);
+  const auto turns = [&] {
+    run(600);  // before it is taken to press against something
+    const double turn = host.last(topics::kDriveCommand)->w();
+    touched = false;
+    run(100);
+    touched = true;
+    return turn > 0.0;
+  };
+  EXPECT_TRUE(turns());
+  somebody = geometry::Point2(-0.6, -0.5);
+  EXPECT_FALSE(turns()) << "the costs may know him";
+  somebody = geometry::Point2(2.0, 0.0);
+  silent = {"people"};
+  EXPECT_FALSE(turns()) << "it may be somebody";
+  silent = {"odom"};
+  EXPECT_FALSE(turns()) << "where is he?";
+  silent.clear();
+  run(100);
+  EXPECT_TRUE(turns());
 }
 
 TEST_F(Component, WithoutAScanAnOperatorCreeps) {

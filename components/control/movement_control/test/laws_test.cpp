@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Whatever comes in: what goes out is finite, within the limit in force plus what slowing down
-// still needs, never against a whisker (but creeping in place beside what the laser saw), and zero
+// still needs, never against a whisker (but creeping in place beside what is known), and zero
 // without an enabled source.
 TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
   Random random(3);
@@ -42,6 +42,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
     const double slowest =
         0.5 * parameters.touched / parameters.guard.outline.circumscribed_radius();
     std::vector<geometry::Point2> things;
+    const std::vector<geometry::Point2> people{{3.0, 3.0}};
     Time now{};
     double last = 0.0;
     for (int i = 0; i < 200; ++i) {
@@ -64,6 +65,7 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
       inputs.view = {.sees = !chance(5)};
       if (!chance(3)) inputs.view.points = things;
       if (!chance(3)) inputs.view.cells = things;
+      if (!chance(3)) inputs.people = people;
       now += milliseconds(random.below(50));
       const Decision decision = control.decide(inputs, now);
       const Twist2& out = decision.twist;
@@ -82,8 +84,10 @@ TEST(MovementControl, KeepsItsLawsOnRandomInputs) {
             kinematics::whisker_reflex(out, *inputs.whiskers, Parameters{}.touched) != out;
         if (against) {
           ++beside_what_is_known;
-          const Whiskers unknown =
-              kinematics::without(*inputs.whiskers, rods.at_seen(inputs.view.points) | rods.at_known(inputs.view.cells));
+          const bool costs_count = inputs.people && inputs.localization == Localization::kGood;
+          const Whiskers unknown = kinematics::without(
+              *inputs.whiskers, rods.at_seen(inputs.view.points) |
+                                    (costs_count ? rods.at_known(inputs.view.cells) : Whiskers{}));
           ASSERT_EQ(kinematics::whisker_reflex(out, unknown, Parameters{}.touched), out);
           ASSERT_TRUE(parameters.guarded && inputs.measured);
           ASSERT_LT(std::abs(inputs.measured->v), RollOut::kStanding);
@@ -128,6 +132,7 @@ TEST(MovementControl, KeepsItsLawsOfABaseThatRolls) {
     MovementControl control(parameters);
     Rolls base(random);
     std::vector<geometry::Point2> things;
+    const std::vector<geometry::Point2> people{{3.0, 3.0}};
     Inputs inputs = all_well();
     Twist2 told;
     std::deque<std::pair<Time, double>> turns;  // told and done, while the longest stop lasts

@@ -526,6 +526,8 @@ TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheLaserSaw) {
 }
 
 TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheCostsKnow) {
+  const std::vector<geometry::Point2> elsewhere{{2.0, 0.0}};
+  inputs.people = elsewhere;
   inputs.view.points = left;
   inputs.view.cells = right;
   EXPECT_NEAR(turn(), creeping, 1e-9) << "the laser has forgotten the wall behind";
@@ -533,12 +535,26 @@ TEST_F(InACorridor, TurnsOnCreepingBesideWhatTheCostsKnow) {
   inputs.view.cells = both;
   EXPECT_NEAR(turn(), creeping, 1e-9);
   EXPECT_EQ(turn(true), 0.0) << "something unknown before the wall";
+  inputs.localization = Localization::kDegraded;
+  EXPECT_EQ(turn(), 0.0) << "where are the map's walls?";
+}
+
+TEST_F(InACorridor, WhatTheCostsKnowMayBeSomebody) {
+  inputs.view.cells = both;
+  inputs.view.points = {};
+  EXPECT_EQ(turn(), 0.0) << "nobody tells of people";
+  for (const double away : {0.3, 0.8}) {
+    const std::vector<geometry::Point2> behind{{-0.5 - away, -0.35}};
+    inputs.people = behind;
+    EXPECT_EQ(turn() > 0.0, away > 0.5) << away;
+  }
 }
 
 TEST_F(InACorridor, TurnsIntoNothingThatNobodyKnows) {
   inputs.view.points = left;
   EXPECT_EQ(turn(), 0.0) << "what is at the back right corner?";
-  const std::vector<geometry::Point2> marks(2, {-0.4, -0.35});
+  const std::vector<geometry::Point2> marks(2, {-0.4, -0.35}), elsewhere{{2.0, 0.0}};
+  inputs.people = elsewhere;
   inputs.view.cells = marks;
   EXPECT_EQ(turn(), 0.0) << "the costs have the touch's own mark";
   inputs.view.cells = {};
@@ -602,6 +618,20 @@ TEST_F(InACorridor, TheGuardEndsATurnBeforeACornerMeetsWhatIsSeen) {
   };
   EXPECT_GT(turns_beside(0.46), 0.0);
   EXPECT_EQ(turns_beside(0.44), 0.0);
+}
+
+/// Flush with a wall on its right, which both whiskers there touch: of the bend that its planner
+/// wants, away from the post that the wall ends in, they leave a part.
+TEST_F(Guarded, WhatTheWhiskersLeaveOfABendLeadsIntoNothingThatWasSeen) {
+  for (const double ahead : {0.02, 0.3}) {
+    points.clear();
+    for (int i = 0; i < 5; ++i) points.emplace_back(0.305 + ahead, -0.25 - 0.01 * i);
+    inputs.view = {.points = points, .sees = true};
+    inputs.whiskers = Whiskers{.front_right = true, .back_right = true};
+    inputs.manual.reset();
+    inputs.navigation = Twist2{0.1, 0.8};
+    EXPECT_EQ(settled(inputs, parameters).twist.v > 0.0, ahead > 0.1) << ahead;
+  }
 }
 
 TEST_F(Guarded, ALostPlannerMayTurn) {

@@ -58,20 +58,23 @@ KinectComponent::KinectComponent(runtime::Host& host, runtime::Duration reading)
                    "Recorded images, or a Kinect v1 at the USB, whatever the model.") == "live";
   const bool v1 = live_ || model == "v1";
   const auto given = p.numbers("robot.kinect.distortion", "-", {-10, 10}, 0, 5, {},
-                               "k1, k2, p1, p2, k3; none: the recording is rectified already.");
+                               "k1, k2, p1, p2, k3; none: the images are rectified already.");
   Distortion distortion{};
   std::copy_n(given.begin(), std::min(given.size(), distortion.size()), distortion.begin());
   const bool mirrored =
       p.flag("mirrored", false, "Whether the images are mirrored, as a Kinect v2 delivers them.");
   folder_ = p.file("recording", "", "Folder with recorded depth images (*.pgm, INDEX.txt).");
   values_ = p.choice("values", {"millimeters", "raw_11_bit"}, "millimeters",
-                     "What the recorded values are.") == "raw_11_bit"
+                     "What the values of the images are.") == "raw_11_bit"
                 ? Values::kRaw11
                 : Values::kMillimeters;
   const bool laid_on_color = live_ && values_ == Values::kMillimeters;
   intrinsics_ = laid_on_color ? kinect_v1_registered() : v1 ? kinect_v1() : kinect_v2();
   const auto lens = p.numbers("robot.kinect.intrinsics", "-", {0, 5000}, 0, 4, {},
                               "fx, fy, cx, cy in pixels; none: the model's usual ones.");
+  if (!lens.empty() && lens.size() != 4)
+    host.fault("robot.kinect.intrinsics: expected fx, fy, cx, cy or nothing, got " +
+               std::to_string(lens.size()) + " values");
   if (lens.size() == 4) {
     intrinsics_.fx = lens[0], intrinsics_.fy = lens[1];
     intrinsics_.cx = lens[2], intrinsics_.cy = lens[3];

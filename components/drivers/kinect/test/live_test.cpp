@@ -97,6 +97,14 @@ TEST(LiveKinectTest, EndsWhenAReadHangsSoThatAnotherProcessReadsOn) {
   EXPECT_EQ(host.fault_reason(), "the Kinect hangs: a read takes over 5 s");
 }
 
+TEST(LiveKinectTest, RefusesAnIncompleteLens) {
+  runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
+                         "source: live\nrobot.kinect.intrinsics: [365, 365, 256]");
+  host.run_for(milliseconds(10));
+  EXPECT_EQ(host.fault_reason(),
+            "robot.kinect.intrinsics: expected fx, fy, cx, cy or nothing, got 3 values");
+}
+
 TEST(LiveKinectTest, SaysWhatIsMissing) {
   if (is_fake()) GTEST_SKIP() << "against the library itself";
   runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),

@@ -76,7 +76,8 @@ std::span<const std::uint8_t> EmulatedBase::feedback(const SegwayFeedback& state
   const double charge = std::isfinite(state.battery_percent) ? state.battery_percent / 100.0 : 0.0;
   const double volts = calibration_.battery_empty +
                        charge * (calibration_.battery_full - calibration_.battery_empty);
-  const auto status = static_cast<std::uint16_t>(on ? kMotorsEnabled | kBalanceMode : 0);
+  const auto status =
+      static_cast<std::uint16_t>(state.status_1 | (on ? kMotorsEnabled | kBalanceMode : 0));
   std::size_t at = 0;
   for (const bool channel_b : {false, true}) {
     const std::array<Packet, kFrames> packets{{

@@ -68,6 +68,7 @@ SegwayRmpComponent::SegwayRmpComponent(runtime::Host& host)
        .guard = {.safe = {zero.begin(), zero.end()}, .silence = runtime::from_seconds(silence)},
        .take =
            [this](const SegwayFeedback& feedback) {
+             driver_.warn(line_.link().reason());
              driver_.take(feedback);
              remember();  // that it balances, and that it fell
            },

@@ -46,8 +46,9 @@ void BaseDriver::take(const SegwayFeedback& feedback) {
                 .twist = odometry_.twist(),
                 .battery_percent = feedback.battery_percent});
   const bool balances = feedback.mode == Mode::kBalancing;
+  const std::string standing = warning_.empty() ? "" : ": " + warning_;
   host_.health().set(balances ? HealthState::kOk : HealthState::kDegraded,
-                     balances ? "" : "the base does not balance");
+                     balances ? warning_ : "the base does not balance" + standing);
 }
 
 void BaseDriver::disconnected(const std::string& reason) {

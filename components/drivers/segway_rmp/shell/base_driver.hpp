@@ -16,6 +16,8 @@ class BaseDriver {
 
   /// One control cycle of the base came in.
   void take(const SegwayFeedback& feedback);
+  /// What the base says of itself: why it does not drive, or a warning; empty when all is well.
+  void warn(const std::string& reason) { warning_ = reason; }
   /// The base is not heard; why.
   void disconnected(const std::string& reason);
 
@@ -23,6 +25,7 @@ class BaseDriver {
   runtime::Host& host_;
   drive::ObedientBase base_;
   Odometry odometry_;
+  std::string warning_;
   std::uint64_t& rejected_feedback_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/segway_rmp/core/emulated_base.hpp"
+#include "drivers/segway_rmp/core/status.hpp"
 #include "drivers/segway_rmp/device_real/component.hpp"
 #include "support/right_to_drive.hpp"
 
@@ -35,6 +36,7 @@ class Device final : public runtime::LockstepDevice {
   runtime::Bytes speak(runtime::Time now) override {
     if (silent) return {};
     state_.stamp = now.time_since_epoch();
+    state_.status_1 = warning;
     if (!hangs) {
       const double outer = 0.5 * Odometry::Parameters{}.track * twist.w;
       state_.left_velocity = twist.v - outer;
@@ -68,6 +70,7 @@ class Device final : public runtime::LockstepDevice {
   geometry::Twist2 will;   ///< what the guard would order
   runtime::Duration will_lasts{};
   int shutdowns = 0, balances = 0;
+  std::uint16_t warning = 0;  ///< in its status
   bool silent = false;
   bool damaged = false;  ///< one frame of each cycle
   bool hangs = false;    ///< what it measures
@@ -358,6 +361,19 @@ TEST_F(DeviceReal, CountsWhatItsLineSpoils) {
   EXPECT_GT(host.counter("bytes: skipped"), 0U);
   EXPECT_GT(host.counter("cycles: incomplete"), 0U);
   EXPECT_EQ(host.counter("odometers: jumped"), 0U);
+}
+
+TEST_F(DeviceReal, TellsWhatTheBaseSaysOfItself) {
+  right.run(2000);
+  EXPECT_EQ(host.heartbeat().reason(), "");
+  device->warning = kLowBatteryHazard;
+  right.run(1000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  EXPECT_EQ(host.heartbeat().reason(), "low battery hazard");
+  device->warning = kSafetyShutdown1;
+  device->switch_off();
+  right.run(1000);
+  EXPECT_EQ(host.heartbeat().reason(), "the base does not balance: safety shutdown 1");
 }
 
 TEST_F(DeviceReal, OnlyTheSupervisorSwitchesItsMotors) {

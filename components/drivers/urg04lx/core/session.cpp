@@ -104,10 +104,11 @@ bool Session::handle_scan(const Answer& answer, Time now) {
     ++rejected_;
     return false;
   }
-  // The stamp is that of step 0.
-  scan_.stamp =
-      clock_.stamp(counter, now) +
-      Time(static_cast<std::int64_t>(1e9 * scan_.time_increment * specification_.first_step));
+  // The counter is that of step 0, and the answer leaves no sooner than the last step is measured:
+  // that is what the clock makes of the counter.
+  const int steps = specification_.last_step - specification_.first_step;
+  scan_.stamp = clock_.stamp(counter, now) -
+                Time(static_cast<std::int64_t>(1e9 * scan_.time_increment * steps));
   last_scan_ = now;
   reason_.clear();
   return true;

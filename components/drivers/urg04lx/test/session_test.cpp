@@ -137,6 +137,9 @@ TEST_F(Dialogue, ALateLineDoesNotShakeTheStamps) {
   for (std::size_t i = 5; i < scans.size(); ++i) {
     const double step = std::chrono::duration<double>(scans[i].stamp - scans[i - 1].stamp).count();
     EXPECT_NEAR(step, 0.1, 0.001);
+    const Time last_beam = began + milliseconds(100 * static_cast<int>(i));
+    const double first = std::chrono::duration<double>(last_beam - scans[i].stamp).count();
+    EXPECT_NEAR(first, 681 * 97.66e-6, 0.001) << "it said so when it had measured the last step";
   }
 }
 

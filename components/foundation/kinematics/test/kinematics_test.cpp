@@ -360,9 +360,9 @@ TEST(WhiskerRods, LieAtWhatWasSeenTwiceOrKnownInThreeCells) {
     EXPECT_EQ(at({there, {there.x(), 1.4 * there.y()}}), none) << "one beside it";
     const std::vector<Point2> cells(3, there);
     const Whiskers known = rods.at_known(cells);
-    EXPECT_EQ((std::vector<bool>{known.front_left, known.front_right, known.back_left,
-                                 known.back_right}),
-              one);
+    EXPECT_EQ(
+        (std::vector<bool>{known.front_left, known.front_right, known.back_left, known.back_right}),
+        one);
     EXPECT_FALSE(any(rods.at_known(std::span(cells).first(2)))) << "a touch's own marks";
   }
   EXPECT_EQ(at({{0.6, 0.3}, {0.6, 0.31}}), none) << "ahead of the robot, beside the whisker";

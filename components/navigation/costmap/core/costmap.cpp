@@ -231,6 +231,15 @@ bool Costmap::beside(LayerId layer, const geometry::Point2& point, double reach)
   return has_obstacle(one.states(), near);
 }
 
+bool Costmap::seen_free(LayerId layer, const geometry::Point2& point) const {
+  assert(layer < layers_.size());
+  if (!reachable(point.x(), point.y())) return false;
+  const ObstacleLayer& one = layers_[layer];
+  const grid::Cell cell = raster_.cell_at(point.x(), point.y());
+  const CellRect at = CellRect{cell.x, cell.y, cell.x + 1, cell.y + 1}.within(one.seen());
+  return !at.empty() && one.states().row(cell.y)[cell.x] == kSeenFree;
+}
+
 bool Costmap::unmapped_beside(const ObstacleLayer& layer, grid::Cell cell, double reach) const {
   const CellRect near = around(cell, reach).within(layer.seen());
   int found = 0;

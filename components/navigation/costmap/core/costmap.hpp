@@ -83,6 +83,8 @@ class Costmap {
 
   /// Whether a layer has an obstacle within `reach` [m] of a point (in x and y).
   bool beside(LayerId layer, const geometry::Point2& point, double reach) const;
+  /// Whether a layer saw that nothing is at a point.
+  bool seen_free(LayerId layer, const geometry::Point2& point) const;
   /// Whether a layer has two obstacles within `reach` [m] of a point (in x and y) that are not of
   /// the static map, which has none within kMapped of them: something that may walk away.
   bool unmapped_beside(LayerId layer, const geometry::Point2& point, double reach) const;

@@ -32,7 +32,7 @@ constexpr double kWalks = 0.3;         // [m/s] who walks is elsewhere when the 
 constexpr double kWhiskerReach = 0.1;  // [m]
 constexpr double kFoot = 0.5;          // [m] so near to what the laser sees a low thing is its foot
 constexpr double kApproach = 0.6;      // [m] before it is too near to be measured, a thing is seen
-constexpr double kComes = 0.1;         // [m] before that, too: what appears nearer came by itself
+constexpr double kComes = 0.1;         // [m] more than that, what comes by itself appears within
 constexpr float kSure = 0.8F;          // confidence of what is remembered
 constexpr double kSamePlace = 0.1;     // [m] what two sensors see so near is one surface
 constexpr double kFelt = 0.2;          // [m] from where a contact is put
@@ -222,7 +222,7 @@ void CostmapComponent::read_depth_settings(runtime::Parameters& parameters) {
   depth_near_range_ = parameters.number(
       "depth_near_range", "m", {0, 2}, 0.9,
       "Nearer than this much leaves the Kinect's image, and below 0.5 m it measures nothing: what "
-      "it saw there stays.");
+      "it saw before stays there.");
   low_blind_range_ = wire::read_kinect_blind_range(parameters);
   rear_blind_range_ = parameters.number(
       "rear_blind_range", "m", {0, 4}, 1.2,
@@ -430,20 +430,25 @@ void CostmapComponent::place_scan(const sensor_msgs::msg::LaserScan& scan, Beams
 /// What the Kinect alone sees near the robot stays there when it is too near to be seen again: not
 /// people, who walk on, nor what the laser sees at the same place, which its own layer has as long
 /// as it is there. Whom nobody told of yet when he was seen is forgotten when he is told of. What
-/// stands was seen before it was too near; what was not has come, and goes.
+/// appears near where nothing was has come by itself, and goes.
 bool CostmapComponent::take_depth(Map& map, const sensor_msgs::msg::LaserScan& scan,
                                   const RangeObservation& seen) {
   if (!observe(map, map.depth, seen)) return false;
-  if (people_heard_ && people_.fresh() == nullptr) return true;  // it could be anybody
+  if (people_heard_ && !people_known_) return true;  // it could be anybody
   RangeObservation lasting = seen;
   lasting_ranges_ = scan.ranges();
   drop_what_people_hide(seen.directions, seen.sensor, places_, lasting_ranges_);
   const ObstacleLayerConfig& layer = map.costs->layer(map.near).config();
-  const double nearest = layer.min_raytrace_range + kComes, farthest = layer.max_obstacle_range;
+  const auto came = [&](float range, const geometry::Point2& direction) {
+    return range > 0.0F && static_cast<double>(range) < layer.min_raytrace_range + kComes &&
+           map.costs->seen_free(map.near, seen.sensor * (static_cast<double>(range) * direction));
+  };
+  for (std::size_t i = 0; i < lasting_ranges_.size(); ++i)
+    if (came(lasting_ranges_[i], seen.directions[i])) lasting_ranges_[i] = std::nanf("");
   const auto& sure = scan.intensities();
   const auto stays = [&](std::size_t bearing, const geometry::Point2& place) {
     const auto range = static_cast<double>(scan.ranges()[bearing]);
-    if (range < nearest || range > farthest) return false;
+    if (range > layer.max_obstacle_range) return false;
     if (bearing < sure.size() && sure[bearing] < kSure) return false;
     const geometry::Point2 in_window = seen.sensor * place;
     const auto beside = [&](const auto& person) { return (person - in_window).norm() <= kFoot; };
@@ -466,10 +471,11 @@ bool CostmapComponent::take_low(Map& map, const sensor_msgs::msg::LaserScan& sca
     return !wire::is_drop(scan, bearing) &&
            map.costs->unmapped_beside(map.laser, seen.sensor * place, kFoot);
   };
-  seen.ranges = own_ranges_;
   keep_own(lasting_ranges_, seen.directions, is_foot, own_ranges_);
+  seen.ranges = own_ranges_;
   if (!observe(map, map.feet, seen)) return false;
   keep_own(lasting_ranges_, seen.directions, std::not_fn(is_foot), own_ranges_);
+  seen.ranges = own_ranges_;
   return observe(map, map.low, seen);
 }
 
@@ -593,6 +599,7 @@ void CostmapComponent::remember_contacts(std::span<const geometry::Point2> in_od
 /// Room in the window for who is ahead (who comes from behind sees the robot), on the map for who
 /// stands.
 void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
+  people_heard_ = true;
   const runtime::Time stamp = wire::from_message(message.header().stamp());
   const auto base_T_odom = transforms_.lookup_planar(frames::kBaseFootprint, frames::kOdom, stamp);
   if (message.header().frame_id() != frames::kOdom || !base_T_odom) {
@@ -606,7 +613,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
   bodies_.clear();
   maybe_there_.clear();
   told_.clear();
-  people_heard_ = true;
+  people_known_ = true;
   for (const auto& person : message.people()) {
     const geometry::Point2 place(person.x(), person.y());
     told_.push_back(place);
@@ -622,6 +629,7 @@ void CostmapComponent::take_people(const usher_msgs::msg::People& message) {
 }
 
 void CostmapComponent::forget_people() {
+  people_known_ = false;
   bodies_.clear();
   maybe_there_.clear();
   told_.clear();
@@ -670,6 +678,8 @@ void CostmapComponent::publish_global() {
 void CostmapComponent::report() {
   if (!scan_.fresh()) {
     host_.health().set(HealthState::kDegraded, "no scan");
+  } else if (host_.now() - local_published_ > laser_beams_.max_age + local_period_) {
+    host_.health().set(HealthState::kDegraded, "no scan that can be used");
   } else if (!refused_map_.empty()) {
     host_.health().set(HealthState::kDegraded, refused_map_);
   } else if (!global_.static_known) {

@@ -94,6 +94,7 @@ class CostmapComponent final : public runtime::Component {
   std::vector<geometry::Point2> maybe_there_;      ///< and those who were seen a little before
   std::vector<geometry::Point2> told_;             ///< and those who are remembered
   bool people_heard_ = false;                      ///< once
+  bool people_known_ = false;                      ///< now
   std::vector<geometry::Point2> places_;           ///< theirs in a map's frame
 
   struct Contact {

@@ -10,8 +10,6 @@
 namespace usher::costmap {
 namespace {
 
-constexpr int kPassing = 252;  // of what bars the way on the map's free ground
-
 TEST_F(Component, MarksWhatTheLaserSees) {
   give_map();
   run(1500);
@@ -28,6 +26,18 @@ TEST_F(Component, SaysNothingNewWithoutScansAndReturnsWithThem) {
   host.clear();
   run(600, false);
   EXPECT_TRUE(host.written(topics::kLocalCosts).empty()) << "old costs are not made new";
+  run(1000);
+  EXPECT_EQ(reason(), "");
+}
+
+TEST_F(Component, SaysThatItsScansCannotBeUsed) {
+  give_map();
+  run(1500);
+  for (int i = 0; i < 50; ++i) {
+    host.publish(topics::kScanFiltered, scan("nowhere"));
+    run(20, false);
+  }
+  EXPECT_EQ(reason(), "no scan that can be used");
   run(1000);
   EXPECT_EQ(reason(), "");
 }
@@ -256,6 +266,17 @@ TEST_F(Component, CountsPeopleOfAnotherFrame) {
   host.publish(topics::kPeople, people);
   run(600);
   EXPECT_EQ(host.counter("people: rejected"), 1U);
+  laser_range = 3.5F;
+  for (int i = 0; i < 10; ++i) {
+    people.header(wire::header(host.now(), frames::kMap));
+    host.publish(topics::kPeople, people);
+    host.publish(topics::kKinectScan, scan("laser", 1.1F));
+    run(40);
+  }
+  EXPECT_EQ(local_cost(1.12, 0.0), kLethalCost);
+  base.x = 0.4;
+  for (int i = 0; i < 5; ++i) host.publish(topics::kKinectScan, scan("laser", kNothing)), run(40);
+  EXPECT_LT(local_cost(1.12, 0.0), kLethalCost) << "it may have been somebody";
 }
 
 TEST_F(Component, DropsAndCountsLateScansOfItsOwnHost) {

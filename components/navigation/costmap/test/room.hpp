@@ -16,6 +16,7 @@ namespace usher::costmap {
 
 using std::chrono::milliseconds;
 
+inline constexpr int kPassing = 252;  ///< of what bars the way on the map's free ground
 inline constexpr const char* kFootprint =
     "robot.footprint: [0.3, 0.3, -0.3, 0.3, -0.3, -0.3, 0.3, -0.3]";
 

@@ -375,8 +375,8 @@ double DynamicWindow::creeping_turn(const Input& input) const {
 }
 
 /// The fastest turn in place by `angle` that its room and its whiskers allow [rad/s]; zero: none.
-/// Touching what the costs know, corners creep, and only with half of the clearance; farther on
-/// that may be a touch's own mark. movement_control, which watches whether it presses, decides.
+/// Touching what the costs know, corners creep, and only with half of the clearance for what comes
+/// soon. movement_control, which watches for people and whether it presses, decides.
 double DynamicWindow::turn_rate(const Input& input, double angle) const {
   if (kinematics::bars_turn(unexplained_, angle)) return 0.0;
   const bool touching = kinematics::bars_turn(touches_, angle);

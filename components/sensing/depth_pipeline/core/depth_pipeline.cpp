@@ -230,6 +230,15 @@ std::size_t DepthPipeline::bearing_of(double forward, double left) const {
       std::clamp(step, 0.0, static_cast<double>(geometry_.count) - 1.0));
 }
 
+/// The first and last bearing of a column at a forward distance [m] from the camera's foot, where a
+/// pixel is `side_per_pixel` [m] wide: neighbouring columns are less than two bearings apart.
+std::pair<std::size_t, std::size_t> DepthPipeline::bearings_of(int column, double forward,
+                                                               double side_per_pixel) const {
+  const std::size_t first =
+      bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel);
+  return {first, std::min(first + 1, geometry_.count - 1)};
+}
+
 /// A column whose pixels measured something is free up to what is marked later.
 void DepthPipeline::mark_seen(const CameraPose& pose) {
   const std::uint16_t* valid = columns_.data() + kValid * column_stride_;
@@ -398,7 +407,8 @@ void DepthPipeline::forget_blind_falls(const FloorPrediction& floor) {
 
 /// A wall that is looked at along it gives no measurement. All that the image shows of it is where
 /// the floor ends, in line with where it ends before what stands in the columns beside, and nothing
-/// from there up to the horizon. Behind a patch of floor that mirrors there is floor again.
+/// from there up to the horizon. Behind a patch of floor that mirrors there is floor again. A roll
+/// of the fitted floor is not heeded: at the image's edges such a wall may be missed.
 void DepthPipeline::mark_feet(const DepthImage& image, const CameraPose& pose) {
   const std::uint16_t* high = columns_.data() + (kHigh + 2) * column_stride_;
   const std::uint16_t* fall = columns_.data() + kFall * column_stride_;
@@ -411,11 +421,16 @@ void DepthPipeline::mark_feet(const DepthImage& image, const CameraPose& pose) {
       if (high[column] != kernels::kNothing) {
         foot = floor_ends_[column] != kernels::kNothing ? ends : kHalfMillimeter * high[column];
         gap = 0;
-      } else if (foot && fall[column] != kernels::kNothing && std::abs(ends - *foot) <= kFallGap &&
+      } else if (foot && fall[column] != kernels::kNothing && behind_floor_[column] != 0 &&
+                 std::abs(ends - *foot) <= kFallGap &&
                  measured_between(image, column, horizon, row_of_floor(pose, ends)) <= kHardlyAny) {
         foot = ends;
         gap = 0;
-        mark(scan_.ranges, column, ends, (ends * level + sunk) / intrinsics_.fx);
+        const double side = (ends * level + sunk) / intrinsics_.fx;
+        mark(scan_.ranges, column, ends, side);
+        const auto [first, last] = bearings_of(column, ends, side);
+        for (std::size_t i = first; i <= last; ++i)  // it hides what is behind it
+          if (std::isinf(low_.ranges[i])) low_.ranges[i] = kUnknown;
       } else if (++gap > kFootGap) {
         foot.reset();
       }
@@ -466,10 +481,8 @@ int DepthPipeline::mark_drops(const DepthImage& image, const CameraPose& pose) {
           if (behind_floor_[column] != 0 && measured_over(image, column, row))
             mark(fallen_behind_floor_, column, forward, side_per_pixel(forward));
         } else {
-          const std::size_t bearing =
-              bearing_of(forward + shift_, (intrinsics_.cx - column) * side_per_pixel(forward));
-          const std::size_t last = std::min(bearing + 1, geometry_.count - 1);  // as mark_seen
-          for (std::size_t i = bearing; i <= last; ++i) {
+          const auto [first, last] = bearings_of(column, forward, side_per_pixel(forward));
+          for (std::size_t i = first; i <= last; ++i) {
             low_.ranges[i] = fallen_[i] = fallen_behind_floor_[i] = kUnknown;
             looked_[i] = 0;
           }

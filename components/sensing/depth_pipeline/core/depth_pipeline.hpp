@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "foundation/cpu/cpu.hpp"
@@ -135,6 +136,8 @@ class DepthPipeline {
   void drop_unsupported(std::vector<float>& ranges) const;
   void mark(std::vector<float>& ranges, int column, double forward, double side_per_pixel);
   std::size_t bearing_of(double forward, double left) const;
+  std::pair<std::size_t, std::size_t> bearings_of(int column, double forward,
+                                                  double side_per_pixel) const;
 
   Intrinsics intrinsics_;
   PipelineConfig config_;

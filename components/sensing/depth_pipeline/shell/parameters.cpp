@@ -8,7 +8,7 @@ PipelineConfig read_pipeline(runtime::Parameters& p) {
   PipelineConfig c;
   c.floor.floor_margin = p.number("floor_margin", "m", {0, 0.5}, c.floor.floor_margin,
                                   "What is lower than this counts as floor.");
-  c.floor.angle_margin = p.number("angle_margin", "-", {0, 0.1}, c.floor.angle_margin,
+  c.floor.angle_margin = p.number("angle_margin", "rad", {0, 0.1}, c.floor.angle_margin,
                                   "And this more for each metre of distance: error of the pitch.");
   c.floor.ceiling = p.number("ceiling", "m", {0.3, 4}, c.floor.ceiling,
                              "What is higher is nothing to the robot.");

@@ -375,41 +375,66 @@ TEST(DepthPipeline, AHoleIsAsWideAsItIsThoughTheCameraLooksDown) {
   }
 }
 
-/// A wall 0.7 m to the left: from 2 m on it is looked at so flatly that it gives no measurement.
-TEST(DepthPipeline, AWallThatIsLookedAtAlongItStandsWhereTheFloorEnds) {
-  constexpr double kWallAt = 0.7;
-  const auto look = [&](bool floor_behind, bool wall_before) {
+/// A wall 0.7 m beside the camera's way: from 2 m on it is looked at so flatly that it gives no
+/// measurement.
+class AlongAWall : public testing::TestWithParam<double> {
+ protected:
+  enum class Beyond { kNothing, kFloor, kNoFloorAtAll };
+  static constexpr double kWall = 0.7;  // [m] beside
+
+  /// The range at the bearing where the wall is 2.5 m ahead; it begins `from` m ahead, is measured
+  /// up to 2 m, and nearer by `step` there.
+  float look(Beyond beyond, bool before = true, double step = 0.0) {
+    const double sense = GetParam();
     SyntheticScene scene;
     scene.half_width = scene.end = 30.0;
-    scene.boxes = {{-2.0, -kWallAt, 2.5, 0.3, 3.2}};
-    DepthPipeline pipeline = make(scene);
+    const SyntheticScene bare = scene;
+    const auto box = [&](double beside) {
+      return SyntheticBox{sense > 0.0 ? -2.0 : beside, sense > 0.0 ? -beside : 2.0, 2.5, 0.3, 3.2};
+    };
+    scene.boxes = {box(kWall)};
     auto image = scene.draw(kPose);
-    SyntheticScene bare = scene;
-    bare.boxes.clear();
     const auto floor = bare.draw(kPose);
-    for (int column = 0; column < 256; ++column) {
-      const double side = (scene.camera.cx - column) / scene.camera.fx;
+    scene.boxes = {box(kWall - step)};
+    const auto nearer = scene.draw(kPose);
+    for (int column = 0; column < 512; ++column) {
+      const double side = sense * (scene.camera.cx - column) / scene.camera.fx;
       for (int row = 0; row < 424; ++row) {
         auto& depth = image[pixel(row, column)];
         const std::uint16_t bare_floor = floor[pixel(row, column)];
-        if (depth == bare_floor) continue;
-        if (side > kWallAt / 2.0) {  // before 2 m
-          if (!wall_before) depth = bare_floor;
-          continue;
+        const bool wall = depth != bare_floor;
+        if (side > kWall / 2.0) {
+          depth = before ? nearer[pixel(row, column)] : bare_floor;
+        } else if (side > kWall / 3.2 && beyond == Beyond::kNoFloorAtAll) {
+          if (row > 150) depth = 0;
+        } else if (wall) {
+          const double behind = 1e-3 * bare_floor - kWall / side;
+          depth = beyond == Beyond::kFloor && behind > 0.4 ? bare_floor : std::uint16_t{0};
         }
-        const double behind = 1e-3 * bare_floor - kWallAt / side;
-        depth = floor_behind && behind > 0.4 ? bare_floor : std::uint16_t{0};
       }
     }
+    DepthPipeline pipeline = make(scene);
     const auto view = pipeline.process(view_of(scene.camera, image), kPose).value();
-    EXPECT_EQ(view.drops, 0);
     EXPECT_EQ(positive(view.low->ranges), 0U);
-    return at(pipeline, view.scan->ranges, std::atan(kWallAt / (2.5 + kPose.forward - 0.2)));
-  };
-  EXPECT_NEAR(look(false, true), std::hypot(2.5, kWallAt), 0.1);
-  EXPECT_EQ(look(true, true), kInfinity) << "a patch that mirrors: floor is seen behind it";
-  EXPECT_EQ(look(false, false), kInfinity) << "nothing stands beside it";
+    const double bearing = sense * std::atan(kWall / 2.5);
+    low = at(pipeline, view.low->ranges, bearing);
+    return at(pipeline, view.scan->ranges, bearing);
+  }
+  float low = 0.0F;
+};
+
+TEST_P(AlongAWall, ItStandsWhereTheFloorEnds) {
+  const double range = std::hypot(2.5, kWall);
+  EXPECT_NEAR(look(Beyond::kNothing), range, 0.1);
+  EXPECT_NEAR(low, -range, 0.1) << "it hides what is low behind it";
+  EXPECT_EQ(look(Beyond::kFloor), kInfinity) << "a patch that mirrors: floor is seen behind it";
+  EXPECT_EQ(look(Beyond::kNothing, false), kInfinity) << "nothing stands beside it";
+  EXPECT_EQ(look(Beyond::kNothing, true, 0.3), kInfinity) << "not in line with what stands there";
+  const float hand = look(Beyond::kNoFloorAtAll);
+  EXPECT_FALSE(hand > 0.0F && hand < 2.0F) << "what hides the floor has no foot: " << hand;
 }
+
+INSTANTIATE_TEST_SUITE_P(OnBothSides, AlongAWall, testing::Values(1.0, -1.0));
 
 TEST(DepthPipeline, SmallReflectionsBelowTheFloorAreNoDrops) {
   SyntheticScene scene;

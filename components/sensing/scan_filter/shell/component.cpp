@@ -52,7 +52,10 @@ ScanFilterComponent::ScanFilterComponent(runtime::Host& host)
       pitch_(host, "publishes no scans: navigation stops", [this] { filter_waiting(); }),
       rejected_(host.health().counter("scans: rejected")),
       without_pitch_(host.health().counter("scans: without pitch")),
-      floor_(host.health().counter("beams: floor")) {
+      floor_(host.health().counter("beams: floor")),
+      high_(host.health().counter("beams: high")),
+      mixed_(host.health().counter("beams: mixed")),
+      invalid_(host.health().counter("beams: invalid")) {
   const ScanFilterConfig laser = laser_config(host.parameters());
   laser_ = make_channel("laser_level", laser, host.output(topics::kScanFiltered));
   ultrasonic_ = make_channel("ultrasonic_level", ultrasonic_config(host.parameters(), laser),
@@ -124,7 +127,8 @@ bool ScanFilterComponent::filter(Channel& channel, const sensor_msgs::msg::Laser
     refuse(channel, filtered.error());
     return true;
   }
-  floor_ = laser_.filter->counts().floor;
+  const FilterCounts& counts = laser_.filter->counts();
+  floor_ = counts.floor, high_ = counts.high, mixed_ = counts.mixed, invalid_ = counts.invalid;
   if (!channel.placed) {
     channel.placed = true;
     place_frames();

@@ -40,7 +40,7 @@ class ScanFilterComponent final : public runtime::Component {
   wire::PitchInput pitch_;
   std::uint64_t& rejected_;
   std::uint64_t& without_pitch_;
-  std::uint64_t& floor_;
+  std::uint64_t &floor_, &high_, &mixed_, &invalid_;  ///< beams of the laser
   Channel laser_, ultrasonic_;
   runtime::Time laser_left_{};  ///< when the last laser scan did
   runtime::Input<sensor_msgs::msg::LaserScan> scan_;
