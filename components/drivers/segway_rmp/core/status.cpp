@@ -16,7 +16,6 @@ constexpr Meaning kWord1[] = {
     {kSafetyShutdown1, Severity::kError, "safety shutdown 1"},
     {kSafetyShutdown2, Severity::kError, "safety shutdown 2"},
     {kDisableResponse, Severity::kError, "disable response"},
-    {kSpeedLimit4Mph, Severity::kWarning, "speed limited to 4 mph"},
     {kSpeedLimit0Mph, Severity::kWarning, "speed limited to 0 mph"},
     {kSystemIntegrity, Severity::kError, "system integrity fault"},
     {kYawTransient, Severity::kWarning, "yaw transient"},

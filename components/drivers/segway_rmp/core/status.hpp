@@ -10,7 +10,7 @@ enum : std::uint16_t {
   kSafetyShutdown1 = 0x0001,
   kSafetyShutdown2 = 0x0004,
   kDisableResponse = 0x0008,
-  kSpeedLimit4Mph = 0x0010,
+  kSpeedLimit4Mph = 0x0010,  // 1.8 m/s: no robot of ours is as fast
   kSpeedLimit0Mph = 0x0020,
   kSystemIntegrity = 0x0040,
   kMotorsEnabled = 0x0080,

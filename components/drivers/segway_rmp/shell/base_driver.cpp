@@ -46,9 +46,12 @@ void BaseDriver::take(const SegwayFeedback& feedback) {
                 .twist = odometry_.twist(),
                 .battery_percent = feedback.battery_percent});
   const bool balances = feedback.mode == Mode::kBalancing;
-  const std::string standing = warning_.empty() ? "" : ": " + warning_;
-  host_.health().set(balances ? HealthState::kOk : HealthState::kDegraded,
-                     balances ? warning_ : "the base does not balance" + standing);
+  if (!balances) {
+    host_.health().set(HealthState::kDegraded,
+                       "the base does not balance" + (warning_.empty() ? "" : ": " + warning_));
+  } else {
+    host_.health().set(warning_.empty() ? HealthState::kOk : HealthState::kDegraded, warning_);
+  }
 }
 
 void BaseDriver::disconnected(const std::string& reason) {

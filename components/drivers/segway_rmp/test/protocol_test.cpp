@@ -282,7 +282,7 @@ TEST(Status, MeansWhatTheBitsSay) {
       {0x0180, 0, Severity::kOk, true, false, ""},
       {0x0100, 0, Severity::kOk, false, false, ""},
       {0x4180, 0, Severity::kWarning, true, false, "low battery hazard"},
-      {0x1190, 0, Severity::kWarning, true, false, "speed limited to 4 mph, wheel slip"},
+      {0x1190, 0, Severity::kWarning, true, false, "wheel slip"},
       {0x0040, 0, Severity::kError, false, false, "system integrity fault"},
       {0x0005, 0, Severity::kError, false, false, "safety shutdown 1, safety shutdown 2"},
       {0x0180, 0x0002, Severity::kError, true, true, "emergency stop open"},
