@@ -109,7 +109,9 @@ void CostmapComponent::read_settings(runtime::Parameters& parameters) {
   settings_.cost_scaling = parameters.number("cost_scaling", "-", {0, 100}, 4.0,
                                              "How fast costs fall with distance, per meter.");
   settings_.unseen =
-      parameters.flag("unknown_is_free", true, "Space that nobody has seen yet costs nothing.")
+      parameters.flag("unknown_is_free", true,
+                      "Space that nobody has seen yet costs nothing; else plans keep out of it, "
+                      "and the local planner does not.")
           ? Inflation::Unseen::kFree
           : Inflation::Unseen::kUnknown;
   settings_.social.radius =
