@@ -227,6 +227,7 @@ bool Navigator::on_the_way(const geometry::Point2& point) const {
 
 Decision Navigator::step(const Situation& s) {
   if (fresh_) start(s);
+  if (s.person_ahead) somebody_at_ = s.time;
   step_state(s);
   limit_speed(s);
   send_plan(s);
@@ -453,6 +454,22 @@ void Navigator::handle_failed_plan(const Situation& s, Failure failure, const st
   }
 }
 
+/// A path that leads back the way that the robot has come, unlike the one that it is on.
+bool Navigator::turns_back(const Situation& s, const Route& route) const {
+  constexpr double kBack = 2.0, kOn = 1.0;  // [rad] from where the robot looks
+  const auto turn = [&](const Route& one) {
+    return std::abs(geometry::shortest_turn(s.pose->yaw, one.heading()));
+  };
+  return turn(route) > kBack && turn(route_) < kOn;
+}
+
+/// Somebody is, or was a moment ago, on the way, and has not been waited for long enough: whoever
+/// follows the robot would stand in its way back.
+bool Navigator::waits_for_somebody(const Situation& s) const {
+  if (!somebody_at_ || s.time - *somebody_at_ >= config_.wait_person) return false;
+  return phase_ != Phase::kBlocked || s.time - blocked_since_ < config_.wait_person;
+}
+
 void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry::Pose2> path) {
   Route route;
   route.set(std::move(path));
@@ -460,6 +477,11 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   failed_plans_ = 0;
   const double change = std::abs(route.length() - route_.remaining());
   if (cause == PlanCause::kPeriodic && change <= config_.keep_path * route_.remaining()) return;
+  if (turns_back(s, route) && (cause != PlanCause::kNeeded && cause != PlanCause::kOffPath) &&
+      waits_for_somebody(s)) {
+    if (cause == PlanCause::kBlocked) replanned_at_.reset(), blocked_by_person_ = true;
+    return;
+  }
   old_path_ = false;
   route_ = std::move(route);
   route_.track(*s.pose);

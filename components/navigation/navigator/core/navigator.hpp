@@ -244,6 +244,8 @@ class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is
   bool arrived(const Situation& s);
   void handle_reply(const Situation& s);
   void handle_failed_plan(const Situation& s, Failure failure, const std::string& reason);
+  bool turns_back(const Situation& s, const Route& route) const;
+  bool waits_for_somebody(const Situation& s) const;
   void adopt(const Situation& s, PlanCause cause, std::vector<geometry::Pose2> path);
   void ask_plan(const Situation& s, PlanCause cause);
   void send_plan(const Situation& s);
@@ -304,6 +306,7 @@ class Navigator {  // NOLINT(clang-analyzer-optin.performance.Padding): there is
   std::optional<double> standing_since_, obstacle_since_;
 
   // Blocked and recovering.
+  std::optional<double> somebody_at_;  // [s] when somebody was on the way last
   double blocked_since_ = 0.0;
   std::optional<double> replanned_at_;
   int recoveries_in_a_row_ = 0;  // of this goal

@@ -36,6 +36,11 @@ void Route::measure_chords() {
   }
 }
 
+double Route::heading() const {
+  const auto chord = static_cast<std::size_t>(place_ / kChord);
+  return chord < chords_.size() ? chords_[chord] : path_.back().yaw;
+}
+
 double Route::turning_left(double yaw) const {
   double turning = 0.0;
   for (auto i = static_cast<std::size_t>(place_ / kChord); i < chords_.size(); ++i) {

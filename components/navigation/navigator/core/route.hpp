@@ -36,6 +36,8 @@ class Route {
   /// it (in chords of 0.4 m: corners of a grid's path are none) and at its end. Not for an empty
   /// path.
   double turning_left(double yaw) const;
+  /// [rad] Where the path leads from the place. Not for an empty path.
+  double heading() const;
   double offset() const { return offset_; }  ///< [m] of the robot from the path, when last tracked
 
  private:

@@ -476,6 +476,33 @@ TEST(Navigator, PlansPeriodicallyButKeepsAPathThatIsAsGood) {
   EXPECT_EQ(calm.plans.size(), 1u);
 }
 
+/// Whoever follows it would stand in its way back, and who is ahead walks on.
+TEST(Navigator, DoesNotTurnBackForSomebodyWhoIsOnTheWay) {
+  for (const bool blocked : {false, true}) {
+    Rig rig;
+    rig.drive = Rig::drive_on;
+    rig.go(30.0);
+    rig.run(1.0);
+    rig.s.person_ahead = true;
+    rig.run(0.1);
+    rig.s.person_ahead = !blocked;  // a thing, it seems, but somebody was there a moment ago
+    if (blocked) rig.drive = Rig::stand_blocked;
+    rig.answer = [](Rig& r, const PlanRequest& request) {  // the other way round
+      const double x = request.start.x;
+      r.navigator.plan_reply(
+          {request.id,
+           "",
+           {request.start, {x - 5.0, 0.0, 0.0}, {x - 5.0, 9.0, 0.0}, request.goal}});
+    };
+    rig.run(6.5);
+    EXPECT_GT(rig.plans.size(), 1u);
+    EXPECT_NE(rig.navigator.path().size(), 4u) << blocked;
+    rig.s.person_ahead = false;
+    rig.run(blocked ? 3.0 : 14.0);
+    EXPECT_EQ(rig.navigator.path().size(), 4u) << "he has been waited for " << blocked;
+  }
+}
+
 TEST(Navigator, DrivesOnWhenAPeriodicPlanFails) {
   Rig rig;
   rig.drive = Rig::drive_on;
