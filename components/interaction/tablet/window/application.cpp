@@ -88,7 +88,7 @@ class Application::Implementation final : public Window {
   }
 
   std::string hidden() const override {
-    return no_display ? "no display: draws into memory (QT_QPA_PLATFORM=offscreen asks for that)"
+    return no_display ? "no display: draws into memory (set QT_QPA_PLATFORM=offscreen where that is meant)"
                       : "";
   }
   void open(const Settings& given) override {
