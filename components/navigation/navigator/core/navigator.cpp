@@ -460,7 +460,7 @@ bool Navigator::turns_back(const Situation& s, const Route& route) const {
   const auto turn = [&](const Route& one) {
     return std::abs(geometry::shortest_turn(s.pose->yaw, one.heading()));
   };
-  return turn(route) > kBack && turn(route_) < kOn;
+  return !route_.empty() && turn(route) > kBack && turn(route_) < kOn;
 }
 
 /// Somebody is, or was a moment ago, on the way, and has not been waited for long enough: whoever
@@ -477,8 +477,8 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   failed_plans_ = 0;
   const double change = std::abs(route.length() - route_.remaining());
   if (cause == PlanCause::kPeriodic && change <= config_.keep_path * route_.remaining()) return;
-  if (turns_back(s, route) && (cause != PlanCause::kNeeded && cause != PlanCause::kOffPath) &&
-      waits_for_somebody(s)) {
+  const bool wanted = cause == PlanCause::kNeeded || cause == PlanCause::kOffPath;
+  if (!wanted && waits_for_somebody(s) && turns_back(s, route)) {
     if (cause == PlanCause::kBlocked) replanned_at_.reset(), blocked_by_person_ = true;
     return;
   }

@@ -476,6 +476,17 @@ TEST(Navigator, PlansPeriodicallyButKeepsAPathThatIsAsGood) {
   EXPECT_EQ(calm.plans.size(), 1u);
 }
 
+TEST(Navigator, TurnsBackForAGoalBehindIt) {
+  Rig rig;
+  rig.s.person_ahead = true;
+  rig.answer = [](Rig& r, const PlanRequest& request) {
+    r.navigator.plan_reply({request.id, "", {request.start, {-5.0, 0.0, 0.0}, request.goal}});
+  };
+  rig.go();
+  rig.run(1.0);
+  EXPECT_EQ(rig.navigator.path().size(), 3u);
+}
+
 /// Whoever follows it would stand in its way back, and who is ahead walks on.
 TEST(Navigator, DoesNotTurnBackForSomebodyWhoIsOnTheWay) {
   for (const bool blocked : {false, true}) {
