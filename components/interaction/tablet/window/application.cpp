@@ -88,8 +88,9 @@ class Application::Implementation final : public Window {
   }
 
   std::string hidden() const override {
-    return no_display ? "no display: draws into memory (set QT_QPA_PLATFORM=offscreen where that is meant)"
-                      : "";
+    return no_display
+               ? "no display: draws into memory (set QT_QPA_PLATFORM=offscreen where that is meant)"
+               : "";
   }
   void open(const Settings& given) override {
     later([this, given] {
