@@ -99,8 +99,8 @@ TEST(LiveKinectTest, EndsWhenAReadHangsSoThatAnotherProcessReadsOn) {
 
 TEST(LiveKinectTest, RefusesAnIncompleteLens) {
   try {
-    runtime::TestHost(runtime::component_factory<KinectComponent>("kinect"),
-                      "source: live\nrobot.kinect.intrinsics: [365, 365, 256]");
+    const runtime::TestHost host(runtime::component_factory<KinectComponent>("kinect"),
+                                 "source: live\nrobot.kinect.intrinsics: [365, 365, 256]");
     FAIL() << "it started";
   } catch (const std::exception& error) {
     EXPECT_STREQ(error.what(),
