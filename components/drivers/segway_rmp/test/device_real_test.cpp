@@ -370,6 +370,14 @@ TEST_F(DeviceReal, TellsWhatTheBaseSaysOfItself) {
   right.run(1000);
   EXPECT_EQ(state(), STATE_BALANCING);
   EXPECT_EQ(host.heartbeat().reason(), "low battery hazard");
+  device->warning = 0;
+  right.run(500);
+  device->silent = true;
+  right.run(500);
+  device->silent = false;
+  right.run(2000);
+  EXPECT_EQ(state(), STATE_BALANCING);
+  EXPECT_EQ(host.heartbeat().reason(), "") << "it is heard again, as it was before";
   device->warning = kSafetyShutdown1;
   device->switch_off();
   right.run(1000);

@@ -176,22 +176,14 @@ TEST_F(Component, RemembersNothingThatCameToItByItself) {
   laser_range = 3.5F;
   give_map();
   run(200);
-  const auto see = [&](float range) {
-    for (int i = 0; i < 5; ++i) {
-      auto message = scan("laser", range);
-      message.intensities().assign(message.ranges().size(), 0.9F);
-      host.publish(topics::kKinectScan, message);
-      run(40);
-    }
-  };
   base.x = -0.6;
-  see(kNothing);
+  surely_see(kNothing);
   base.x = 0.0;
   for (const float range : {0.7F, 0.95F}) {  // nobody told of him: he is too near for that, too
-    see(range);
+    surely_see(range);
     EXPECT_EQ(local_cost(static_cast<double>(range) + 0.02, 0.0), kLethalCost);
     base.x += 0.2;
-    see(kNothing);
+    surely_see(kNothing);
     base.x -= 0.2;
     EXPECT_LT(local_cost(static_cast<double>(range) + 0.02, 0.0), kLethalCost) << range;
   }
@@ -201,24 +193,16 @@ TEST_F(Component, KeepsWhatIsNearThoughItTurnedToItOrMeasuresItACellNearer) {
   laser_range = 3.5F;
   give_map();
   run(200);
-  const auto see = [&](float range) {
-    for (int i = 0; i < 5; ++i) {
-      auto message = scan("laser", range);
-      message.intensities().assign(message.ranges().size(), 0.9F);
-      host.publish(topics::kKinectScan, message);
-      run(40);
-    }
-  };
-  see(0.7F);  // nobody has seen the place before
-  see(kNothing);
+  surely_see(0.7F);  // nobody has seen the place before
+  surely_see(kNothing);
   EXPECT_EQ(local_cost(0.72, 0.0), kLethalCost);
   base.x += 2.0;
-  see(kNothing);
-  see(1.2F);
+  surely_see(kNothing);
+  surely_see(1.2F);
   base.x += 0.3;
   for (const float nearer : {0.84F, 0.96F}) {
-    see(nearer);
-    see(kNothing);
+    surely_see(nearer);
+    surely_see(kNothing);
     EXPECT_EQ(local_cost(base.x + 0.92, 0.0), kLethalCost) << nearer;
   }
 }

@@ -73,6 +73,15 @@ class Component : public testing::Test {
       host.run_for(milliseconds(20));
     }
   }
+  /// The Kinect is sure of it in five scans.
+  void surely_see(float range) {
+    for (int i = 0; i < 5; ++i) {
+      auto message = scan("laser", range);
+      message.intensities().assign(message.ranges().size(), 0.9F);
+      host.publish(topics::kKinectScan, message);
+      run(40);
+    }
+  }
   /// The front whiskers say so, then time passes.
   void feel(bool left, bool right = false, int ms = 1500) {
     usher_msgs::msg::Whiskers whiskers;

@@ -477,8 +477,8 @@ void Navigator::adopt(const Situation& s, PlanCause cause, std::vector<geometry:
   failed_plans_ = 0;
   const double change = std::abs(route.length() - route_.remaining());
   if (cause == PlanCause::kPeriodic && change <= config_.keep_path * route_.remaining()) return;
-  const bool wanted = cause == PlanCause::kNeeded || cause == PlanCause::kOffPath;
-  if (!wanted && waits_for_somebody(s) && turns_back(s, route)) {
+  const bool needed = cause == PlanCause::kNeeded || cause == PlanCause::kOffPath;
+  if (!needed && waits_for_somebody(s) && turns_back(s, route)) {
     if (cause == PlanCause::kBlocked) replanned_at_.reset(), blocked_by_person_ = true;
     return;
   }
